@@ -1,0 +1,80 @@
+"""Everything that can go wrong, sorted by whose fault it is.
+
+One root, four branches, each also the built-in exception that a caller would expect. The
+attributes are data; the text is made from them here and nowhere else.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class CobotwireError(Exception):
+    """The root of every error that cobotwire raises on purpose."""
+
+
+class UsageError(CobotwireError, ValueError):
+    """The caller's fault, found before a byte was sent.
+
+    Attributes:
+        argument: where in the call, for example ``angles[2]``.
+        value: what was given.
+        allowed: what would have been right.
+    """
+
+    def __init__(self, argument: str, value: Any, allowed: str) -> None:
+        self.argument = argument
+        self.value = value
+        self.allowed = allowed
+        super().__init__(f"{argument} is {_short(value)}; allowed: {allowed}")
+
+
+class ProtocolError(CobotwireError):
+    """The peer's fault: bytes that the protocol does not allow.
+
+    Attributes:
+        reason: a word for programs, one of the noise reasons or ``bad-value``, ``trailing``,
+            ``bad-text``.
+        offset: where in ``data`` it went wrong, in bytes.
+        data: the bytes in question.
+    """
+
+    def __init__(self, reason: str, offset: int, data: bytes, detail: str) -> None:
+        self.reason = reason
+        self.offset = offset
+        self.data = data
+        super().__init__(f"{detail} (at byte {offset} of {data.hex(' ').upper() or 'nothing'})")
+
+
+class LinkError(CobotwireError, OSError):
+    """The link's fault: the port could not be opened, or it went away.
+
+    Attributes:
+        url: the port or URL in question.
+    """
+
+    def __init__(self, url: str, detail: str) -> None:
+        self.url = url
+        super().__init__(f"{url}: {detail}")
+
+
+class ReplyTimeout(CobotwireError, TimeoutError):
+    """Silence: the deadline passed without the answer.
+
+    Attributes:
+        command: the name of the command that was asked.
+        waited: seconds from the request to giving up.
+        heard: what came meanwhile instead, one line each.
+    """
+
+    def __init__(self, command: str, waited: float, heard: tuple[str, ...]) -> None:
+        self.command = command
+        self.waited = waited
+        self.heard = heard
+        meanwhile = "; ".join(heard) if heard else "nothing"
+        super().__init__(f"no answer to {command} within {waited:.3f} s; heard: {meanwhile}")
+
+
+def _short(value: Any, limit: int = 80) -> str:
+    text = repr(value)
+    return text if len(text) <= limit else text[: limit - 3] + "..."

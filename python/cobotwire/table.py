@@ -1,0 +1,175 @@
+"""The protocol as data: what the generator writes and what both codecs interpret.
+
+An edition is one :class:`Table`. Nothing here knows a command by name, and nothing here does I/O:
+the classes are plain records, so that the Rust codec can read the same objects attribute by
+attribute. How the records are to be read is said once, in ``codec/reference``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Literal
+
+from cobotwire.errors import UsageError
+
+Direction = Literal["request", "reply"]
+Safety = Literal["query", "setting", "motion", "power", "persistent write"]
+FieldKind = Literal["number", "flag", "enum"]
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """One number on the wire: ``width`` bytes, a sign rule, and a scale as an exact rational.
+
+    The unsigned raw word ``w`` stands for the whole number ``w - 256**width`` if
+    ``w > signed_at``, else ``w``. The physical value is ``whole * multiply / divide``; where
+    ``multiply == divide == 1`` it is the whole number itself, an ``int``.
+    ``minimum`` and ``maximum`` bound the *whole* number.
+    """
+
+    name: str
+    width: int
+    order: Literal["big", "little"]
+    signed_at: int
+    multiply: int
+    divide: int
+    minimum: int
+    maximum: int
+    unit: str
+
+    @property
+    def scaled(self) -> bool:
+        """Whether the physical value is a float (True) or the whole number itself (False)."""
+        return not self.multiply == self.divide == 1
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """How a field reads while its selector holds one of ``when`` (``()``: always)."""
+
+    when: tuple[int, ...]
+    numbers: tuple[Number, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One argument of a request or one part of a reply.
+
+    ``many`` fields are tuples, one element a number. ``choices`` closes the list of legal whole
+    numbers (``()``: every one between minimum and maximum). Where ``selector`` is not -1, it is the
+    index, in the same layout, of the field whose whole number picks the case; all cases of a field
+    take the same number of bytes.
+    """
+
+    name: str
+    kind: FieldKind
+    many: bool
+    choices: tuple[int, ...]
+    selector: int
+    cases: tuple[Case, ...]
+    echo: bool
+    doc: str
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return sum(number.width for number in self.cases[0].numbers)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The data bytes of one form of a message."""
+
+    fields: tuple[Field, ...]
+
+    @property
+    def size(self) -> int:
+        """Data bytes on the wire, without header, LEN, command id and footer."""
+        return sum(field.size for field in self.fields)
+
+
+@dataclass(frozen=True, slots=True)
+class TextReply:
+    """A reply that is text outside any frame: ``prefixes[i]`` stands before ``fields[i]``.
+
+    Its end shows only by ``silence_ms`` without another byte.
+    """
+
+    prefixes: tuple[str, ...]
+    fields: tuple[str, ...]
+    silence_ms: int
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One call: its id, how it is asked and how it is answered.
+
+    ``request`` and ``reply`` hold the forms of the message, told apart by their size on the wire
+    and by their number of fields; the first is the full one. No ``reply`` and no ``text`` means
+    that nothing answers.
+    """
+
+    id: int
+    name: str
+    title: str
+    doc: str
+    family: str
+    safety: Safety
+    deadline_ms: int
+    request: tuple[Layout, ...]
+    reply: tuple[Layout, ...]
+    text: TextReply | None
+    notes: tuple[str, ...]
+
+    @property
+    def answers(self) -> bool:
+        """Whether a reply is due."""
+        return bool(self.reply) or self.text is not None
+
+    def layouts(self, direction: Direction) -> tuple[Layout, ...]:
+        """The forms of this command's message in one direction."""
+        return self.request if direction == "request" else self.reply
+
+
+@dataclass(frozen=True, slots=True)
+class FrameFormat:
+    """``header LEN CMD DATA footer``; LEN counts CMD, DATA and footer."""
+
+    header: bytes
+    footer: bytes
+    maximum_length: int
+
+    def length(self, data_size: int) -> int:
+        """LEN of a frame with ``data_size`` data bytes."""
+        return 1 + data_size + len(self.footer)
+
+    @property
+    def overhead(self) -> int:
+        """Bytes of a frame that LEN does not count: the header and LEN itself."""
+        return len(self.header) + 1
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """One edition of the protocol."""
+
+    edition: str
+    title: str
+    joints: int
+    baudrate: int
+    frame: FrameFormat
+    commands: tuple[Command, ...]
+
+    def command(self, name: str) -> Command:
+        """The command called ``name``.
+
+        Raises:
+            UsageError: there is none; the text names the nearest spelling.
+        """
+        for command in self.commands:
+            if command.name == name:
+                return command
+        near = get_close_matches(name, [command.name for command in self.commands], n=1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise UsageError("command", name, f"a command of edition {self.edition}{hint}")
