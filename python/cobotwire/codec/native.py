@@ -1,0 +1,7 @@
+"""The Rust codec behind the same interface. Importing this fails where no binary was built."""
+
+from __future__ import annotations
+
+from cobotwire._native import NativeCodec
+
+__all__ = ["NativeCodec"]

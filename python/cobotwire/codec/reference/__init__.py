@@ -1,0 +1,42 @@
+"""The reference codec: obvious before fast. It is the oracle of the tests and the rules in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from cobotwire.codec.interface import Listening, Message
+from cobotwire.codec.reference.decode import decode
+from cobotwire.codec.reference.encode import encode
+from cobotwire.codec.reference.framer import ReferenceFramer
+from cobotwire.codec.reference.legal import Forms
+from cobotwire.table import Direction, Table
+
+
+class ReferenceCodec:
+    """The pure-Python codec; see :class:`cobotwire.codec.interface.Codec`."""
+
+    name: Literal["reference"] = "reference"
+
+    def __init__(self, table: Table) -> None:
+        self.table = table
+        self._forms: dict[Direction, Forms] = {
+            "request": Forms(table, "request"),
+            "reply": Forms(table, "reply"),
+        }
+
+    def encode(self, command: str, direction: Direction, values: Sequence[Any]) -> bytes:
+        """Build one whole frame."""
+        return encode(self.table.frame, self.table.command(command), direction, values)
+
+    def decode(self, direction: Direction, data: bytes) -> Message:
+        """Read one whole frame."""
+        return decode(self._forms[direction], direction, data)
+
+    def framer(self, listening: Listening, *, accept_unknown: bool = False) -> ReferenceFramer:
+        """A new framer."""
+        directions: tuple[Direction, ...] = (
+            ("request", "reply") if listening == "both" else (listening,)
+        )
+        forms = [self._forms[direction] for direction in directions]
+        return ReferenceFramer(self.table.frame, forms, accept_unknown)

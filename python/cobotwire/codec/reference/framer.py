@@ -1,0 +1,95 @@
+"""Framing and resync, as the law says it.
+
+At position i a frame stands if the header is there, LEN is legal for CMD, and the footer is at its
+place. A candidate is refuted by the first byte that refutes it; then the scan goes on at i + 1 and
+never skips what a false header claimed. A candidate that more bytes could complete waits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cobotwire.codec.interface import Event, Frame, Noise, NoiseReason
+from cobotwire.codec.reference.legal import Forms
+from cobotwire.table import FrameFormat
+
+
+class ReferenceFramer:
+    """Cuts frames out of a byte stream; see :class:`cobotwire.codec.interface.Framer`."""
+
+    def __init__(self, frame: FrameFormat, forms: Sequence[Forms], accept_unknown: bool) -> None:
+        self._frame = frame
+        self._forms = forms
+        self._accept_unknown = accept_unknown
+        self._lengths = set().union(*(form.lengths for form in forms))
+        if accept_unknown:
+            self._lengths |= set(range(frame.length(0), frame.maximum_length + 1))
+        self._waiting = bytearray()
+        self._offset = 0
+
+    @property
+    def pending(self) -> int:
+        """Bytes fed that no event covers yet."""
+        return len(self._waiting)
+
+    def feed(self, data: bytes | bytearray | memoryview) -> list[Event]:
+        """Take bytes; give what is certain by now."""
+        self._waiting += data
+        return self._cut(at_end=False)
+
+    def flush(self) -> list[Event]:
+        """Refute what still waits."""
+        return self._cut(at_end=True)
+
+    def _cut(self, at_end: bool) -> list[Event]:
+        events: list[Event] = []
+        data, start = bytes(self._waiting), 0
+        while start < len(data):
+            verdict = self._judge(data, start)
+            if isinstance(verdict, int):
+                events.append(Frame(self._offset + start, data[start : start + verdict]))
+                start += verdict
+            elif verdict == "truncated" and not at_end:
+                break
+            else:
+                self._add_noise(events, self._offset + start, data[start : start + 1], verdict)
+                start += 1
+        del self._waiting[:start]
+        self._offset += start
+        return events
+
+    def _judge(self, data: bytes, start: int) -> int | NoiseReason:
+        """The size of the frame at ``start``, or why there is none (``truncated``: not yet)."""
+        frame = self._frame
+        head = data[start : start + len(frame.header)]
+        if not frame.header.startswith(head):
+            return "no-header"
+        if len(data) < start + frame.overhead:
+            return "truncated"
+        length = data[start + 2]
+        if length not in self._lengths:
+            return "bad-length"
+        if len(data) < start + frame.overhead + 1:
+            return "truncated"
+        fault = self._refute_id(data[start + 3], length)
+        if fault is not None:
+            return fault
+        end = start + frame.overhead + length
+        if len(data) < end:
+            return "truncated"
+        return frame.overhead + length if data[start:end].endswith(frame.footer) else "bad-footer"
+
+    def _refute_id(self, id: int, length: int) -> NoiseReason | None:
+        if any(form.find(id, length) for form in self._forms):
+            return None
+        if any(id in form.by_id for form in self._forms):
+            return "bad-length"
+        return None if self._accept_unknown else "unknown-id"
+
+    @staticmethod
+    def _add_noise(events: list[Event], offset: int, data: bytes, reason: NoiseReason) -> None:
+        last = events[-1] if events else None
+        if isinstance(last, Noise) and last.reason == reason:
+            events[-1] = Noise(last.offset, last.data + data, reason)
+        else:
+            events.append(Noise(offset, data, reason))
