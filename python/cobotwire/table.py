@@ -57,19 +57,20 @@ class Field:
     """One argument of a request or one part of a reply.
 
     ``many`` fields are tuples, one element a number. ``choices`` closes the list of legal whole
-    numbers (``()``: every one between minimum and maximum). Where ``selector`` is not -1, it is the
-    index, in the same layout, of the field whose whole number picks the case; all cases of a field
-    take the same number of bytes.
+    numbers (``()``: every one between minimum and maximum); ``labels`` names them, for people.
+    Where ``selector`` is not -1, it is the index, in the same layout, of the field whose whole
+    number picks the case; all cases of a field take the same number of bytes.
     """
 
     name: str
     kind: FieldKind
-    many: bool
-    choices: tuple[int, ...]
-    selector: int
     cases: tuple[Case, ...]
-    echo: bool
     doc: str
+    many: bool = False
+    choices: tuple[int, ...] = ()
+    labels: tuple[str, ...] = ()
+    selector: int = -1
+    echo: bool = False
 
     @property
     def size(self) -> int:
@@ -118,9 +119,9 @@ class Command:
     safety: Safety
     deadline_ms: int
     request: tuple[Layout, ...]
-    reply: tuple[Layout, ...]
-    text: TextReply | None
-    notes: tuple[str, ...]
+    reply: tuple[Layout, ...] = ()
+    text: TextReply | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def answers(self) -> bool:

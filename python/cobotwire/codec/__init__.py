@@ -21,7 +21,7 @@ def chosen() -> CodecName:
     """The name of the codec in use.
 
     Raises:
-        UsageError: ``COBOTWIRE_CODEC`` names no codec, or forces the native one where there is none.
+        UsageError: ``COBOTWIRE_CODEC`` names no codec, or forces the native one in vain.
     """
     forced = os.environ.get(VARIABLE, "")
     if forced not in ("", "reference", "native"):

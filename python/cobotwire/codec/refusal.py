@@ -12,16 +12,16 @@ from cobotwire.errors import ProtocolError, UsageError
 from cobotwire.table import Case, Command, Direction, Field, Number, Table
 
 ValueFault = Literal["type", "not-finite", "range", "choice", "count"]
-FrameFault = Literal[
-    "no-header", "bad-length", "unknown-id", "bad-footer", "truncated", "trailing"
-]
+FrameFault = Literal["no-header", "bad-length", "unknown-id", "bad-footer", "truncated", "trailing"]
 
 
 def refuse_form(command: Command, direction: Direction, given: int) -> UsageError:
     """No form of the message has that many fields."""
     forms = command.layouts(direction)
     if not forms:
-        return UsageError(f"{command.name} {direction}", given, f"none: it has no framed {direction}")
+        return UsageError(
+            f"{command.name} {direction}", given, f"none: it has no framed {direction}"
+        )
     allowed = " or ".join(
         "(" + ", ".join(field.name for field in form.fields) + ")" for form in forms
     )
@@ -36,7 +36,9 @@ def refuse_value(
         if fault == "count":
             # The elements themselves may be long and right: their number is what is wrong.
             return UsageError(f"len({field.name})", len(value), _elements(case))
-        return UsageError(field.name, value, _elements(case) if field.many else _bounds(field, case.numbers[0]))
+        return UsageError(
+            field.name, value, _elements(case) if field.many else _bounds(field, case.numbers[0])
+        )
     number = case.numbers[element]
     name = field.name
     if field.many:

@@ -1,4 +1,4 @@
-"""The reference codec: obvious before fast. It is the oracle of the tests and the rules in Python."""
+"""The reference codec: obvious before fast. The oracle of the tests, and the rules in Python."""
 
 from __future__ import annotations
 

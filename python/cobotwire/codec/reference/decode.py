@@ -1,4 +1,4 @@
-"""Bytes to values. A frame that is not legal, or a value that the edition rules out, is an error."""
+"""Bytes to values. An illegal frame, or a value that the edition rules out, is an error."""
 
 from __future__ import annotations
 

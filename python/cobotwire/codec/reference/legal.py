@@ -1,4 +1,4 @@
-"""Which frames are legal in one direction: command id, then data size, to the form of the message."""
+"""Which frames are legal in one direction: by command id, then by data size."""
 
 from __future__ import annotations
 
@@ -16,9 +16,7 @@ class Forms:
                 sizes = self.by_id.setdefault(command.id, {})
                 # Calls that share an id and a size read alike on the wire: the first one names it.
                 sizes.setdefault(layout.size, (command, layout))
-        self.lengths = {
-            table.frame.length(size) for sizes in self.by_id.values() for size in sizes
-        }
+        self.lengths = {table.frame.length(size) for sizes in self.by_id.values() for size in sizes}
 
     def find(self, id: int, length: int) -> tuple[Command, Layout] | None:
         """The form with that id and LEN, if there is one."""

@@ -1,0 +1,24 @@
+"""The model against its rules: one small function a rule, all problems at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from cobotwire_codegen.check import commands, evidence, names, types
+from cobotwire_codegen.errors import Problem, SpecError
+from cobotwire_codegen.model import Edition
+
+Rule = Callable[[Edition], Iterator[Problem]]
+
+RULES: tuple[Rule, ...] = (*names.RULES, *types.RULES, *commands.RULES, *evidence.RULES)
+
+
+def check(edition: Edition) -> None:
+    """Apply every rule.
+
+    Raises:
+        SpecError: with every problem found.
+    """
+    problems = [problem for rule in RULES for problem in rule(edition)]
+    if problems:
+        raise SpecError(problems)

@@ -1,0 +1,105 @@
+"""The spec against what lies beside it: vectors and errata."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal
+
+from cobotwire_codegen.errors import Problem, nearest
+from cobotwire_codegen.model import Edition, Vector
+from cobotwire_codegen.wire import build_frame
+
+
+def vectors_hold(edition: Edition) -> Iterator[Problem]:
+    """Every vector's frame is what its values build."""
+    commands = {command.name: command for command in edition.commands}
+    for vector in edition.vectors:
+        command = commands.get(vector.command)
+        if command is None:
+            message = f"there is no command {vector.command}{nearest(vector.command, commands)}"
+            yield Problem(vector.place, "unknown-command", message)
+        elif vector.frame is not None:
+            try:
+                built = build_frame(edition.frame, command, vector.direction, dict(vector.values))
+            except ValueError as error:
+                yield Problem(vector.place, "vector-unsayable", f"{vector.name}: {error}")
+                continue
+            if built != vector.frame:
+                message = f"{vector.name}: the values build {built.hex(' ').upper()}"
+                yield Problem(vector.place, "vector-differs", message)
+
+
+def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
+    """Every text vector is what its values spell."""
+    texts = {command.name: command.text for command in edition.commands}
+    for vector in edition.vectors:
+        text = texts.get(vector.command)
+        if vector.text is None:
+            continue
+        values = dict(vector.values)
+        if text is None or list(values) != [name for name, _ in text.fields]:
+            message = f"{vector.name}: {vector.command} has no such text reply"
+            yield Problem(vector.place, "vector-unsayable", message)
+            continue
+        built = "".join(
+            f"{prefix}{values[name]}" for prefix, (name, _) in zip(text.prefixes, text.fields)
+        )
+        if built != vector.text:
+            yield Problem(
+                vector.place, "vector-differs", f"{vector.name}: the values spell {built}"
+            )
+
+
+def every_form_shown(edition: Edition) -> Iterator[Problem]:
+    """Each form of each message has a vector."""
+    directions: tuple[Literal["request", "reply"], ...] = ("request", "reply")
+    shown = {
+        (vector.command, vector.direction, tuple(name for name, _ in vector.values))
+        for vector in edition.vectors
+        if vector.frame is not None
+    }
+    for command in edition.commands:
+        for direction in directions:
+            for form in command.forms(direction):
+                names = tuple(field.name for field in form)
+                if (command.name, direction, names) not in shown:
+                    fields = ", ".join(names) or "no fields"
+                    message = f"no vector shows the {direction} of {command.name} with {fields}"
+                    yield Problem(command.place, "no-vector", message)
+
+
+def printed_explained(edition: Edition) -> Iterator[Problem]:
+    """A printed frame that is not read as it stands has an erratum, or is the same frame."""
+    explained = {erratum.example for erratum in edition.errata}
+    for vector in edition.vectors:
+        if vector.example is None:
+            continue
+        if vector.verdict != "consistent" and vector.example not in explained:
+            message = f"{vector.name} is not consistent, but no erratum says why"
+            yield Problem(vector.place, "unexplained-example", message)
+        if vector.verdict == "consistent" and not _same(vector):
+            message = f"{vector.name} is consistent, but its frame is not the printed one"
+            yield Problem(vector.place, "unexplained-example", message)
+
+
+def _same(vector: Vector) -> bool:
+    return vector.printed == vector.frame
+
+
+def errata_name_commands(edition: Edition) -> Iterator[Problem]:
+    """Errata speak of commands that exist."""
+    known = {command.name for command in edition.commands}
+    for erratum in edition.errata:
+        for name in erratum.commands:
+            if name not in known:
+                message = f"there is no command {name}{nearest(name, known)}"
+                yield Problem(erratum.place, "unknown-command", message)
+
+
+RULES = (
+    vectors_hold,
+    text_vectors_hold,
+    every_form_shown,
+    printed_explained,
+    errata_name_commands,
+)

@@ -1,0 +1,47 @@
+"""A type must be sayable on its wire type."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire_codegen.errors import Problem
+from cobotwire_codegen.model import Edition, Enum, Quantity, Type
+
+
+def _quantities(edition: Edition) -> Iterator[Quantity]:
+    fields = [f for c in edition.commands for f in (*c.request, *c.reply)]
+    types: list[Type] = [*edition.types, *(field.type for field in fields)]
+    yield from (type for type in types if isinstance(type, Quantity))
+
+
+def ranges_sayable(edition: Edition) -> Iterator[Problem]:
+    """A range falls on steps of the scale, inside the wire type."""
+    for quantity in _quantities(edition):
+        lowest, highest = quantity.bounds
+        if lowest.denominator != 1 or highest.denominator != 1:
+            message = f"the range of {quantity.name} falls between two steps of {quantity.scale}"
+            yield Problem(quantity.place, "unsayable-range", message)
+        elif lowest < quantity.wire.minimum or highest > quantity.wire.maximum:
+            low = quantity.wire.minimum * quantity.scale
+            high = quantity.wire.maximum * quantity.scale
+            message = f"the range of {quantity.name} is wider than its wire type: {low}..{high}"
+            yield Problem(quantity.place, "range-too-wide", message)
+
+
+def members_fit(edition: Edition) -> Iterator[Problem]:
+    """Enum values are apart and fit their wire type."""
+    for type in edition.types:
+        if not isinstance(type, Enum):
+            continue
+        seen: dict[int, str] = {}
+        for member in type.members:
+            if not type.wire.minimum <= member.value <= type.wire.maximum:
+                message = f"{member.name} = {member.value} does not fit into {type.wire.name}"
+                yield Problem(member.place, "value-too-wide", message)
+            if member.value in seen:
+                message = f"{member.name} and {seen[member.value]} are both {member.value}"
+                yield Problem(member.place, "duplicate-value", message)
+            seen.setdefault(member.value, member.name)
+
+
+RULES = (ranges_sayable, members_fit)

@@ -1,0 +1,129 @@
+"""YAML to nodes that know their place. The only importer of the YAML library."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.nodes import MappingNode, ScalarNode, SequenceNode
+from ruamel.yaml.nodes import Node as YamlNode
+
+from cobotwire_codegen.errors import Place, Problem, SpecError
+
+Plain = str | int | bool | Fraction | None
+
+_TAG = "tag:yaml.org,2002:"
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A word, number, truth value or nothing. Decimal numbers are kept exact."""
+
+    place: Place
+    value: Plain
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    """A list."""
+
+    place: Place
+    items: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """A mapping; ``keys`` says where each key stands."""
+
+    place: Place
+    entries: dict[str, Node]
+    keys: dict[str, Place] = field(default_factory=dict)
+
+
+Node = Scalar | Sequence | Mapping
+
+
+def load(path: Path, shown: str | None = None) -> Node:
+    """Read one YAML file; ``shown`` is the file's name in messages.
+
+    Raises:
+        SpecError: the file is missing, is no YAML, or gives a key twice.
+    """
+    name = shown if shown is not None else str(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise SpecError([Problem(Place(name, 1, 1), "unreadable", reason)]) from error
+    return parse(text, name)
+
+
+def parse(text: str, name: str) -> Node:
+    """Read YAML text; ``name`` stands for the file in messages."""
+    try:
+        root = YAML(typ="safe", pure=True).compose(text)
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = Place(name, mark.line + 1, mark.column + 1) if mark else Place(name, 1, 1)
+        raise SpecError([Problem(place, "syntax", error.problem or "not YAML")]) from error
+    if root is None:
+        return Scalar(Place(name, 1, 1), None)
+    problems: list[Problem] = []
+    node = _convert(root, name, problems)
+    if problems:
+        raise SpecError(problems)
+    return node
+
+
+def _convert(node: YamlNode, name: str, problems: list[Problem]) -> Node:
+    place = Place(name, node.start_mark.line + 1, node.start_mark.column + 1)
+    if isinstance(node, ScalarNode):
+        return _scalar(node, place, problems)
+    if isinstance(node, SequenceNode):
+        return Sequence(place, tuple(_convert(item, name, problems) for item in node.value))
+    if isinstance(node, MappingNode):
+        return _mapping(node, place, name, problems)
+    raise AssertionError(f"{place}: unknown kind of node {node!r}")
+
+
+def _mapping(node: MappingNode, place: Place, name: str, problems: list[Problem]) -> Mapping:
+    mapping = Mapping(place, {})
+    for key_node, value in node.value:
+        key_place = Place(name, key_node.start_mark.line + 1, key_node.start_mark.column + 1)
+        if not isinstance(key_node, ScalarNode):
+            problems.append(Problem(key_place, "bad-key", "a key is a plain word"))
+            continue
+        key = key_node.value
+        if key in mapping.entries:
+            first = mapping.keys[key]
+            problems.append(
+                Problem(key_place, "duplicate-key", f"{key} stands already in line {first.line}")
+            )
+            continue
+        mapping.entries[key] = _convert(value, name, problems)
+        mapping.keys[key] = key_place
+    return mapping
+
+
+def _scalar(node: ScalarNode, place: Place, problems: list[Problem]) -> Scalar:
+    text, tag = node.value, str(node.tag).removeprefix(_TAG)
+    if tag == "int":
+        return Scalar(place, int(text.replace("_", ""), 0))
+    if tag == "bool":
+        return Scalar(place, text.lower() == "true")
+    if tag == "null":
+        return Scalar(place, None)
+    if tag == "float":
+        try:
+            return Scalar(place, Fraction(text))
+        except ValueError:
+            problems.append(
+                Problem(place, "bad-number", f"{text} is no number with an exact value")
+            )
+            return Scalar(place, None)
+    if tag != "str":
+        problems.append(Problem(place, "bad-tag", f"the tag {node.tag} is not taken"))
+    return Scalar(place, text)

@@ -1,0 +1,42 @@
+"""Where this project keeps its spec, and where what is generated from it goes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check
+from cobotwire_codegen.emit import Target
+from cobotwire_codegen.errors import Place, Problem, SpecError
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
+
+
+def editions(root: Path) -> list[Edition]:
+    """Every edition of the spec, checked.
+
+    Raises:
+        SpecError: the spec is wrong, or there is none.
+    """
+    paths = sorted((root / "spec" / "editions").glob("*.yaml"))
+    if not paths:
+        place = Place(str(root / "spec" / "editions"), 1, 1)
+        raise SpecError([Problem(place, "no-edition", "there is no edition here")])
+    found = [build_edition(path, root) for path in paths]
+    for edition in found:
+        check(edition)
+    return found
+
+
+def targets(root: Path, found: list[Edition]) -> list[Target]:
+    """The generated folders with what belongs into them."""
+    package = root / "python" / "cobotwire" / "editions"
+    reference = root / "docs" / "reference"
+    data: Files = {}
+    made = []
+    for edition in found:
+        made.append(Target(package / edition.name, render_python(edition)))
+        made.append(Target(reference / edition.name, render_reference(edition)))
+        data.update(render_vectors(edition))
+    made.append(Target(root / "rust" / "core" / "tests" / "data", data))
+    return made

@@ -1,0 +1,97 @@
+"""The model to text: every generated file of an edition."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
+from cobotwire_codegen.render import markdown, python_api, python_table, words
+from cobotwire_codegen.render.literal import literal, quoted
+from cobotwire_codegen.render.vectors_json import vectors_json
+
+Files = dict[PurePosixPath, str]
+
+
+def render_python(edition: Edition) -> Files:
+    """The edition's Python package: paths are relative to the package's folder."""
+    jinja = _environment()
+    common = {"edition": edition, "named": _named_types(edition)}
+    files = {
+        PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
+        for name in ("__init__", "client", "enums", "values")
+    }
+    for part in ("__init__", "types"):
+        template = jinja.get_template(f"python/table/{part}.py.j2")
+        files[PurePosixPath(f"table/{part}.py")] = template.render(common)
+    commands = jinja.get_template("python/commands/__init__.py.j2")
+    files[PurePosixPath("commands/__init__.py")] = commands.render(common)
+    for family in edition.families:
+        for folder in ("table", "commands"):
+            template = jinja.get_template(f"python/{folder}/family.py.j2")
+            path = PurePosixPath(f"{folder}/{family.name}.py")
+            files[path] = template.render(common, family=family)
+    return files
+
+
+def render_reference(edition: Edition) -> Files:
+    """The edition's command reference in Markdown: a page a family, and an index."""
+    jinja = _environment()
+    files = {
+        PurePosixPath("README.md"): jinja.get_template("markdown/index.md.j2").render(
+            edition=edition
+        )
+    }
+    template = jinja.get_template("markdown/family.md.j2")
+    for family in edition.families:
+        text = template.render(edition=edition, family=family)
+        files[PurePosixPath(f"{family.name}.md")] = text
+    return files
+
+
+def render_vectors(edition: Edition) -> Files:
+    """The table and vectors as JSON."""
+    return {PurePosixPath(f"{edition.name}.json"): vectors_json(edition)}
+
+
+def _named_types(edition: Edition) -> dict[Type, str]:
+    return {type: type.name.upper() for type in edition.types}
+
+
+def _environment() -> Environment:
+    jinja = Environment(
+        loader=PackageLoader("cobotwire_codegen"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,  # noqa: S701  (the output is Python, Markdown and JSON, never HTML)
+    )
+    jinja.globals.update(api=python_api, table=python_table, words=words, md=markdown, lower=lower)
+    jinja.filters.update(
+        literal=literal,
+        quoted=quoted,
+        wrapped=python_api.wrapped,
+        capitalize_first=python_api.capitalize_first,
+        oneline=python_api.oneline,
+        by_class=_by_class,
+    )
+    jinja.tests.update(
+        enum=lambda type: isinstance(type, Enum),
+        value=lambda type: isinstance(type, Value),
+        flag=lambda type: isinstance(type, Flag),
+        quantity=lambda type: isinstance(type, Quantity),
+    )
+    return jinja
+
+
+def _by_class(types: tuple[Type, ...]) -> Iterator[Enum | Value]:
+    """Types that become a class, each class once."""
+    seen = set()
+    for type in types:
+        if isinstance(type, Enum | Value) and type.class_name not in seen:
+            seen.add(type.class_name)
+            yield type

@@ -1,0 +1,118 @@
+"""What the Markdown reference needs: byte tables, worked frames, what is wrong in the document."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Literal
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.model import Command, Edition, Erratum, Field, Quantity, Type, Value, Vector
+from cobotwire_codegen.render.words import decimal
+from cobotwire_codegen.wire import size
+
+Direction = Literal["request", "reply"]
+
+
+def byte_rows(
+    edition: Edition, command: Command, form: tuple[Field, ...]
+) -> Iterator[tuple[str, str, str]]:
+    """The rows of a message's byte table: position, content, value."""
+    frame = edition.frame
+    length = 1 + sum(size(field.type) for field in form) + len(frame.footer)
+    position = len(frame.header)
+    yield f"0-{position - 1}", "header", frame.header.hex(" ").upper()
+    yield str(position), "LEN", f"{length:02X}"
+    yield str(position + 1), "CMD", f"{command.id:02X}"
+    position += 2
+    for field in form:
+        for name, width, content in _parts(field):
+            last = position + width - 1
+            yield (str(position) if width == 1 else f"{position}-{last}"), name, content
+            position += width
+    yield str(position), "footer", frame.footer.hex().upper()
+
+
+def _parts(field: Field) -> Iterator[tuple[str, int, str]]:
+    types = [type for _, type in lower.cases(field)]
+    first = types[0]
+    if not isinstance(first, Value):
+        yield f"`{field.name}`", size(first), " or ".join(wire_form(type) for type in types)
+        return
+    for index, (label, item) in enumerate(first.items):
+        kinds = dict.fromkeys(
+            wire_form(type.items[index][1]) for type in types if isinstance(type, Value)
+        )
+        names = dict.fromkeys(type.items[index][0] for type in types if isinstance(type, Value))
+        yield f"`{field.name}` {'/'.join(names) or label}", item.wire.width, " or ".join(kinds)
+
+
+def wire_form(type: Type) -> str:
+    """How a type stands on the wire, in words."""
+    if isinstance(type, Value):
+        return ", ".join(wire_form(item) for _, item in type.items)
+    if not isinstance(type, Quantity):
+        return type.wire.name
+    if type.scale == 1:
+        return f"{type.wire.name}{' in ' + type.unit + 's' if type.unit else ''}"
+    times = decimal(Fraction(1) / type.scale)
+    return f"{type.wire.name}, {type.unit or 'value'} x {times}"
+
+
+def worked(edition: Edition, command: Command, direction: Direction) -> Vector | None:
+    """The vector that shows a message best: the document's own, where it has one."""
+    fitting = [
+        vector
+        for vector in edition.vectors
+        if vector.command == command.name and vector.direction == direction and vector.frame
+    ]
+    return min(fitting, key=lambda vector: vector.example is None, default=None)
+
+
+def text_vector(edition: Edition, command: Command) -> Vector | None:
+    """The vector of a reply outside any frame."""
+    fitting = (vector for vector in edition.vectors if vector.command == command.name)
+    return next((vector for vector in fitting if vector.text is not None), None)
+
+
+def spoken(vector: Vector) -> str:
+    """A vector's values, in words."""
+    return ", ".join(f"{name} = {_value(value)}" for name, value in vector.values)
+
+
+def _value(value: object) -> str:
+    if isinstance(value, tuple):
+        return "(" + ", ".join(_value(item) for item in value) + ")"
+    return decimal(value) if isinstance(value, Fraction) else str(value)
+
+
+def hexed(data: bytes) -> str:
+    """Bytes as the document prints them."""
+    return data.hex(" ").upper()
+
+
+def errata(edition: Edition, command: Command) -> list[Erratum]:
+    """What the document gets wrong about a command."""
+    return [erratum for erratum in edition.errata if command.name in erratum.commands]
+
+
+def general_errata(edition: Edition) -> list[Erratum]:
+    """What the document gets wrong about the link and the frame."""
+    return [erratum for erratum in edition.errata if not erratum.commands]
+
+
+def cell(text: str) -> str:
+    """Text that may stand in a table's cell."""
+    return text.replace("|", "\\|")
+
+
+def disputed_types(edition: Edition, command: Command) -> list[Quantity]:
+    """The quantities of a command whose own reading is disputed."""
+    found: dict[str, Quantity] = {}
+    for field in (*command.request, *command.reply):
+        for _, type in lower.cases(field):
+            items = [item for _, item in type.items] if isinstance(type, Value) else [type]
+            for item in items:
+                if isinstance(item, Quantity) and item.disputed:
+                    found[item.name] = item
+    return list(found.values())

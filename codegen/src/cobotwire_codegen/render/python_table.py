@@ -1,0 +1,77 @@
+"""Table entries as Python expressions."""
+
+from __future__ import annotations
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.model import Command, Family, Field, Type, Value
+from cobotwire_codegen.render.literal import Call, Name
+
+
+def type_expression(type: Type) -> tuple[Call, ...]:
+    """A type's numbers, for the table of types."""
+    return tuple(
+        Call("Number", *(value for value in number.values())) for number in lower.numbers(type)
+    )
+
+
+def command_expression(family: Family, command: Command, named: dict[Type, str]) -> Call:
+    """A command, for the table of its family."""
+    text = command.text
+    keywords = {
+        "id": Name(f"0x{command.id:02X}"),
+        "name": command.name,
+        "title": command.title,
+        "doc": command.doc,
+        "family": family.name,
+        "safety": command.safety,
+        "deadline_ms": command.deadline_ms,
+        "request": tuple(_layout(form, named) for form in command.forms("request")),
+        "reply": tuple(_layout(form, named) for form in command.forms("reply")),
+        "text": text
+        and Call(
+            "TextReply", text.prefixes, tuple(name for name, _ in text.fields), text.silence_ms
+        ),
+        "notes": lower.notes(command),
+    }
+    needed = ("reply", "text", "notes")
+    return Call("Command", **{k: v for k, v in keywords.items() if k not in needed or v})
+
+
+def _layout(form: tuple[Field, ...], named: dict[Type, str]) -> Call:
+    return Call("Layout", tuple(_field(field, form, named) for field in form))
+
+
+def _field(field: Field, form: tuple[Field, ...], named: dict[Type, str]) -> Call:
+    cases = tuple(
+        Call("Case", when, Name(f"types.{named[type]}") if type in named else type_expression(type))
+        for when, type in lower.cases(field)
+    )
+    keywords = {
+        "many": isinstance(field.type, Value),
+        "choices": lower.choices(field.type),
+        "labels": lower.labels(field.type),
+        "selector": lower.selector(field, form),
+        "echo": bool(field.echo),
+    }
+    defaults = {"many": False, "choices": (), "labels": (), "selector": -1, "echo": False}
+    given = {name: value for name, value in keywords.items() if value != defaults[name]}
+    return Call("Field", field.name, lower.kind(field.type), cases, field.doc, **given)
+
+
+def types_used(family: Family, named: dict[Type, str]) -> bool:
+    """Whether a family's table refers to the table of types."""
+    fields = [f for c in family.commands for f in (*c.request, *c.reply)]
+    return any(type in named for field in fields for _, type in lower.cases(field))
+
+
+def names_used(family: Family, named: dict[Type, str]) -> list[str]:
+    """The record classes that a family's table needs."""
+    fields = [f for c in family.commands for f in (*c.request, *c.reply)]
+    names = {"Command", "Layout"}
+    if fields:
+        names |= {"Case", "Field"}
+    if any(type not in named for field in fields for _, type in lower.cases(field)):
+        names.add("Number")
+    if any(command.text for command in family.commands):
+        names.add("TextReply")
+    return sorted(names)

@@ -1,0 +1,51 @@
+"""The table and its vectors as JSON, for tests in other languages than Python."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import Any
+
+from cobotwire_codegen.lower import table
+from cobotwire_codegen.model import Edition, Enum, Vector
+
+
+def vectors_json(edition: Edition) -> str:
+    """The file that the Rust tests read."""
+    data = {
+        "generated": "by cobotwire-gen from spec/; not to be edited",
+        "table": table(edition),
+        "vectors": [_vector(edition, vector) for vector in edition.vectors],
+    }
+    return json.dumps(data, indent=1) + "\n"
+
+
+def _vector(edition: Edition, vector: Vector) -> dict[str, Any]:
+    return {
+        "name": vector.name,
+        "command": vector.command,
+        "direction": vector.direction,
+        "printed": _hex(vector.printed),
+        "frame": _hex(vector.frame),
+        "text": vector.text is not None,
+        "values": [plain(edition, vector, name, value) for name, value in vector.values],
+        "refused": vector.refused and {"reason": vector.refused[0], "offset": vector.refused[1]},
+    }
+
+
+def plain(edition: Edition, vector: Vector, name: str, value: object) -> Any:
+    """A vector's value as the codecs take it: enum members as numbers, fractions as floats."""
+    if isinstance(value, tuple):
+        return [plain(edition, vector, name, item) for item in value]
+    if isinstance(value, Fraction):
+        return float(value)
+    command = next(command for command in edition.commands if command.name == vector.command)
+    fields = command.request if vector.direction == "request" else command.reply
+    type = next((field.type for field in fields if field.name == name), None)
+    if isinstance(type, Enum):
+        return next(member.value for member in type.members if member.name == value)
+    return value
+
+
+def _hex(data: bytes | None) -> str | None:
+    return None if data is None else data.hex(" ").upper()

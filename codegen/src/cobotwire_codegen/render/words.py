@@ -1,0 +1,46 @@
+"""Types and sources in words, as docstrings and the reference say them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.model import Enum, Field, Flag, Lines, Quantity, Type
+
+
+def allowed(field: Field) -> str:
+    """What an argument may be, in words: shape, unit, range."""
+    words = []
+    for when, type in lower.cases(field):
+        names = [member.name for member, _ in field.cases if member.value in when]
+        prefix = f"for {', '.join(names)}: " if names else ""
+        words.append(prefix + span(type))
+    return "; ".join(words)
+
+
+def span(type: Type) -> str:
+    """Shape, unit and range of a type, in words."""
+    if isinstance(type, Flag):
+        return "True or False"
+    if isinstance(type, Enum):
+        return "one of " + ", ".join(f"{member.name} ({member.value})" for member in type.members)
+    if isinstance(type, Quantity):
+        lowest, highest = (bound * type.scale for bound in type.bounds)
+        unit = f" {type.unit}" if type.unit else ""
+        return f"{decimal(lowest)}..{decimal(highest)}{unit}"
+    names = [name for name, _ in type.items]
+    spans: dict[str, list[str]] = {}
+    for name, item in type.items:
+        spans.setdefault(span(item), []).append(name)
+    inner = "; ".join(f"{', '.join(group)} {words}" for words, group in spans.items())
+    return f"{len(names)} numbers ({inner})"
+
+
+def decimal(exact: Fraction) -> str:
+    """An exact number as people write it."""
+    return str(exact.numerator) if exact.denominator == 1 else str(float(exact))
+
+
+def lines(spans: Lines) -> str:
+    """Lines of the document, in words."""
+    return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
