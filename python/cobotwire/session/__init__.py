@@ -1,0 +1,16 @@
+"""The protocol's conversation without a port, a clock or a thread: bytes and times in, events out."""
+
+from cobotwire.session.device import Asked, DeviceSession, Malformed
+from cobotwire.session.host import Answered, Expired, HostSession, Refused, SessionEvent, Unasked
+
+__all__ = [
+    "Answered",
+    "Asked",
+    "DeviceSession",
+    "Expired",
+    "HostSession",
+    "Malformed",
+    "Refused",
+    "SessionEvent",
+    "Unasked",
+]
