@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Frame, Noise
+from cobotwire.codec.interface import Noise
 from cobotwire.errors import ReplyTimeout, UsageError
 from cobotwire.session import Answered, Expired, HostSession, Refused, SessionEvent, Unasked
 from cobotwire.table import Table

@@ -1,4 +1,4 @@
-"""The protocol's conversation without a port, a clock or a thread: bytes and times in, events out."""
+"""The conversation without a port, clock or thread: bytes and times in, events out."""
 
 from cobotwire.session.device import Asked, DeviceSession, Malformed
 from cobotwire.session.host import Answered, Expired, HostSession, Refused, SessionEvent, Unasked

@@ -74,6 +74,7 @@ def _environment() -> Environment:
     jinja.filters.update(
         literal=literal,
         quoted=quoted,
+        docstring=python_api.docstring,
         wrapped=python_api.wrapped,
         capitalize_first=python_api.capitalize_first,
         oneline=python_api.oneline,

@@ -54,7 +54,7 @@ def wire_form(type: Type) -> str:
     if not isinstance(type, Quantity):
         return type.wire.name
     if type.scale == 1:
-        return f"{type.wire.name}{' in ' + type.unit + 's' if type.unit else ''}"
+        return f"{type.wire.name}, {type.unit}" if type.unit else type.wire.name
     times = decimal(Fraction(1) / type.scale)
     return f"{type.wire.name}, {type.unit or 'value'} x {times}"
 

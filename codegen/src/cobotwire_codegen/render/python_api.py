@@ -112,6 +112,15 @@ def arguments(command: Command) -> str:
     return f"({names[0]},)" if len(names) == 1 else f"({', '.join(names)})"
 
 
+def docstring(text: str, indent: int) -> str:
+    """A docstring of one paragraph, on one line if it fits."""
+    flat = f'{" " * indent}"""{text}"""'
+    if len(flat) <= WIDTH:
+        return flat
+    opened = wrapped(f'"""{text}', indent)
+    return f'{opened}\n{" " * indent}"""'
+
+
 def wrapped(text: str, indent: int, hanging: int = 0) -> str:
     """A paragraph, wrapped; further lines stand ``hanging`` deeper."""
     return textwrap.fill(
@@ -167,4 +176,7 @@ def capitalize_first(text: str) -> str:
 
 def oneline(text: str) -> str:
     """A signature on one line."""
-    return " ".join(text.split()).replace("( ", "(").replace(", )", ")").removeprefix("def ")
+    flat = " ".join(text.split()).replace("( ", "(").replace(", )", ")").replace(" )", ")")
+    return (
+        flat.removeprefix("def ").removesuffix(":").replace("(self, ", "(").replace("(self)", "()")
+    )

@@ -43,4 +43,6 @@ def decimal(exact: Fraction) -> str:
 
 def lines(spans: Lines) -> str:
     """Lines of the document, in words."""
-    return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
+    text = ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
+    one = len(spans) == 1 and spans[0][0] == spans[0][1]
+    return f"line {text}" if one else f"lines {text}"

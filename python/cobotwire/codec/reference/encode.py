@@ -66,7 +66,8 @@ def _field(field: Field, case: Case, value: Any) -> bytes:
 
 
 def _word(number: Number, whole: int) -> bytes:
-    return (whole % 256**number.width).to_bytes(number.width, number.order)
+    word = whole % (1 << 8 * number.width)
+    return word.to_bytes(number.width, number.order)
 
 
 def _checked(field: Field, case: Case, element: int, value: Any) -> int:

@@ -1,0 +1,50 @@
+"""The verbs together, and what they share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+import cobotwire
+from cobotwire.cli.call import call
+from cobotwire.cli.commands import commands
+from cobotwire.cli.decode import decode
+from cobotwire.cli.demo import demo
+from cobotwire.cli.failure import EPILOG, failures
+from cobotwire.cli.sim import sim
+from cobotwire.editions import DEFAULT
+
+
+class _App(click.Group):
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a verb; what goes wrong becomes a line and an exit code."""
+        with failures():
+            return super().invoke(ctx)
+
+
+def _version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        with failures():
+            click.echo(f"cobotwire {cobotwire.__version__}, {cobotwire.codec_in_use()} codec")
+        ctx.exit()
+
+
+@click.group(cls=_App, context_settings={"help_option_names": ["-h", "--help"]}, epilog=EPILOG)
+@click.option("--edition", default=DEFAULT, show_default=True, help="The edition of the protocol.")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_version,
+    help="Show the version and the codec in use.",
+)
+@click.pass_context
+def app(ctx: click.Context, edition: str) -> None:
+    """Talk to a myCobot arm, simulate one, and read what goes over its line."""
+    ctx.obj = edition
+
+
+for verb in (demo, call, decode, sim, commands):
+    app.add_command(verb)

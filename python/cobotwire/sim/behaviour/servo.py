@@ -1,0 +1,109 @@
+"""Servo positions, joint limits, servo registers, and single servos."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cobotwire.sim.behaviour.motion import send_angle
+from cobotwire.sim.behaviour.registry import does
+from cobotwire.sim.state import ArmState, tick_to_angle
+
+
+@does("set_encoder")
+def set_encoder(arm: ArmState, now: float, joint: int, encoder: int) -> None:
+    """Move one servo, at the speed that is set."""
+    send_angle(arm, now, joint, tick_to_angle(joint - 1, encoder), arm.speed)
+
+
+@does("get_encoder")
+def get_encoder(arm: ArmState, now: float, joint: int) -> dict[str, Any]:
+    """Where one servo stands."""
+    return {"encoder": arm.encoder(joint - 1, now)}
+
+
+@does("set_encoders")
+def set_encoders(arm: ArmState, now: float, encoders: tuple[int, ...], speed: int) -> None:
+    """Move all servos."""
+    target = tuple(tick_to_angle(joint, tick) for joint, tick in enumerate(encoders))
+    arm.go_to_angles(target, speed, now)
+
+
+@does("get_encoders")
+def get_encoders(arm: ArmState, now: float) -> dict[str, Any]:
+    """Where all servos stand."""
+    return {"encoders": [arm.encoder(joint, now) for joint in range(arm.joints)]}
+
+
+@does("get_joint_min_angle")
+def get_joint_min_angle(arm: ArmState, now: float, joint: int) -> dict[str, Any]:
+    """A joint's smallest angle."""
+    return {"angle": arm.minimum[joint - 1]}
+
+
+@does("get_joint_max_angle")
+def get_joint_max_angle(arm: ArmState, now: float, joint: int) -> dict[str, Any]:
+    """A joint's largest angle."""
+    return {"angle": arm.maximum[joint - 1]}
+
+
+@does("set_joint_min")
+def set_joint_min(arm: ArmState, now: float, joint: int, angle: float) -> None:
+    """Set a joint's smallest angle."""
+    arm.minimum[joint - 1] = angle
+
+
+@does("set_joint_max")
+def set_joint_max(arm: ArmState, now: float, joint: int, angle: float) -> None:
+    """Set a joint's largest angle."""
+    arm.maximum[joint - 1] = angle
+
+
+@does("is_servo_enable")
+def is_servo_enable(arm: ArmState, now: float, joint: int) -> dict[str, Any]:
+    """Whether one servo is powered."""
+    return {"enabled": arm.enabled[joint - 1]}
+
+
+@does("is_all_servo_enable")
+def is_all_servo_enable(arm: ArmState, now: float) -> dict[str, Any]:
+    """Whether all servos are powered."""
+    return {"enabled": all(arm.enabled)}
+
+
+@does("set_servo_data")
+def set_servo_data(arm: ArmState, now: float, joint: int, register: int, value: int) -> None:
+    """Write a servo register."""
+    arm.registers[joint - 1][register] = value
+
+
+@does("get_servo_data")
+def get_servo_data(arm: ArmState, now: float, joint: int, register: int) -> dict[str, Any]:
+    """Read a servo register."""
+    return {"value": arm.registers[joint - 1].get(register, 0)}
+
+
+@does("set_servo_calibration")
+def set_servo_calibration(arm: ArmState, now: float, joint: int) -> None:
+    """Take a joint's present position as its zero."""
+    position = list(arm.angles.position(now))
+    position[joint - 1] = 0.0
+    arm.angles.place(position, now)
+
+
+@does("joint_brake")
+def joint_brake(arm: ArmState, now: float, joint: int) -> None:
+    """Hold a joint where it stands."""
+    arm.angles.halt(now)
+
+
+@does("release_servo")
+def release_servo(arm: ArmState, now: float, joint: int) -> None:
+    """Let go of one joint."""
+    arm.angles.halt(now)
+    arm.enabled[joint - 1] = False
+
+
+@does("focus_servo")
+def focus_servo(arm: ArmState, now: float, joint: int) -> None:
+    """Hold one joint."""
+    arm.enabled[joint - 1] = arm.powered

@@ -1,0 +1,63 @@
+"""The simulated arm on a pseudo-terminal, for any program that opens a serial port."""
+
+from __future__ import annotations
+
+import os
+import select
+import threading
+import tty
+from types import TracebackType
+from typing import Self
+
+from cobotwire.sim.arm import SimulatedArm
+
+# A request that stands still this long is given up, so that the next one is not taken for its rest.
+IDLE_SECONDS = 0.2
+
+
+class PtyServer:
+    """Serves an arm on a pty while its ``with`` block runs; ``url`` is the port to open."""
+
+    def __init__(self, arm: SimulatedArm) -> None:
+        self.arm = arm
+        self._stop, self._stopper = os.pipe()
+        self._master, self._slave = os.openpty()
+        # Raw, or the terminal would echo the requests and eat some of their bytes. The slave stays
+        # open here, so that a client may come and go.
+        tty.setraw(self._slave)
+        self.url = os.ttyname(self._slave)
+        self._thread = threading.Thread(target=self.serve, name="cobotwire-sim", daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.stop()
+        self._thread.join()
+        self.close()
+
+    def serve(self) -> None:
+        """Answer until :meth:`stop` is called."""
+        while True:
+            wait = IDLE_SECONDS if self.arm.pending else None
+            ready, _, _ = select.select([self._master, self._stop], [], [], wait)
+            if self._stop in ready:
+                return
+            answer = self.arm.receive(os.read(self._master, 4096)) if ready else self.arm.flush()
+            while answer:
+                answer = answer[os.write(self._master, answer) :]
+
+    def stop(self) -> None:
+        """End :meth:`serve`; may be called from another thread or a signal handler."""
+        os.write(self._stopper, b"x")
+
+    def close(self) -> None:
+        """Give the pty back; whoever has it open hears that the port is gone."""
+        for descriptor in (self._master, self._slave, self._stop, self._stopper):
+            os.close(descriptor)
