@@ -1,0 +1,52 @@
+# Each target does its own set-up, once, in .venv. Needs Python 3.11+, Rust and make.
+PYTHON ?= python3
+BIN := .venv/bin
+RUST_SOURCES := $(shell find rust -name '*.rs' -not -path '*/target/*') $(shell find rust -name Cargo.toml) Cargo.toml
+EXAMPLES ?= 100
+
+.PHONY: help demo test lint python-test rust-test gen clean
+.DEFAULT_GOAL := help
+
+help: ## what the targets do
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+demo: .venv/.native ## drive a simulated arm over a pty and check every answer
+	$(BIN)/cobotwire demo --codec native
+
+test: lint rust-test python-test ## everything that must hold: linters, generated files, Rust, Python
+
+lint: .venv/.tools .venv/.native ## formatting, linters, types, stubs against the binary, generated files
+	$(BIN)/cobotwire-gen --check
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest cobotwire._native --mypy-config-file pyproject.toml
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --quiet -- -D warnings
+
+rust-test: ## the Rust core's own tests
+	cargo test --workspace --quiet
+
+python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs
+	$(BIN)/python -m pytest
+
+gen: .venv/.tools ## write the generated files from spec/
+	$(BIN)/cobotwire-gen
+
+clean: ## forget the environment and what was built
+	rm -rf .venv target
+
+.venv/.base: pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --upgrade pip 'maturin>=1.9,<2'
+	touch $@
+
+# A release build of the Rust codec, installed in place together with what the command line needs.
+.venv/.native: .venv/.base $(RUST_SOURCES)
+	. $(BIN)/activate && maturin develop --release --quiet --extras cli
+	touch $@
+
+.venv/.tools: .venv/.base codegen/pyproject.toml
+	$(BIN)/python -m pip install --quiet -e codegen --group dev
+	touch $@

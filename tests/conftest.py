@@ -1,0 +1,49 @@
+"""What every test may use: the codecs, an arm on a pty, and the profiles of Hypothesis."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
+from cobotwire.editions.mycobot import TABLE, MyCobot
+from cobotwire.sim import PtyServer, SimulatedArm
+
+settings.register_profile(
+    "quick",
+    max_examples=100,
+    deadline=None,  # two busy cores: a slow moment is not a failure
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.register_profile("deep", settings.get_profile("quick"), max_examples=20_000)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "quick"))
+
+
+@pytest.fixture(params=["reference", "native"])
+def codec(request: pytest.FixtureRequest) -> Codec:
+    """Runs the test on both codecs. A missing binary is a failure, not a skip."""
+    return codecs.load(TABLE, request.param)
+
+
+@pytest.fixture
+def simulated() -> SimulatedArm:
+    """A simulated arm, switched off."""
+    return SimulatedArm(TABLE)
+
+
+@pytest.fixture
+def server(simulated: SimulatedArm) -> Iterator[PtyServer]:
+    """The simulated arm on a real pseudo-terminal."""
+    with PtyServer(simulated) as serving:
+        yield serving
+
+
+@pytest.fixture
+def arm(server: PtyServer) -> Iterator[MyCobot]:
+    """The generated client, connected to the simulated arm through pyserial."""
+    with MyCobot(server.url) as client:
+        yield client

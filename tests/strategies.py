@@ -1,0 +1,159 @@
+"""Every Hypothesis strategy, made from the edition's own table."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from hypothesis import strategies as st
+
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.table import Case, Command, Direction, Field, Layout, Number
+
+HEADER = TABLE.frame.header
+
+
+class Form(NamedTuple):
+    """One form of one message."""
+
+    command: Command
+    direction: Direction
+    layout: Layout
+
+
+FORMS = [
+    Form(command, direction, layout)
+    for command in TABLE.commands
+    for direction in ("request", "reply")
+    for layout in command.layouts(direction)
+]
+
+
+def forms() -> st.SearchStrategy[Form]:
+    """Any form of any message of the edition."""
+    return st.sampled_from(FORMS)
+
+
+def _whole(field: Field, number: Number) -> st.SearchStrategy[int]:
+    if field.choices:
+        return st.sampled_from(field.choices)
+    return st.integers(number.minimum, number.maximum)
+
+
+def _value(field: Field, number: Number) -> st.SearchStrategy[Any]:
+    whole = _whole(field, number)
+    if field.kind == "flag":
+        return whole.map(bool)
+    if number.scaled:
+        return whole.map(lambda steps: steps * number.multiply / number.divide)
+    return whole
+
+
+def _of_case(field: Field, case: Case) -> st.SearchStrategy[Any]:
+    elements = [_value(field, number) for number in case.numbers]
+    return st.tuples(*elements) if field.many else elements[0]
+
+
+@st.composite
+def legal_values(draw: st.DrawFn, layout: Layout) -> tuple[Any, ...]:
+    """Values that the layout allows, each on a step of its scale."""
+    values: list[Any] = [
+        draw(_of_case(field, field.cases[0])) if field.selector < 0 else None
+        for field in layout.fields
+    ]
+    for index, field in enumerate(layout.fields):
+        if field.selector >= 0:
+            picked = values[field.selector]
+            case = next(case for case in field.cases if picked in case.when)
+            values[index] = draw(_of_case(field, case))
+    return tuple(values)
+
+
+@st.composite
+def messages(draw: st.DrawFn) -> tuple[Form, tuple[Any, ...]]:
+    """Any legal message: its form and its values."""
+    form = draw(forms())
+    return form, draw(legal_values(form.layout))
+
+
+def odd_values() -> st.SearchStrategy[Any]:
+    """Values of all kinds, most of which no field allows."""
+    scalars = st.one_of(
+        st.floats(),
+        st.integers(),
+        st.integers(-70_000, 70_000),
+        st.floats(-700, 700),
+        st.booleans(),
+        st.none(),
+        st.text(max_size=3),
+        st.binary(max_size=3),
+        st.fractions(),
+        st.decimals(allow_nan=True),
+        st.complex_numbers(),
+    )
+    rows = st.lists(st.one_of(st.floats(-700, 700), scalars), max_size=8)
+    return st.one_of(scalars, rows, rows.map(tuple), st.dictionaries(st.text(max_size=1), scalars))
+
+
+@st.composite
+def any_arguments(draw: st.DrawFn) -> tuple[str, Direction, tuple[Any, ...]]:
+    """A message with values of which some, or all, or none, are allowed."""
+    form, values = draw(messages())
+    spoilt = [draw(odd_values()) if draw(st.integers(0, 3)) == 0 else value for value in values]
+    if draw(st.integers(0, 9)) == 0:
+        spoilt.append(draw(odd_values()))
+    return form.command.name, form.direction, tuple(spoilt)
+
+
+def near_frames() -> st.SearchStrategy[bytes]:
+    """What looks like a frame for some bytes, and is none or is one by chance."""
+    lengths = st.integers(0, 20)
+    ids = st.sampled_from([command.id for command in TABLE.commands]) | st.integers(0, 255)
+    return st.builds(
+        lambda length, id, rest: HEADER + bytes([length, id]) + rest,
+        lengths,
+        ids,
+        st.binary(max_size=18),
+    )
+
+
+@st.composite
+def real_frames(draw: st.DrawFn) -> bytes:
+    """A legal frame, built by the reference codec."""
+    from cobotwire.codec.reference import ReferenceCodec
+
+    form, values = draw(messages())
+    return ReferenceCodec(TABLE).encode(form.command.name, form.direction, values)
+
+
+def line_noise() -> st.SearchStrategy[bytes]:
+    """Noise as a line carries it: servo packets, text, NULs, half headers, and anything."""
+    known = [
+        b"\xff\xff\x01\x04\x02\x38\x02\xbe",
+        b"\xff\xff\x01\x04\x00\xff\x07\xf4",
+        b"cmd_len error\r\n",
+        b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited)",
+        bytes(7),
+        b"\xfe",
+        b"\xfe\xfe",
+        b"\xfe\xfe\xfe",
+        b"\xfe\xfe\x0e\x20",
+        b"\x78\x80\x78",
+    ]
+    return st.one_of(
+        st.sampled_from(known),
+        st.binary(max_size=12),
+        st.lists(st.sampled_from(b"\xfe\xfa\x02\x0e\x20\x00"), max_size=12).map(bytes),
+    )
+
+
+def streams() -> st.SearchStrategy[bytes]:
+    """What may stand on a line: frames, near frames and noise in any order."""
+    pieces = st.one_of(real_frames(), near_frames(), line_noise())
+    return st.lists(pieces, max_size=8).map(b"".join)
+
+
+@st.composite
+def chunked(draw: st.DrawFn, data: bytes) -> list[bytes]:
+    """``data`` in pieces, some of them empty."""
+    cuts = sorted(draw(st.lists(st.integers(0, len(data)), max_size=10)))
+    return [data[a:b] for a, b in zip([0, *cuts], [*cuts, len(data)])]
