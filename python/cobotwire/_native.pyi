@@ -20,7 +20,8 @@ class NativeCodec:
         """Read a table.
 
         Raises:
-            TypeError: it is not a table, or a number in it has the wrong type.
+            AttributeError, TypeError, OverflowError: it is not a table, or something in it has the
+                wrong type or is far too large.
             ValueError: it cannot be interpreted: the header is not two bytes or the footer not one,
                 a form is longer than LEN can say, a number is not one to four bytes wide, a scale
                 or bound is beyond what a double holds exactly, or a field's cases do not fit.

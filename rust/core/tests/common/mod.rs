@@ -1,0 +1,162 @@
+//! What the tests share: values to encode, and small tables.
+
+// Each test file compiles this by itself and uses a part of it.
+#![allow(dead_code)]
+
+use cobotwire_core::{
+    Case, Command, Event, Field, FrameFormat, Framer, Given, Layout, Number, Order, Reason, Row,
+    Table, Unread, ValueFault,
+};
+
+/// A value as a caller may have it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sample {
+    Whole(i64),
+    Huge,
+    Real(f64),
+    Bool(bool),
+    Text,
+    /// Its conversion fails by itself.
+    Broken,
+    Row(Vec<Sample>),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples(pub Vec<Sample>);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Broken;
+
+impl Given for Sample {
+    type Error = Broken;
+    type Row = Samples;
+
+    fn whole(&self, flag: bool) -> Result<i64, Unread<Broken>> {
+        match self {
+            Self::Whole(whole) => Ok(*whole),
+            Self::Bool(set) if flag => Ok(i64::from(*set)),
+            Self::Huge => Err(Unread::Beyond),
+            Self::Broken => Err(Unread::Foreign(Broken)),
+            _ => Err(Unread::Fault(ValueFault::Type)),
+        }
+    }
+
+    fn real(&self) -> Result<f64, Unread<Broken>> {
+        match self {
+            Self::Whole(whole) => Ok(*whole as f64),
+            Self::Real(real) => Ok(*real),
+            Self::Huge => Err(Unread::Fault(ValueFault::Range)),
+            Self::Broken => Err(Unread::Foreign(Broken)),
+            _ => Err(Unread::Fault(ValueFault::Type)),
+        }
+    }
+
+    fn row(&self) -> Result<Samples, Unread<Broken>> {
+        match self {
+            Self::Row(all) => Ok(Samples(all.clone())),
+            Self::Broken => Err(Unread::Foreign(Broken)),
+            _ => Err(Unread::Fault(ValueFault::Type)),
+        }
+    }
+}
+
+impl Row for Samples {
+    type Item = Sample;
+
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn at(&self, index: usize) -> Option<Sample> {
+        self.0.get(index).cloned()
+    }
+
+    fn into_value(self) -> Sample {
+        Sample::Row(self.0)
+    }
+}
+
+/// An unsigned number of so many bytes.
+pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
+    Number {
+        width,
+        order: Order::Big,
+        signed_at: i64::from(u32::MAX),
+        multiply: 1,
+        divide,
+        minimum,
+        maximum,
+    }
+}
+
+/// The protocol's signed word: raw 33000 is still positive.
+pub fn word(divide: i64) -> Number {
+    Number {
+        signed_at: 33000,
+        ..number(2, divide, -32535, 33000)
+    }
+}
+
+pub fn field(numbers: Vec<Number>, many: bool) -> Field {
+    let cases = vec![Case {
+        when: vec![],
+        numbers,
+    }];
+    Field {
+        flag: false,
+        many,
+        choices: vec![],
+        selector: None,
+        cases,
+    }
+}
+
+pub fn frame_format() -> FrameFormat {
+    FrameFormat {
+        header: [0xFE, 0xFE],
+        footer: 0xFA,
+        maximum_length: 16,
+    }
+}
+
+/// A table whose command `n` has id `0x20 + n`, and one form in each direction: these fields.
+pub fn table(forms: Vec<Vec<Field>>) -> Table {
+    let command = |(id, fields): (u8, Vec<Field>)| Command {
+        id,
+        request: vec![Layout::new(fields.clone())],
+        reply: vec![Layout::new(fields)],
+    };
+    let commands = (0x20..).zip(forms).map(command).collect();
+    Table::new(frame_format(), commands).expect("the tests' tables are sound")
+}
+
+/// An event with its own bytes; `None` is a frame.
+pub type Owned = (u64, Vec<u8>, Option<Reason>);
+
+pub fn owned(event: Event<'_>) -> Owned {
+    match event {
+        Event::Frame { offset, frame } => (offset, frame.bytes().to_vec(), None),
+        Event::Noise {
+            offset,
+            reason,
+            data,
+        } => (offset, data.concat(), Some(reason)),
+    }
+}
+
+/// All events of a stream cut into such chunks, noise of one reason joined over the calls too.
+pub fn events<'a>(framer: &mut Framer, chunks: impl IntoIterator<Item = &'a [u8]>) -> Vec<Owned> {
+    let mut all: Vec<Owned> = Vec::new();
+    let mut add = |event: Event<'_>| {
+        let (offset, data, reason) = owned(event);
+        match all.last_mut() {
+            Some(last) if reason.is_some() && last.2 == reason => last.1.extend(data),
+            _ => all.push((offset, data, reason)),
+        }
+    };
+    for chunk in chunks {
+        framer.feed(chunk, &mut add);
+    }
+    framer.flush(&mut add);
+    all
+}

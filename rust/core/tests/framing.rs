@@ -1,0 +1,207 @@
+//! The laws of framing: every byte is accounted for, chunking does not matter, and a frame that was
+//! not damaged is found.
+
+// A failing test may panic.
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used
+)]
+
+mod common;
+
+use cobotwire_core::{Direction, Event, Framer, Listening, Reason, Table};
+use common::{Owned, events, field, number, owned, table, word};
+
+/// Replies 20: nothing, 21: a word, 22: six words.
+fn three() -> Table {
+    let words = |count| field((0..count).map(|_| word(100)).collect(), true);
+    table(vec![vec![], vec![words(1)], vec![words(6)]])
+}
+
+fn framer(accept_unknown: bool) -> Framer {
+    let rules = three().rules(Listening::To(Direction::Reply)).clone();
+    Framer::new(if accept_unknown {
+        rules.accepting_unknown()
+    } else {
+        rules
+    })
+}
+
+fn cut(bytes: &[u8]) -> Vec<Owned> {
+    events(&mut framer(false), [bytes])
+}
+
+/// A small generator of numbers, so that the tests need no crate for it.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, sides: usize) -> usize {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (self.0 >> 33) as usize % sides
+    }
+
+    /// A stream made of what makes framing hard.
+    fn stream(&mut self) -> Vec<u8> {
+        const PARTS: [&[u8]; 10] = [
+            &[0xFE],
+            &[0xFE, 0xFE],
+            &[0xFA],
+            &[0x00, 0x55],
+            &[0xFE, 0xFE, 0x02, 0x20, 0xFA],
+            &[0xFE, 0xFE, 0x04, 0x21, 0xFE, 0xFE, 0xFA],
+            &[0xFE, 0xFE, 0x04, 0x21, 0xFE, 0xFA],
+            &[0xFE, 0xFE, 0x0E, 0x22],
+            &[0xFE, 0xFE, 0x02, 0x99, 0xFA],
+            &[0xFE, 0xFE, 0x04, 0x20],
+        ];
+        (0..self.roll(12))
+            .flat_map(|_| PARTS[self.roll(PARTS.len())].to_vec())
+            .collect()
+    }
+
+    fn chunks<'a>(&mut self, mut bytes: &'a [u8]) -> Vec<&'a [u8]> {
+        let mut all = Vec::new();
+        while !bytes.is_empty() {
+            let (chunk, rest) = bytes.split_at(self.roll(bytes.len() + 1).max(1));
+            all.push(chunk);
+            bytes = rest;
+        }
+        all
+    }
+}
+
+#[test]
+fn noise_has_its_reason() {
+    assert_eq!(
+        cut(&[0x00, 0x01]),
+        [(0, vec![0x00, 0x01], Some(Reason::NoHeader))]
+    );
+    assert_eq!(cut(&[0xFE, 0xFE, 0x03])[0].2, Some(Reason::BadLength));
+    assert_eq!(cut(&[0xFE, 0xFE, 0x04, 0x20])[0].2, Some(Reason::BadLength));
+    assert_eq!(cut(&[0xFE, 0xFE, 0x02, 0x99])[0].2, Some(Reason::UnknownId));
+    assert_eq!(
+        cut(&[0xFE, 0xFE, 0x02, 0x20, 0xFB])[0].2,
+        Some(Reason::BadFooter)
+    );
+    assert_eq!(
+        cut(&[0xFE, 0xFE, 0x02]),
+        [
+            (0, vec![0xFE], Some(Reason::Truncated)),
+            (1, vec![0xFE, 0x02], Some(Reason::NoHeader)),
+        ]
+    );
+}
+
+#[test]
+fn an_unknown_id_is_a_frame_only_where_asked_for() {
+    let bytes = [0xFE, 0xFE, 0x03, 0x99, 0x00, 0xFA];
+    assert_eq!(
+        events(&mut framer(true), [&bytes[..]]),
+        [(0, bytes.to_vec(), None)]
+    );
+    assert!(cut(&bytes).iter().all(|event| event.2.is_some()));
+    let known_with_wrong_length = [0xFE, 0xFE, 0x03, 0x20, 0x00, 0xFA];
+    let first = &events(&mut framer(true), [&known_with_wrong_length[..]])[0];
+    assert_eq!(first.2, Some(Reason::BadLength));
+}
+
+#[test]
+fn a_candidate_dies_with_the_byte_that_refutes_it() {
+    let mut framer = framer(false);
+    let mut seen = Vec::new();
+    framer.feed(&[0xFE, 0xFE, 0x0E], |event| seen.push(owned(event)));
+    assert_eq!((seen.len(), framer.pending()), (0, 3));
+    framer.feed(&[0x21], |event| seen.push(owned(event)));
+    assert_eq!((seen.len(), framer.pending()), (2, 0));
+}
+
+#[test]
+fn flush_delivers_the_frame_behind_a_false_header() {
+    let bytes = [0xFE, 0xFE, 0x0E, 0x22, 0xFE, 0xFE, 0x02, 0x20, 0xFA];
+    let mut framer = framer(false);
+    framer.feed(&bytes, |_| panic!("nothing is certain yet"));
+    let mut seen = Vec::new();
+    framer.flush(|event| seen.push(owned(event)));
+    assert_eq!(seen.last(), Some(&(4, bytes[4..].to_vec(), None)));
+}
+
+#[test]
+fn every_byte_is_accounted_for_and_chunking_does_not_matter() {
+    let mut dice = Dice(1);
+    for round in 0..20_000 {
+        let accept_unknown = round % 3 == 0;
+        let bytes = dice.stream();
+        let whole = events(&mut framer(accept_unknown), [&bytes[..]]);
+        let all: Vec<u8> = whole.iter().flat_map(|event| event.1.clone()).collect();
+        assert_eq!(all, bytes);
+        let chunks = dice.chunks(&bytes);
+        assert_eq!(
+            events(&mut framer(accept_unknown), chunks.clone()),
+            whole,
+            "{chunks:02X?}"
+        );
+    }
+}
+
+#[test]
+fn offsets_count_on_over_flushes() {
+    let mut framer = framer(false);
+    framer.feed(&[0x00, 0xFE], |_| ());
+    framer.flush(|_| ());
+    let mut seen = Vec::new();
+    framer.feed(&[0xFE, 0xFE, 0x02, 0x20, 0xFA], |event| {
+        seen.push(owned(event))
+    });
+    assert_eq!(seen, [(2, vec![0xFE, 0xFE, 0x02, 0x20, 0xFA], None)]);
+}
+
+#[test]
+fn what_is_kept_is_less_than_the_longest_frame() {
+    let longest = three().rules(Listening::Both).longest();
+    let mut dice = Dice(2);
+    let mut framer = framer(false);
+    for _ in 0..20_000 {
+        framer.feed(&dice.stream(), |_| ());
+        assert!(framer.pending() < longest);
+    }
+}
+
+#[test]
+fn an_undamaged_frame_is_found_whatever_lies_before_it() {
+    let frame = [0xFE, 0xFE, 0x02, 0x20, 0xFA];
+    let mut dice = Dice(3);
+    for _ in 0..20_000 {
+        let mut bytes = dice.stream();
+        let start = bytes.len() as u64;
+        bytes.extend(frame);
+        let covers = |event: &Owned| {
+            let end = event.0 + event.1.len() as u64;
+            event.2.is_none() && event.0 <= start && start < end
+        };
+        assert!(cut(&bytes).iter().any(covers), "{bytes:02X?}");
+    }
+}
+
+#[test]
+fn the_earlier_of_two_forms_that_read_alike_names_a_frame() {
+    let byte = || field(vec![number(1, 1, 0, 255)], false);
+    let table = table(vec![vec![byte()], vec![byte()]]);
+    let rules = table.rules(Listening::Both);
+    let mut framer = Framer::new(rules.clone());
+    let mut forms = Vec::new();
+    framer.feed(&[0xFE, 0xFE, 0x03, 0x21, 0x07, 0xFA], |event| {
+        if let Event::Frame { frame, .. } = event {
+            forms.push(rules.form(frame).expect("a known id"));
+        }
+    });
+    assert_eq!(forms.len(), 1);
+    assert_eq!(
+        (forms[0].direction, forms[0].command),
+        (Direction::Request, 1)
+    );
+}

@@ -1,0 +1,157 @@
+//! Reads the generator's JSON: the records of Python's `cobotwire.table`, attribute by attribute.
+
+use cobotwire_core::{Case, Command, Direction, Field, FrameFormat, Layout, Number, Order, Table};
+use serde_json::Value;
+
+use crate::common::Sample;
+
+/// A table and what is known to be true of it.
+pub struct Edition {
+    pub table: Table,
+    pub names: Vec<String>,
+    pub vectors: Vec<Vector>,
+}
+
+/// One frame and the values that it stands for, or why it stands for none.
+pub struct Vector {
+    pub name: String,
+    pub command: String,
+    pub direction: Direction,
+    pub frame: Option<Vec<u8>>,
+    pub values: Vec<Sample>,
+    pub printed: Option<Vec<u8>>,
+    pub refused: Option<(String, usize)>,
+    pub text: bool,
+}
+
+impl Edition {
+    pub fn read(text: &str) -> Self {
+        let json: Value = serde_json::from_str(text).expect("the file is JSON");
+        let commands = &json["table"]["commands"];
+        Self {
+            names: all(commands, |command| string(&command["name"])),
+            table: Table::new(frame(&json["table"]["frame"]), all(commands, command))
+                .expect("the generator writes tables that can be interpreted"),
+            vectors: all(&json["vectors"], vector),
+        }
+    }
+}
+
+fn vector(json: &Value) -> Vector {
+    let refused = &json["refused"];
+    Vector {
+        name: string(&json["name"]),
+        command: json["command"].as_str().unwrap_or_default().to_owned(),
+        direction: match string(&json["direction"]).as_str() {
+            "request" => Direction::Request,
+            "reply" => Direction::Reply,
+            other => panic!("{other} is no direction"),
+        },
+        frame: json["frame"].as_str().map(bytes),
+        values: json["values"]
+            .as_array()
+            .map_or(vec![], |values| values.iter().map(sample).collect()),
+        printed: json["printed"].as_str().map(bytes),
+        refused: (!refused.is_null()).then(|| {
+            (
+                string(&refused["reason"]),
+                usize::try_from(whole(&refused["offset"])).unwrap(),
+            )
+        }),
+        text: json["text"].as_bool().unwrap_or_default(),
+    }
+}
+
+fn sample(json: &Value) -> Sample {
+    match json {
+        Value::Bool(set) => Sample::Bool(*set),
+        Value::Array(_) => Sample::Row(all(json, sample)),
+        Value::Number(number) => number
+            .as_i64()
+            .map_or_else(|| Sample::Real(number.as_f64().unwrap()), Sample::Whole),
+        _ => Sample::Text,
+    }
+}
+
+fn frame(json: &Value) -> FrameFormat {
+    let (header, footer) = (all(&json["header"], whole), all(&json["footer"], whole));
+    let byte = |value: i64| u8::try_from(value).expect("a byte");
+    match (header.as_slice(), footer.as_slice()) {
+        ([first, second], [last]) => FrameFormat {
+            header: [byte(*first), byte(*second)],
+            footer: byte(*last),
+            maximum_length: whole(&json["maximum_length"]),
+        },
+        _ => panic!("the header is two bytes and the footer one"),
+    }
+}
+
+fn command(json: &Value) -> Command {
+    Command {
+        id: u8::try_from(whole(&json["id"])).expect("a byte"),
+        request: all(&json["request"], layout),
+        reply: all(&json["reply"], layout),
+    }
+}
+
+fn layout(json: &Value) -> Layout {
+    Layout::new(all(&json["fields"], field))
+}
+
+fn field(json: &Value) -> Field {
+    Field {
+        flag: json["kind"] == "flag",
+        many: json["many"] == true,
+        choices: all(&json["choices"], whole),
+        selector: usize::try_from(whole(&json["selector"])).ok(),
+        cases: all(&json["cases"], case),
+    }
+}
+
+fn case(json: &Value) -> Case {
+    Case {
+        when: all(&json["when"], whole),
+        numbers: all(&json["numbers"], number),
+    }
+}
+
+fn number(json: &Value) -> Number {
+    Number {
+        width: usize::try_from(whole(&json["width"])).expect("a width"),
+        order: if json["order"] == "little" {
+            Order::Little
+        } else {
+            Order::Big
+        },
+        signed_at: whole(&json["signed_at"]),
+        multiply: whole(&json["multiply"]),
+        divide: whole(&json["divide"]),
+        minimum: whole(&json["minimum"]),
+        maximum: whole(&json["maximum"]),
+    }
+}
+
+fn all<T>(json: &Value, read: impl Fn(&Value) -> T) -> Vec<T> {
+    json.as_array()
+        .unwrap_or_else(|| panic!("{json} is no array"))
+        .iter()
+        .map(read)
+        .collect()
+}
+
+fn whole(json: &Value) -> i64 {
+    json.as_i64()
+        .unwrap_or_else(|| panic!("{json} is no whole number"))
+}
+
+fn string(json: &Value) -> String {
+    json.as_str()
+        .unwrap_or_else(|| panic!("{json} is no string"))
+        .to_owned()
+}
+
+fn bytes(text: &str) -> Vec<u8> {
+    text.split_whitespace()
+        .map(|byte| u8::from_str_radix(byte, 16).expect("hex"))
+        .collect()
+}

@@ -1,0 +1,123 @@
+//! The spec's vectors, as the generator writes them to `data/*.json`: a table, and frames with the
+//! values that they stand for.
+
+// A failing test may panic.
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used
+)]
+
+mod common;
+mod records;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use cobotwire_core::{DecodeError, Direction, Framer, Listening, Value, decode, encode};
+use common::{Sample, Samples, events};
+use records::{Edition, Vector};
+
+/// None of these makes a frame, with what follows it, that is not there.
+const NOISE: [&[u8]; 5] = [
+    &[],
+    &[0x00],
+    &[0xFE],
+    &[0xFE, 0xFE],
+    &[0xFA, 0xFE, 0xFE, 0xFF, 0x0D],
+];
+
+fn files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let entries = fs::read_dir(folder).expect("tests/data is there");
+    let paths = entries.map(|entry| entry.expect("a readable entry").path());
+    paths
+        .filter(|path| path.extension().is_some_and(|name| name == "json"))
+        .collect()
+}
+
+#[test]
+fn every_vector_holds() {
+    let files = files();
+    assert!(!files.is_empty(), "no data/*.json: run the generator");
+    for path in files {
+        let edition = Edition::read(&fs::read_to_string(&path).expect("a readable file"));
+        let checked = edition
+            .vectors
+            .iter()
+            .filter(|vector| check(&edition, vector))
+            .count();
+        assert!(checked > 0, "{} holds no vector", path.display());
+    }
+}
+
+/// Whether there was anything to check: an unframed reply is not the codec's.
+fn check(edition: &Edition, vector: &Vector) -> bool {
+    if let (Some(frame), false) = (&vector.frame, vector.text) {
+        assert_eq!(&encoded(edition, vector), frame, "encode {}", vector.name);
+        let decoded = decode(&edition.table, vector.direction, frame);
+        let decoded = decoded.unwrap_or_else(|error| panic!("decode {}: {error:?}", vector.name));
+        assert!(
+            same(&decoded.values, &vector.values),
+            "{}: {decoded:?}",
+            vector.name
+        );
+        find(edition, vector.direction, frame, &vector.name);
+    }
+    if let (Some(printed), Some(refused)) = (&vector.printed, &vector.refused) {
+        let met = match decode(&edition.table, vector.direction, printed) {
+            Err(DecodeError::Frame { reason, offset }) => (reason.word().to_owned(), offset),
+            Err(DecodeError::Raw(bad)) => ("bad-value".to_owned(), bad.offset),
+            Ok(decoded) => panic!("{} was decoded: {decoded:?}", vector.name),
+        };
+        assert_eq!(&met, refused, "{}", vector.name);
+    }
+    !vector.text && (vector.frame.is_some() || vector.refused.is_some())
+}
+
+fn encoded(edition: &Edition, vector: &Vector) -> Vec<u8> {
+    let index = edition
+        .names
+        .iter()
+        .position(|name| name == &vector.command);
+    let index = index.unwrap_or_else(|| panic!("no command {}", vector.command));
+    let command = &edition.table.commands()[index];
+    let values = Samples(vector.values.clone());
+    encode::<Sample>(edition.table.frame(), command, vector.direction, &values)
+        .unwrap_or_else(|error| panic!("encode {}: {error:?}", vector.name))
+}
+
+fn same(mut decoded: &[Value], values: &[Sample]) -> bool {
+    let alike = values.iter().all(|value| {
+        let Some((first, rest)) = decoded.split_first() else {
+            return false;
+        };
+        decoded = rest;
+        match (first, value) {
+            (Value::Whole(whole), Sample::Whole(expected)) => whole == expected,
+            (Value::Whole(whole), Sample::Bool(expected)) => *whole == i64::from(*expected),
+            (Value::Real(real), Sample::Real(expected)) => real == expected,
+            (Value::Real(real), Sample::Whole(expected)) => *real == *expected as f64,
+            (Value::Row(count), Sample::Row(expected)) => {
+                let (row, rest) = decoded.split_at(*count);
+                decoded = rest;
+                same(row, expected)
+            }
+            _ => false,
+        }
+    });
+    alike && decoded.is_empty()
+}
+
+fn find(edition: &Edition, direction: Direction, frame: &[u8], name: &str) {
+    for noise in NOISE {
+        let stream = [noise, frame].concat();
+        for listening in [Listening::To(direction), Listening::Both] {
+            let mut framer = Framer::new(edition.table.rules(listening).clone());
+            let found = events(&mut framer, [&stream[..]]);
+            let expected = (noise.len() as u64, frame.to_vec(), None);
+            assert_eq!(found.last(), Some(&expected), "{name} behind {noise:02X?}");
+        }
+    }
+}

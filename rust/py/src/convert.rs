@@ -1,0 +1,144 @@
+//! Reads a Python `Table`, attribute by attribute, into the core's.
+
+use cobotwire_core::{Case, Command, Field, FrameFormat, Layout, Misfit, Number, Order, Table};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+#[derive(FromPyObject)]
+struct NumberRecord {
+    width: usize,
+    order: String,
+    signed_at: i64,
+    multiply: i64,
+    divide: i64,
+    minimum: i64,
+    maximum: i64,
+}
+
+#[derive(FromPyObject)]
+struct CaseRecord {
+    when: Vec<i64>,
+    numbers: Vec<NumberRecord>,
+}
+
+#[derive(FromPyObject)]
+struct FieldRecord {
+    kind: String,
+    many: bool,
+    choices: Vec<i64>,
+    selector: i64,
+    cases: Vec<CaseRecord>,
+}
+
+#[derive(FromPyObject)]
+struct LayoutRecord {
+    fields: Vec<FieldRecord>,
+}
+
+#[derive(FromPyObject)]
+struct CommandRecord {
+    id: u8,
+    name: String,
+    request: Vec<LayoutRecord>,
+    reply: Vec<LayoutRecord>,
+}
+
+#[derive(FromPyObject)]
+struct FrameRecord {
+    header: Vec<u8>,
+    footer: Vec<u8>,
+    maximum_length: i64,
+}
+
+#[derive(FromPyObject)]
+struct TableRecord {
+    frame: FrameRecord,
+    commands: Vec<CommandRecord>,
+}
+
+/// The core's table, and the names of its commands.
+pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
+    let TableRecord { frame, commands } = given.extract()?;
+    let names: Vec<String> = commands.iter().map(|record| record.name.clone()).collect();
+    let commands = commands.into_iter().map(command).collect();
+    let table = Table::new(frame_format(frame)?, commands).map_err(|error| {
+        let name = names.get(error.command).map_or("", String::as_str);
+        PyValueError::new_err(format!("table: {name}: {}", misfit(error.misfit)))
+    })?;
+    Ok((table, names))
+}
+
+fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
+    let FrameRecord {
+        header,
+        footer,
+        maximum_length,
+    } = record;
+    match (header.as_slice(), footer.as_slice()) {
+        (&[first, second], &[footer]) => Ok(FrameFormat {
+            header: [first, second],
+            footer,
+            maximum_length,
+        }),
+        _ => Err(PyValueError::new_err(
+            "table: the header is two bytes and the footer one",
+        )),
+    }
+}
+
+fn command(record: CommandRecord) -> Command {
+    let layouts = |records: Vec<LayoutRecord>| records.into_iter().map(layout).collect();
+    Command {
+        id: record.id,
+        request: layouts(record.request),
+        reply: layouts(record.reply),
+    }
+}
+
+fn layout(record: LayoutRecord) -> Layout {
+    Layout::new(record.fields.into_iter().map(field).collect())
+}
+
+fn field(record: FieldRecord) -> Field {
+    Field {
+        flag: record.kind == "flag",
+        many: record.many,
+        choices: record.choices,
+        selector: usize::try_from(record.selector).ok(),
+        cases: record.cases.into_iter().map(case).collect(),
+    }
+}
+
+fn case(record: CaseRecord) -> Case {
+    Case {
+        when: record.when,
+        numbers: record.numbers.into_iter().map(number).collect(),
+    }
+}
+
+fn number(record: NumberRecord) -> Number {
+    Number {
+        width: record.width,
+        order: if record.order == "little" {
+            Order::Little
+        } else {
+            Order::Big
+        },
+        signed_at: record.signed_at,
+        multiply: record.multiply,
+        divide: record.divide,
+        minimum: record.minimum,
+        maximum: record.maximum,
+    }
+}
+
+fn misfit(misfit: Misfit) -> &'static str {
+    match misfit {
+        Misfit::Width => "a number is one to four bytes wide",
+        Misfit::Scale => "a scale is neither zero nor too fine for an exact double",
+        Misfit::Bounds => "a bound is a whole number that a double holds exactly",
+        Misfit::Cases => "a field has cases of one size, each of one number unless it takes many",
+        Misfit::Selector => "a selector is the index of a field of one number",
+        Misfit::Length => "a form is no longer than LEN can say",
+    }
+}

@@ -1,0 +1,89 @@
+//! The core's errors as Python's: `cobotwire.codec.refusal` makes them, from the table's objects.
+
+use cobotwire_core::{BadRaw, BadValue, Reason};
+use pyo3::prelude::*;
+use pyo3::types::{PyAny, PyString};
+
+use crate::given::Object;
+use crate::names::Names;
+
+/// The error of a value that its field does not allow.
+pub fn bad_value(layout: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr {
+    let make = || {
+        let (field, case) = field_and_case(layout, bad.field, bad.case)?;
+        let element = bad
+            .element
+            .and_then(|index| isize::try_from(index).ok())
+            .unwrap_or(-1);
+        let refuse = Names::get(layout.py())?.refuse_value.bind(layout.py());
+        refuse.call1((field, case, element, bad.fault.word(), &bad.value.0))
+    };
+    raised(make())
+}
+
+/// The error of a number of values that no form has.
+pub fn bad_form(command: &Bound<'_, PyAny>, direction: &Bound<'_, PyAny>, given: usize) -> PyErr {
+    let py = command.py();
+    raised(Names::get(py).and_then(|names| {
+        names
+            .refuse_form
+            .bind(py)
+            .call1((command, direction, given))
+    }))
+}
+
+/// The error of a number on the wire that its field does not allow.
+pub fn bad_raw(
+    command: &Bound<'_, PyAny>,
+    layout: &Bound<'_, PyAny>,
+    bad: BadRaw,
+    data: &Bound<'_, PyAny>,
+) -> PyErr {
+    let make = || {
+        let (field, case) = field_and_case(layout, bad.field, bad.case)?;
+        let refuse = Names::get(layout.py())?.refuse_raw.bind(layout.py());
+        refuse.call1((
+            command,
+            field,
+            case,
+            bad.element,
+            bad.whole,
+            bad.offset,
+            data,
+        ))
+    };
+    raised(make())
+}
+
+/// The error of bytes that are not one whole legal frame.
+pub fn bad_frame(
+    table: &Bound<'_, PyAny>,
+    direction: &Bound<'_, PyAny>,
+    reason: Reason,
+    offset: usize,
+    data: &Bound<'_, PyAny>,
+) -> PyErr {
+    let py = table.py();
+    raised(Names::get(py).and_then(|names| {
+        let word = PyString::new(py, reason.word());
+        names
+            .refuse_frame
+            .bind(py)
+            .call1((table, direction, word, offset, data))
+    }))
+}
+
+fn field_and_case<'py>(
+    layout: &Bound<'py, PyAny>,
+    field: usize,
+    case: usize,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let field = layout.getattr("fields")?.get_item(field)?;
+    let case = field.getattr("cases")?.get_item(case)?;
+    Ok((field, case))
+}
+
+/// The error that was made, or the one that making it met.
+fn raised(made: PyResult<Bound<'_, PyAny>>) -> PyErr {
+    made.map_or_else(|error| error, PyErr::from_value)
+}

@@ -1,0 +1,63 @@
+//! The core's events as Python's `Frame` and `Noise`.
+
+use cobotwire_core::{Event, Reason};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyList};
+
+use crate::names::Names;
+
+/// Collects the events of one call.
+pub struct Events<'py> {
+    names: &'static Names,
+    list: Bound<'py, PyList>,
+    failed: Option<PyErr>,
+}
+
+impl<'py> Events<'py> {
+    pub fn new(py: Python<'py>) -> PyResult<Self> {
+        Ok(Self {
+            names: Names::get(py)?,
+            list: PyList::empty(py),
+            failed: None,
+        })
+    }
+
+    /// Take one more. A failure shows at the end, so that the framer always finishes its call.
+    pub fn add(&mut self, event: Event<'_>) {
+        if let Err(error) = self.try_add(event) {
+            self.failed.get_or_insert(error);
+        }
+    }
+
+    /// All of them.
+    pub fn finish(self) -> PyResult<Bound<'py, PyList>> {
+        self.failed.map_or(Ok(self.list), Err)
+    }
+
+    fn try_add(&self, event: Event<'_>) -> PyResult<()> {
+        self.list.append(match event {
+            Event::Frame { offset, frame } => self.frame(offset, frame.bytes())?,
+            Event::Noise {
+                offset,
+                reason,
+                data,
+            } => self.noise(offset, reason, data)?,
+        })
+    }
+
+    fn frame(&self, offset: u64, bytes: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+        let py = self.list.py();
+        let items = (offset, PyBytes::new(py, bytes)).into_pyobject(py)?;
+        self.names.make(&self.names.frame, items)
+    }
+
+    fn noise(&self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<Bound<'py, PyAny>> {
+        let py = self.list.py();
+        let bytes = match data {
+            [all, []] | [[], all] => PyBytes::new(py, all),
+            pieces => PyBytes::new(py, &pieces.concat()),
+        };
+        let items = (offset, bytes, self.names.reason(py, reason)).into_pyobject(py)?;
+        self.names.make(&self.names.noise, items)
+    }
+}

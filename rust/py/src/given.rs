@@ -1,0 +1,131 @@
+//! Python values as the core's encoder takes them.
+//!
+//! The common types go by the shortest way. All others are asked through the very functions that
+//! the reference uses, so that whatever an object does, both codecs see it do the same.
+
+use cobotwire_core::{Given, Row, Unread, ValueFault};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
+
+use crate::names::Names;
+
+/// One value.
+pub struct Object<'py>(pub Bound<'py, PyAny>);
+
+/// A row of them.
+pub struct Objects<'py>(pub Bound<'py, PyTuple>);
+
+impl<'py> Given for Object<'py> {
+    type Error = PyErr;
+    type Row = Objects<'py>;
+
+    fn whole(&self, flag: bool) -> Result<i64, Unread<PyErr>> {
+        if self.0.is_exact_instance_of::<PyInt>() {
+            return self.small();
+        }
+        let names = self.names()?;
+        if !flag && self.is(&names.bool)? {
+            return Err(Unread::Fault(ValueFault::Type));
+        }
+        match names.index.bind(self.0.py()).call1((&self.0,)) {
+            Ok(whole) => Self(whole).small(),
+            Err(error) => Err(self.sorted(error, None)),
+        }
+    }
+
+    fn real(&self) -> Result<f64, Unread<PyErr>> {
+        if let Ok(float) = self.0.cast_exact::<PyFloat>() {
+            return Ok(float.value());
+        }
+        let float = if self.0.is_exact_instance_of::<PyInt>() {
+            self.0.extract()
+        } else {
+            let names = self.names()?;
+            if !self.is_number(names)? {
+                return Err(Unread::Fault(ValueFault::Type));
+            }
+            let float = names.float.bind(self.0.py()).call1((&self.0,));
+            float.and_then(|float| float.extract())
+        };
+        match float {
+            Ok(real) => Ok(real),
+            Err(error) => Err(self.sorted(error, Some(ValueFault::Range))),
+        }
+    }
+
+    fn row(&self) -> Result<Objects<'py>, Unread<PyErr>> {
+        if let Ok(tuple) = self.0.cast_exact::<PyTuple>() {
+            return Ok(Objects(tuple.clone()));
+        }
+        if let Ok(list) = self.0.cast_exact::<PyList>() {
+            return Ok(Objects(list.to_tuple()));
+        }
+        let names = self.names()?;
+        if self.is(names.not_sequences.as_any())? {
+            return Err(Unread::Fault(ValueFault::Type));
+        }
+        match tuple(names, &self.0) {
+            Ok(tuple) => Ok(Objects(tuple)),
+            Err(error) => Err(self.sorted(error, None)),
+        }
+    }
+}
+
+impl Object<'_> {
+    fn names(&self) -> Result<&'static Names, Unread<PyErr>> {
+        Names::get(self.0.py()).map_err(Unread::Foreign)
+    }
+
+    /// `isinstance`, which also asks the object's `__class__`.
+    fn is(&self, class: &Py<PyAny>) -> Result<bool, Unread<PyErr>> {
+        self.0
+            .is_instance(class.bind(self.0.py()))
+            .map_err(Unread::Foreign)
+    }
+
+    fn is_number(&self, names: &Names) -> Result<bool, Unread<PyErr>> {
+        // A subclass of float, as NumPy's is, needs no slow look at its attributes.
+        let float = self.0.is_instance_of::<PyFloat>();
+        Ok(!self.is(&names.bool)? && (float || self.is(names.float_like.as_any())?))
+    }
+
+    /// An exact `int`, if it is small enough to matter.
+    fn small(&self) -> Result<i64, Unread<PyErr>> {
+        // Too large is all that can be wrong with it.
+        self.0.extract().map_err(|_: PyErr| Unread::Beyond)
+    }
+
+    /// What a failed conversion means.
+    fn sorted(&self, error: PyErr, overflow: Option<ValueFault>) -> Unread<PyErr> {
+        let py = self.0.py();
+        match overflow {
+            Some(fault) if error.is_instance_of::<PyOverflowError>(py) => Unread::Fault(fault),
+            Some(_) if error.is_instance_of::<PyValueError>(py) => Unread::Fault(ValueFault::Type),
+            _ if error.is_instance_of::<PyTypeError>(py) => Unread::Fault(ValueFault::Type),
+            _ => Unread::Foreign(error),
+        }
+    }
+}
+
+impl<'py> Row for Objects<'py> {
+    type Item = Object<'py>;
+
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn at(&self, index: usize) -> Option<Object<'py>> {
+        self.0.get_item(index).ok().map(Object)
+    }
+
+    fn into_value(self) -> Object<'py> {
+        Object(self.0.into_any())
+    }
+}
+
+/// `tuple(iterable)`
+pub fn tuple<'py>(names: &Names, iterable: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyTuple>> {
+    let made = names.tuple.bind(iterable.py()).call1((iterable,))?;
+    Ok(made.cast_into()?)
+}
