@@ -48,5 +48,5 @@ clean: ## forget the environment and what was built
 	touch $@
 
 .venv/.tools: .venv/.base codegen/pyproject.toml
-	$(BIN)/python -m pip install --quiet -e codegen --group dev
+	$(BIN)/python -m pip install --quiet -e codegen --group test
 	touch $@

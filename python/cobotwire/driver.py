@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from itertools import groupby
 from types import TracebackType
 from typing import Any, ClassVar, Literal, NamedTuple, Self
 
@@ -121,7 +122,7 @@ class Driver:
             raise
 
     def _wait(self) -> dict[str, Any]:
-        heard: list[str] = []
+        heard: list[Unasked | Noise] = []
         while True:
             for event in self._next_events():
                 if isinstance(event, Answered):
@@ -130,8 +131,8 @@ class Driver:
                     raise event.error
                 if isinstance(event, Expired):
                     waited = time.monotonic() - event.asked_at
-                    raise ReplyTimeout(event.command.name, waited, tuple(heard[-HEARD_LIMIT:]))
-                heard.append(_describe(event))
+                    raise ReplyTimeout(event.command.name, waited, _describe(heard))
+                heard.append(event)
 
     def _next_events(self) -> list[SessionEvent]:
         now = time.monotonic()
@@ -150,8 +151,20 @@ class Driver:
             self._trace(Traffic(time.monotonic(), direction, data))
 
 
-def _describe(event: Unasked | Noise) -> str:
-    data = event.frame.data if isinstance(event, Unasked) else event.data
-    what = "frame" if isinstance(event, Unasked) else f"noise ({event.reason})"
-    shown = data[:24].hex(" ").upper()
-    return f"{what} {shown}{' ...' if len(data) > 24 else ''}"
+def _describe(heard: Sequence[Unasked | Noise]) -> tuple[str, ...]:
+    """What was heard, a line a frame or span of noise; the last of them, if they are many."""
+    lines: list[str] = []
+    for noise, group in groupby(heard, key=lambda event: isinstance(event, Noise)):
+        if noise:
+            spans = [event for event in group if isinstance(event, Noise)]
+            data = b"".join(span.data for span in spans)
+            lines.append(f"noise ({spans[0].reason}) {_shown(data)}")
+        else:
+            frames = [event.frame for event in group if isinstance(event, Unasked)]
+            lines.extend(f"frame {_shown(frame.data)}" for frame in frames)
+    return tuple(lines[-HEARD_LIMIT:])
+
+
+def _shown(data: bytes, limit: int = 24) -> str:
+    rest = f" ... {len(data)} bytes" if len(data) > limit else ""
+    return data[:limit].hex(" ").upper() + rest

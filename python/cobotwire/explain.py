@@ -47,10 +47,20 @@ def explain(
 ) -> list[Explained]:
     """Cut ``data`` into frames and noise, and read each frame in every direction that fits."""
     framer = codec.framer(directions[0] if len(directions) == 1 else "both")
-    return [
-        Explained(event, tuple(_readings(codec, event, directions)))
-        for event in [*framer.feed(data), *framer.flush()]
-    ]
+    events = _join_noise([*framer.feed(data), *framer.flush()])
+    return [Explained(event, tuple(_readings(codec, event, directions))) for event in events]
+
+
+def _join_noise(events: list[Event]) -> list[Event]:
+    """Noise between two frames as one span, with the reason of its first byte."""
+    joined: list[Event] = []
+    for event in events:
+        last = joined[-1] if joined else None
+        if isinstance(event, Noise) and isinstance(last, Noise):
+            joined[-1] = last._replace(data=last.data + event.data)
+        else:
+            joined.append(event)
+    return joined
 
 
 def _readings(codec: Codec, event: Event, directions: tuple[Direction, ...]) -> Iterator[Reading]:

@@ -46,7 +46,7 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """How a field reads while its selector holds one of ``when`` (``()``: always)."""
+    """How a field reads while its selector holds one of ``when``; ``()`` where it has none."""
 
     when: tuple[int, ...]
     numbers: tuple[Number, ...]

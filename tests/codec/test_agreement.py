@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import strategies
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Listening, Noise
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.errors import CobotwireError
+from cobotwire.errors import CobotwireError, UsageError
 from cobotwire.table import Direction
 
 REFERENCE = codecs.load(TABLE, "reference")
@@ -94,3 +95,15 @@ def test_feeding_takes_any_bytes_like() -> None:
             [event] = codec.framer("request").feed(kind(frame))
             assert not isinstance(event, Noise)
             assert event.data == frame
+
+
+def test_a_word_that_is_no_direction_is_named(codec: Codec) -> None:
+    sideways: Any = "sideways"
+    actions: list[Callable[[], Any]] = [
+        lambda: codec.encode("stop", sideways, ()),
+        lambda: codec.decode(sideways, b""),
+        lambda: codec.framer(sideways),
+    ]
+    for action in actions:
+        with pytest.raises(UsageError, match="direction is 'sideways'; allowed: request or"):
+            action()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from strategies import FORMS, Form
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
@@ -13,6 +12,7 @@ from cobotwire.codec.reference.decode import whole
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.errors import ProtocolError, UsageError
 from cobotwire.table import Case, Field, Number
+from strategies import FORMS, Form
 
 
 def _slots() -> Iterator[tuple[Form, Field, Case, int]]:
@@ -42,7 +42,9 @@ def test_there_are_slots_in_every_direction() -> None:
     assert {slot[0].direction for slot in SLOTS} == {"request", "reply"}
 
 
-@pytest.mark.parametrize("slot", SLOTS, ids=lambda s: f"{s[0].command.name}-{s[0].direction}-{s[3]}")
+@pytest.mark.parametrize(
+    "slot", SLOTS, ids=lambda s: f"{s[0].command.name}-{s[0].direction}-{s[3]}"
+)
 def test_every_raw_value_of_every_field_on_the_native_codec(
     slot: tuple[Form, Field, Case, int],
 ) -> None:

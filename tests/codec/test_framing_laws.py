@@ -5,10 +5,10 @@ from __future__ import annotations
 from itertools import pairwise
 
 import pytest
-import strategies
 from hypothesis import given
 from hypothesis import strategies as st
 
+import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.editions.mycobot import TABLE
@@ -37,7 +37,9 @@ def _cut(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[Event]
 
 
 @given(CODECS, LISTENING, st.data())
-def test_every_byte_is_accounted_for(codec: Codec, listening: Listening, data: st.DataObject) -> None:
+def test_every_byte_is_accounted_for(
+    codec: Codec, listening: Listening, data: st.DataObject
+) -> None:
     stream = data.draw(strategies.streams())
     framer = codec.framer(listening)
     fed = 0

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-import vectors
-from cobotwire_codegen.model import Vector
 
+import vectors
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.errors import ProtocolError
 from cobotwire.table import Direction
+from cobotwire_codegen.model import Vector
 
 
 def _name(vector: Vector) -> str:

@@ -15,6 +15,11 @@ ValueFault = Literal["type", "not-finite", "range", "choice", "count"]
 FrameFault = Literal["no-header", "bad-length", "unknown-id", "bad-footer", "truncated", "trailing"]
 
 
+def refuse_direction(given: Any) -> UsageError:
+    """A word that is no direction."""
+    return UsageError("direction", given, "request or reply")
+
+
 def refuse_form(command: Command, direction: Direction, given: int) -> UsageError:
     """No form of the message has that many fields."""
     forms = command.layouts(direction)

@@ -12,6 +12,7 @@ import serial
 from cobotwire.errors import LinkError, UsageError
 
 WRITE_TIMEOUT = 1.0
+OPENING = "cannot be opened"
 
 
 class SerialTransport:
@@ -41,7 +42,7 @@ class SerialTransport:
         if "://" not in url:
             # Two processes on one port would mix their bytes into each other's frames.
             self._port.exclusive = True
-        with self._faults("cannot be opened"):
+        with self._faults(OPENING):
             self._port.open()
 
     def write(self, data: bytes) -> None:
@@ -69,10 +70,11 @@ class SerialTransport:
 
     @contextmanager
     def _faults(self, what: str) -> Iterator[None]:
+        # Asked of a closed port, pyserial fails in as many ways as it has backends.
+        if what != OPENING and not self._port.is_open:
+            raise LinkError(self.url, f"{what}: it is closed")
         try:
             yield
-        except serial.PortNotOpenError:
-            raise LinkError(self.url, f"{what}: it is closed") from None
         except OSError as error:
             raise LinkError(self.url, f"{what}: {_reason(error)}") from error
 

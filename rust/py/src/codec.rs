@@ -5,11 +5,12 @@ use std::collections::HashMap;
 use cobotwire_core::{DecodeError, Direction, EncodeError, Form, Framer, Listening, Table, Value};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyList, PyString, PyTuple};
+use pyo3::types::{PyBytes, PyString};
 
 use crate::framer::{NativeFramer, copied};
-use crate::given::{Object, Objects, tuple};
+use crate::given::Object;
 use crate::names::Names;
+use crate::values::{objects, row};
 use crate::{convert, errors};
 
 /// One edition's encoder, decoder and framer.
@@ -66,11 +67,7 @@ impl NativeCodec {
     ) -> PyResult<Bound<'py, PyBytes>> {
         let py = command.py();
         let index = self.find(command)?;
-        let way = if word(direction) == Some("request") {
-            Direction::Request
-        } else {
-            Direction::Reply
-        };
+        let way = one_way(direction)?;
         let (Some(objects), Some(record)) =
             (self.commands.get(index), self.core.commands().get(index))
         else {
@@ -228,35 +225,6 @@ fn one_way(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
     match word(given) {
         Some("request") => Ok(Direction::Request),
         Some("reply") => Ok(Direction::Reply),
-        _ => Err(PyKeyError::new_err((given.clone().unbind(),))),
+        _ => Err(errors::bad_direction(given)),
     }
-}
-
-fn row<'py>(values: &Bound<'py, PyAny>) -> PyResult<Objects<'py>> {
-    if let Ok(all) = values.cast_exact::<PyTuple>() {
-        return Ok(Objects(all.clone()));
-    }
-    if let Ok(all) = values.cast_exact::<PyList>() {
-        return Ok(Objects(all.to_tuple()));
-    }
-    values.len()?; // the reference asks it: what has no length is no sequence
-    tuple(Names::get(values.py())?, values).map(Objects)
-}
-
-/// Decoded values, as the tuple that a message holds.
-fn objects<'py>(py: Python<'py>, mut values: &[Value]) -> PyResult<Bound<'py, PyTuple>> {
-    let mut all = Vec::with_capacity(values.len());
-    while let Some((value, rest)) = values.split_first() {
-        values = rest;
-        all.push(match *value {
-            Value::Whole(whole) => whole.into_pyobject(py)?.into_any(),
-            Value::Real(real) => real.into_pyobject(py)?.into_any(),
-            Value::Row(count) => {
-                let (row, rest) = values.split_at_checked(count).unwrap_or_default();
-                values = rest;
-                objects(py, row)?.into_any()
-            }
-        });
-    }
-    PyTuple::new(py, all)
 }

@@ -32,6 +32,12 @@ pub fn bad_form(command: &Bound<'_, PyAny>, direction: &Bound<'_, PyAny>, given:
     }))
 }
 
+/// The error of a word that is no direction.
+pub fn bad_direction(given: &Bound<'_, PyAny>) -> PyErr {
+    let py = given.py();
+    raised(Names::get(py).and_then(|names| names.refuse_direction.bind(py).call1((given,))))
+}
+
 /// The error of a number on the wire that its field does not allow.
 pub fn bad_raw(
     command: &Bound<'_, PyAny>,

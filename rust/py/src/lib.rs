@@ -12,6 +12,7 @@ mod events;
 mod framer;
 mod given;
 mod names;
+mod values;
 
 #[pymodule]
 mod _native {

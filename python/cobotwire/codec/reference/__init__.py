@@ -10,6 +10,7 @@ from cobotwire.codec.reference.decode import decode
 from cobotwire.codec.reference.encode import encode
 from cobotwire.codec.reference.framer import ReferenceFramer
 from cobotwire.codec.reference.legal import Forms
+from cobotwire.codec.refusal import refuse_direction
 from cobotwire.table import Direction, Table
 
 
@@ -27,16 +28,23 @@ class ReferenceCodec:
 
     def encode(self, command: str, direction: Direction, values: Sequence[Any]) -> bytes:
         """Build one whole frame."""
-        return encode(self.table.frame, self.table.command(command), direction, values)
+        found = self.table.command(command)
+        self._legal(direction)
+        return encode(self.table.frame, found, direction, values)
 
     def decode(self, direction: Direction, data: bytes) -> Message:
         """Read one whole frame."""
-        return decode(self._forms[direction], direction, data)
+        return decode(self._legal(direction), direction, data)
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> ReferenceFramer:
         """A new framer."""
         directions: tuple[Direction, ...] = (
             ("request", "reply") if listening == "both" else (listening,)
         )
-        forms = [self._forms[direction] for direction in directions]
+        forms = [self._legal(direction) for direction in directions]
         return ReferenceFramer(self.table.frame, forms, accept_unknown)
+
+    def _legal(self, direction: Direction) -> Forms:
+        if direction not in self._forms:
+            raise refuse_direction(direction)
+        return self._forms[direction]

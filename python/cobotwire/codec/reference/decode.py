@@ -10,6 +10,7 @@ from cobotwire.table import Case, Command, Direction, Field, Layout, Number
 
 def decode(forms: Forms, direction: Direction, data: bytes) -> Message:
     """Read one whole frame; see :meth:`cobotwire.codec.interface.Codec.decode`."""
+    data = bytes(data)
     command, layout = _form(forms, direction, data)
     values: list[object] = []
     offset = forms.table.frame.overhead + 1

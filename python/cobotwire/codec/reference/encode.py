@@ -28,14 +28,18 @@ def encode(
     frame: FrameFormat, command: Command, direction: Direction, values: Sequence[Any]
 ) -> bytes:
     """Build one whole frame; see :meth:`cobotwire.codec.interface.Codec.encode`."""
+    values = tuple(values)
     for layout in command.layouts(direction):
         if len(layout.fields) == len(values):
             break
     else:
         raise refuse_form(command, direction, len(values))
+    # Lists, not generators: an exception that a value's own conversion raises passes as it is.
     data = b"".join(
-        _field(field, _case(layout, field, values), value)
-        for field, value in zip(layout.fields, values)
+        [
+            _field(field, _case(layout, field, values), value)
+            for field, value in zip(layout.fields, values)
+        ]
     )
     return frame.header + bytes([frame.length(len(data)), command.id]) + data + frame.footer
 
@@ -45,7 +49,10 @@ def _case(layout: Layout, field: Field, values: Sequence[Any]) -> Case:
         return field.cases[0]
     selector = layout.fields[field.selector]
     picked = _checked(selector, selector.cases[0], -1, values[field.selector])
-    return next(case for case in field.cases if picked in case.when)
+    for case in field.cases:
+        if picked in case.when:
+            return case
+    raise refuse_value(selector, selector.cases[0], -1, "choice", picked)
 
 
 def _field(field: Field, case: Case, value: Any) -> bytes:
@@ -60,8 +67,10 @@ def _field(field: Field, case: Case, value: Any) -> bytes:
     if len(elements) != len(case.numbers):
         raise refuse_value(field, case, -1, "count", elements)
     return b"".join(
-        _word(number, _checked(field, case, index, element))
-        for index, (number, element) in enumerate(zip(case.numbers, elements))
+        [
+            _word(number, _checked(field, case, index, element))
+            for index, (number, element) in enumerate(zip(case.numbers, elements))
+        ]
     )
 
 

@@ -1,0 +1,203 @@
+"""The command line as a person runs it: another process, its output, its exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from cobotwire import __version__
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.sim import PtyServer
+
+COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
+
+
+def run(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *words],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        env={**os.environ, **environment},
+    )
+
+
+@pytest.mark.parametrize("codec", ["native", "reference"])
+def test_the_demo_gets_every_answer_right(codec: str) -> None:
+    result = run("demo", "--codec", codec)
+    assert result.returncode == 0, result.stderr
+    assert f"opened with the {codec} codec" in result.stdout
+    assert "8 of 8 answers right" in result.stdout
+    assert "FE FE 02 10 FA  power_on()" in result.stdout
+    assert "moving: 100%" in result.stdout
+    assert "\x1b[" not in result.stdout, "no colour where there is no terminal"
+
+
+def test_the_demo_fails_when_an_answer_is_wrong() -> None:
+    wrong = (
+        "import cobotwire.sim.state as s, cobotwire.demo as d; "
+        "d.OPENING = 55; d.TOOL = d.TOOL._replace(z=50.004); "
+        "from cobotwire.cli import main; main()"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", wrong, "demo"], capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 1
+    assert "WRONG  get_tool_reference" in result.stdout
+    assert "7 of 8 answers right" in result.stdout
+
+
+def test_help_names_the_verbs_and_the_exit_codes() -> None:
+    result = run("--help")
+    assert result.returncode == 0
+    for word in ("demo", "call", "decode", "sim", "commands", "Exit codes"):
+        assert word in result.stdout
+
+
+def test_the_version_says_which_codec_is_in_use() -> None:
+    assert run("--version").stdout == f"cobotwire {__version__}, native codec\n"
+    forced = run("--version", COBOTWIRE_CODEC="reference")
+    assert forced.stdout == f"cobotwire {__version__}, reference codec\n"
+    assert run("--version", COBOTWIRE_CODEC="quick").returncode == 2
+
+
+def test_a_call_prints_its_answer(server: PtyServer) -> None:
+    result = run("call", "get_angles", "--port", server.url)
+    assert (result.returncode, result.stdout) == (
+        0,
+        "j1=0.0  j2=0.0  j3=0.0  j4=0.0  j5=0.0  j6=0.0\n",
+    )
+    as_json = run("call", "get_reference_frame", "--port", server.url, "--json")
+    assert json.loads(as_json.stdout) == {"command": "get_reference_frame", "result": "BASE"}
+
+
+def test_a_call_takes_lists_names_and_negative_numbers(server: PtyServer) -> None:
+    url = ("--port", server.url)
+    assert run("call", "power_on", *url).returncode == 0
+    moved = run("call", "send_angles", "-10,0,0,0,0,5.5", "speed=100", *url)
+    assert moved.returncode == 0, moved.stderr
+    assert server.arm.state.angles.target(0.0) == (-10.0, 0.0, 0.0, 0.0, 0.0, 5.5)
+    assert run("call", "set_end_type", "tool", *url).returncode == 0
+    assert server.arm.state.end_type == 1
+    assert run("call", "set_digital_output", "23", "on", *url).returncode == 0
+    assert server.arm.state.pins == {23: True}
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        (["get_angels"], 2, "did you mean get_angles?"),
+        (["send_angle", "1", "10"], 2, "speed is None; allowed: a value"),
+        (["send_angle", "7", "10", "20"], 2, "joint is 7; allowed: a whole number 1..6"),
+        (["send_angle", "1", "ten", "20"], 2, "angle is 'ten'; allowed: a number"),
+        (["get_angles", "5"], 2, "no values"),
+        (["set_end_type", "FLANG"], 2, "one of FLANGE, TOOL"),
+        (["set_free_mode", "maybe"], 2, "on or off"),
+    ],
+)
+def test_a_wrong_call_says_what_is_wrong(
+    server: PtyServer, words: list[str], code: int, message: str
+) -> None:
+    result = run("call", *words, "--port", server.url)
+    assert result.returncode == code
+    assert message in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_a_missing_port_and_a_silent_arm_have_their_own_codes() -> None:
+    assert run("call", "get_angles", "--port", "/dev/nosuchport").returncode == 3
+    master, slave = pty.openpty()
+    try:
+        silent = run("call", "get_angles", "--timeout", "0.1", "--port", os.ttyname(slave))
+    finally:
+        os.close(master)
+        os.close(slave)
+    assert silent.returncode == 4
+    assert "no answer to get_angles" in silent.stderr
+
+
+def test_decode_explains_each_byte() -> None:
+    result = run("decode", "FE FE 06 21 01 00 1D 14 FA")
+    assert result.returncode == 0
+    for line in (
+        "request: send_angle(joint=1, angle=0.29 degree, speed=20 percent)",
+        "CMD            send_angle: Send one joint to an angle",
+        "5  00 1D  angle          0.29 degree",
+        "8  FA     footer",
+    ):
+        assert line in result.stdout
+
+
+def test_decode_tells_why_a_frame_is_none() -> None:
+    result = run("decode", "fefe06320101", "14", "0xFA")
+    assert result.returncode == 1
+    assert "LEN 06 is not legal for the request 32 (jog_coord): it is 05" in result.stdout
+
+
+def test_decode_speaks_json() -> None:
+    lines = run("decode", "--json", "FF FE FE 03 86 01 FA").stdout.splitlines()
+    noise, frame = (json.loads(line) for line in lines)
+    assert (noise["kind"], noise["reason"]) == ("noise", "no-header")
+    assert frame["readings"] == [
+        {"direction": "reply", "command": "get_reference_frame", "fields": {"frame": 1}}
+    ]
+
+
+def test_decode_refuses_what_is_no_hex() -> None:
+    assert run("decode", "FE F").returncode == 2
+    assert run("decode", "hello").returncode == 2
+
+
+def test_commands_lists_all_of_them() -> None:
+    result = run("commands")
+    assert len(result.stdout.splitlines()) == len(TABLE.commands) + 1
+    assert "0x2A  is_in_position" in result.stdout
+
+
+def test_commands_tells_all_about_one() -> None:
+    result = run("commands", "send_coord")
+    for words in ("0x24  motion", "5-6   coord", "-3253.5..3300 millimetre (x 10)", "1 X, 2 Y"):
+        assert words in result.stdout
+    assert "Disputed" in result.stdout
+    assert "<ssid>" in run("commands", "get_ssid_pwd").stdout
+    assert json.loads(run("commands", "stop", "--json").stdout)[0]["id"] == 0x29
+
+
+@pytest.fixture
+def sim() -> Iterator[subprocess.Popen[str]]:
+    process = subprocess.Popen(
+        [*COMMAND, "sim"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_sim_serves_a_port_shows_the_frames_and_ends_cleanly(
+    sim: subprocess.Popen[str], how: signal.Signals
+) -> None:
+    assert sim.stdout is not None
+    url = sim.stdout.readline().strip()
+    assert url.startswith("/dev/")
+    assert run("call", "is_power_on", "--port", url).stdout == "False\n"
+    line = sim.stdout.readline()
+    assert line == "heard   FE FE 02 12 FA   is_power_on()   answered FE FE 03 12 00 FA\n"
+    sim.send_signal(how)
+    assert sim.wait(timeout=10) == 0
+
+
+def test_an_unknown_edition_is_named() -> None:
+    result = run("--edition", "mycobt", "commands")
+    assert result.returncode == 2
+    assert "did you mean mycobot?" in result.stderr

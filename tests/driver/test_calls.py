@@ -1,0 +1,138 @@
+"""The generated client against the simulated arm, through pyserial and a pseudo-terminal."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+
+from cobotwire import MyCobot
+from cobotwire.driver import Traffic
+from cobotwire.editions.mycobot import (
+    TABLE,
+    Angles,
+    Axis,
+    Coords,
+    EndType,
+    FreshMode,
+    ReferenceFrame,
+    ServoRegister,
+    TargetKind,
+    WifiAccount,
+)
+from cobotwire.sim import PtyServer, SimulatedArm
+
+TOOL = Coords(1.25, -2.5, 50.0, 10.01, -0.29, 90.0)
+
+
+def _wait(condition: object, seconds: float = 5.0) -> None:
+    assert callable(condition)
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "the arm did not get there in time"
+        time.sleep(0.01)
+
+
+def test_a_session_as_the_readme_shows_it(arm: MyCobot) -> None:
+    arm.power_on()
+    assert arm.is_power_on() is True
+    arm.send_angles([10, -20, 30.5, 0, 0.29, -5], speed=100)
+    _wait(lambda: arm.is_in_position([10, -20, 30.5, 0, 0.29, -5], TargetKind.ANGLES))
+    _wait(lambda: not arm.is_moving())
+    assert arm.get_angles() == Angles(10.0, -20.0, 30.5, 0.0, 0.29, -5.0)
+
+
+def test_values_come_back_as_named_tuples_and_enums(arm: MyCobot) -> None:
+    arm.set_tool_reference(TOOL)
+    assert arm.get_tool_reference() == TOOL
+    assert arm.get_tool_reference().rz == 90.0
+    arm.set_reference_frame(ReferenceFrame.WORLD)
+    assert arm.get_reference_frame() is ReferenceFrame.WORLD
+    arm.set_end_type(1)
+    assert arm.get_end_type() is EndType.TOOL
+
+
+def test_the_axis_decides_the_scale_of_a_single_coordinate(
+    arm: MyCobot, simulated: SimulatedArm
+) -> None:
+    arm.power_on()
+    arm.set_fresh_mode(FreshMode.REFRESH)
+    arm.send_coord(Axis.X, 123.4, 100)
+    _wait(lambda: arm.get_coords().x == 123.4)
+    arm.send_coord(Axis.RX, -12.34, 100)
+    _wait(lambda: arm.get_coords().rx == -12.34)
+
+
+def test_echoed_replies_are_matched(arm: MyCobot) -> None:
+    for joint in range(1, 7):
+        assert arm.get_joint_min_angle(joint) == -165.0
+        assert arm.is_servo_enable(joint) is False
+    arm.set_digital_output(23, True)
+    assert arm.get_digital_input(23) is True
+    assert arm.get_digital_input(22) is False
+
+
+def test_servo_registers_are_written_and_read(arm: MyCobot) -> None:
+    arm.set_servo_data(2, ServoRegister.POSITION_P, 12)
+    assert arm.get_servo_data(2, ServoRegister.POSITION_P) == 12
+    assert arm.get_servo_data(1, ServoRegister.POSITION_P) == 10
+
+
+def test_a_reply_outside_any_frame_ends_by_silence(arm: MyCobot, simulated: SimulatedArm) -> None:
+    assert arm.get_ssid_pwd() == WifiAccount("MyCobotWiFi2.4G", "mycobot123")
+    simulated.state.ssid, simulated.state.password = "two words", "pass word "
+    assert arm.get_ssid_pwd() == WifiAccount("two words", "pass word ")
+    assert arm.is_power_on() is False, "the line is in order afterwards"
+
+
+def test_a_command_that_nothing_answers_returns_at_once(arm: MyCobot) -> None:
+    started = time.monotonic()
+    for _ in range(100):
+        arm.set_color(1, 2, 3)
+    # Waiting for a reply even once would take the deadline of 0.5 s.
+    assert time.monotonic() - started < 0.4
+    assert arm.is_power_on() is False
+
+
+def test_every_request_is_sent_exactly_once(server: PtyServer) -> None:
+    traffic: list[Traffic] = []
+    with MyCobot(server.url, trace=traffic.append) as arm:
+        arm.power_on()
+        arm.jog_increment(1, 5.0, 50)
+        arm.get_angles()
+    sent = [t.data.hex(" ") for t in traffic if t.direction == "sent"]
+    assert sent == ["fe fe 02 10 fa", "fe fe 06 33 01 01 f4 32 fa", "fe fe 02 20 fa"]
+
+
+def test_threads_take_turns(arm: MyCobot) -> None:
+    failures: list[BaseException] = []
+
+    def ask(joint: int) -> None:
+        try:
+            for _ in range(50):
+                assert arm.get_joint_max_angle(joint) == 165.0
+                arm.set_color(joint, 0, 0)
+        except BaseException as error:
+            failures.append(error)
+
+    threads = [threading.Thread(target=ask, args=(joint,)) for joint in range(1, 7)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert failures == []
+
+
+@pytest.mark.parametrize("codec", ["reference", "native"])
+def test_a_client_can_choose_its_codec(server: PtyServer, codec: str) -> None:
+    with MyCobot(server.url, codec="native" if codec == "native" else "reference") as arm:
+        assert arm.codec == codec
+        assert arm.get_angles() == Angles(0, 0, 0, 0, 0, 0)
+        assert codec in repr(arm)
+
+
+def test_the_client_has_a_method_for_each_command() -> None:
+    for command in TABLE.commands:
+        method = getattr(MyCobot, command.name)
+        assert command.title in (method.__doc__ or "")

@@ -1,0 +1,186 @@
+"""The simulated arm in memory, with a clock that the test owns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import strategies
+from cobotwire import codec as codecs
+from cobotwire.editions.mycobot import TABLE, TargetKind
+from cobotwire.sim import SimulatedArm
+from cobotwire.sim.behaviour import BEHAVIOUR
+
+REFERENCE = codecs.load(TABLE, "reference")
+
+
+class Bench:
+    """An arm, its clock, and the questions of a test."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.arm = SimulatedArm(TABLE, clock=lambda: self.now)
+
+    def tell(self, name: str, *values: Any) -> bytes:
+        return self.arm.receive(REFERENCE.encode(name, "request", values))
+
+    def ask(self, name: str, *values: Any) -> Any:
+        message = REFERENCE.decode("reply", self.tell(name, *values))
+        [value] = [v for f, v in zip(message.layout.fields, message.values) if not f.echo]
+        return value
+
+
+@pytest.fixture
+def bench() -> Bench:
+    made = Bench()
+    made.tell("power_on")
+    return made
+
+
+def test_every_command_has_a_behaviour_and_every_behaviour_a_command() -> None:
+    assert {command.name for command in TABLE.commands} == set(BEHAVIOUR)
+
+
+@given(st.lists(strategies.messages().filter(lambda m: m[0].direction == "request"), max_size=8))
+def test_every_legal_request_gets_its_legal_answer_and_no_other(
+    requests: list[tuple[strategies.Form, Any]],
+) -> None:
+    bench = Bench()
+    for form, values in requests:
+        bench.now += 0.1
+        answer = bench.tell(form.command.name, *values)
+        if form.command.text is not None:
+            assert answer.startswith(b"ssid: ")
+        elif form.command.reply:
+            assert REFERENCE.decode("reply", answer).command is form.command
+        else:
+            assert answer == b""
+
+
+def test_joints_move_over_time_and_end_together(bench: Bench) -> None:
+    bench.tell("send_angles", (60.0, -30.0, 0.0, 15.0, 0.0, 0.0), 20)
+    assert bench.ask("is_moving") == 1
+    bench.now += 1.0
+    # 20 % of speed is 30 degrees a second for the joint with the longest way.
+    assert bench.ask("get_angles") == (30.0, -15.0, 0.0, 7.5, 0.0, 0.0)
+    bench.now += 1.0
+    assert bench.ask("get_angles") == (60.0, -30.0, 0.0, 15.0, 0.0, 0.0)
+    assert bench.ask("is_moving") == 0
+    assert bench.ask("is_in_position", (60.0, -30.0, 0, 15.0, 0, 0), TargetKind.ANGLES) == 1
+    assert bench.ask("is_in_position", (60.2, -30.0, 0, 15.0, 0, 0), TargetKind.ANGLES) == 0
+
+
+def test_targets_queue_up_unless_the_newest_wins(bench: Bench) -> None:
+    bench.tell("send_angle", 1, 30.0, 20)
+    bench.tell("send_angle", 1, 0.0, 20)
+    bench.now += 1.0
+    assert bench.ask("get_angles")[0] == 30.0
+    bench.now += 1.0
+    assert bench.ask("get_angles")[0] == 0.0
+    bench.tell("set_fresh_mode", 1)
+    bench.tell("send_angle", 1, 30.0, 20)
+    bench.tell("send_angle", 1, -30.0, 20)
+    bench.now += 1.0
+    assert bench.ask("get_angles")[0] == -30.0
+
+
+def test_pause_keeps_the_way_and_stop_forgets_it(bench: Bench) -> None:
+    bench.tell("send_angle", 1, 30.0, 20)
+    bench.now += 0.5
+    bench.tell("pause")
+    bench.now += 5.0
+    assert bench.ask("is_paused") == 1
+    assert bench.ask("get_angles")[0] == 15.0
+    bench.tell("resume")
+    bench.now += 0.25
+    assert bench.ask("get_angles")[0] == 22.5
+    bench.tell("stop")
+    bench.now += 5.0
+    assert bench.ask("get_angles")[0] == 22.5
+    bench.tell("send_angle", 1, 0.0, 20)
+    assert bench.ask("is_moving") == 0, "after a stop, motion is ignored until resume"
+    bench.tell("resume")
+    bench.tell("send_angle", 1, 0.0, 20)
+    assert bench.ask("is_moving") == 1
+
+
+def test_a_target_sent_while_paused_starts_with_resume(bench: Bench) -> None:
+    bench.tell("pause")
+    bench.tell("send_angle", 1, 30.0, 20)
+    bench.now += 3.0
+    assert bench.ask("get_angles")[0] == 0.0
+    bench.tell("resume")
+    bench.now += 0.5
+    assert bench.ask("get_angles")[0] == 15.0
+
+
+def test_an_arm_without_power_or_torque_does_not_move() -> None:
+    bench = Bench()
+    bench.tell("send_angle", 1, 30.0, 100)
+    assert bench.ask("is_moving") == 0
+    bench.tell("power_on")
+    bench.tell("release_servo", 3)
+    bench.tell("send_angle", 1, 30.0, 100)
+    assert bench.ask("is_moving") == 0
+    assert bench.ask("is_all_servo_enable") == 0
+    assert bench.ask("is_servo_enable", 3) == 0
+    bench.tell("focus_servo", 3)
+    bench.tell("set_free_mode", True)
+    bench.tell("send_angle", 1, 30.0, 100)
+    assert bench.ask("is_moving") == 0
+
+
+def test_a_target_beyond_a_joints_limit_is_refused(bench: Bench) -> None:
+    bench.tell("set_joint_max", 2, 45.0)
+    bench.tell("send_angle", 2, 45.01, 100)
+    assert bench.ask("is_moving") == 0
+    bench.tell("send_angle", 2, 45.0, 100)
+    assert bench.ask("is_moving") == 1
+    assert bench.ask("get_joint_max_angle", 2) == 45.0
+
+
+def test_jogging_goes_on_until_it_is_stopped(bench: Bench) -> None:
+    bench.tell("jog_angle", 1, 0, 20)
+    bench.now += 1.0
+    bench.tell("jog_stop")
+    bench.now += 1.0
+    assert bench.ask("get_angles")[0] == -30.0
+    bench.tell("jog_coord", 1, 1, 10)
+    bench.now += 1.0
+    bench.tell("jog_stop")
+    assert bench.ask("get_coords")[0] == pytest.approx(44.4 + 30.0)
+
+
+def test_encoders_and_angles_tell_the_same_story(bench: Bench) -> None:
+    assert bench.ask("get_encoders") == (2048,) * 6
+    bench.tell("set_encoders", (1024, 3072, 3072, 2048, 2048, 2048), 100)
+    bench.now += 5.0
+    # Signs of the joints: -1 -1 +1 -1 -1 -1; 1024 ticks are 90 degrees.
+    assert bench.ask("get_angles") == (90.0, -90.0, 90.0, 0.0, 0.0, 0.0)
+    assert bench.ask("get_encoder", 2) == 3072
+
+
+def test_calibration_takes_the_present_position_as_zero(bench: Bench) -> None:
+    bench.tell("send_angle", 4, 30.0, 100)
+    bench.now += 5.0
+    bench.tell("set_servo_calibration", 4)
+    assert bench.ask("get_angles")[3] == 0.0
+    assert bench.ask("get_encoder", 4) == 2048
+
+
+def test_noise_and_malformed_requests_are_not_answered(bench: Bench) -> None:
+    assert bench.arm.receive(b"\xff\xff\x01\x04\x02\x38\x02\xbe") == b""
+    assert bench.arm.receive(bytes.fromhex("FE FE 03 3B 09 FA")) == b"", "there is no joint 9"
+    assert bench.arm.receive(bytes.fromhex("FE FE 03 20 01 FA")) == b""
+    assert bench.ask("is_power_on") == 1
+
+
+def test_half_a_request_is_given_up_when_the_line_is_idle(bench: Bench) -> None:
+    assert bench.arm.receive(bytes.fromhex("FE FE 0F 22 00")) == b""
+    assert bench.arm.pending == 5
+    assert bench.arm.flush() == b""
+    assert bench.arm.pending == 0
+    assert bench.ask("is_power_on") == 1
