@@ -1,0 +1,166 @@
+"""Writing and checking generated files, through the command ``cobotwire-gen``."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import vectors
+
+GENERATED = ("python/cobotwire/editions/mycobot", "docs/reference", "rust/core/tests/data")
+
+
+def run(root: Path, *words: str, seed: str = "0") -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "cobotwire_codegen", "--root", str(root), *words]
+    environment = {"PYTHONHASHSEED": seed, "PATH": "/usr/bin"}
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A project that holds the spec and nothing that was generated from it."""
+    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
+    return tmp_path
+
+
+def _files(root: Path) -> dict[str, bytes]:
+    paths = (p for folder in GENERATED for p in (root / folder).rglob("*") if p.is_file())
+    found = (p for p in paths if "__pycache__" not in p.parts)
+    return {str(path.relative_to(root)): path.read_bytes() for path in found}
+
+
+def test_what_is_generated_is_what_is_committed(project: Path) -> None:
+    assert run(project).returncode == 0
+    assert _files(project) == _files(vectors.ROOT)
+    assert len(_files(project)) > 30
+
+
+def test_the_output_does_not_depend_on_chance(project: Path) -> None:
+    run(project, seed="1")
+    first = _files(project)
+    shutil.rmtree(project / "python")
+    run(project, seed="2")
+    assert _files(project) == first
+
+
+def test_a_second_run_changes_nothing(project: Path) -> None:
+    run(project)
+    assert "0 file(s) changed" in run(project).stdout
+    assert run(project, "--check").stdout == "fresh\n"
+
+
+def test_check_shows_a_diff_of_what_is_stale(project: Path) -> None:
+    run(project)
+    path = project / GENERATED[0] / "values.py"
+    path.write_text(path.read_text().replace("class Angles", "class Angels"))
+    before = path.read_bytes()
+    result = run(project, "--check")
+    assert result.returncode == 1
+    assert f"stale: {path}" in result.stdout
+    assert "-class Angels(NamedTuple):\n+class Angles(NamedTuple):" in result.stdout
+    assert path.read_bytes() == before, "--check writes nothing"
+
+
+def test_check_tells_what_is_missing_or_left_over(project: Path) -> None:
+    run(project)
+    (project / GENERATED[0] / "enums.py").unlink()
+    (project / GENERATED[0] / "table" / "old.py").write_text("")
+    result = run(project, "--check")
+    assert result.returncode == 1
+    assert "missing: " in result.stdout
+    assert "left over: " in result.stdout
+    assert "2 generated file(s) not fresh" in result.stdout
+    run(project)
+    assert run(project, "--check").returncode == 0
+    assert not (project / GENERATED[0] / "table" / "old.py").exists()
+
+
+def test_other_line_ends_are_stale_too(project: Path) -> None:
+    run(project)
+    path = project / "docs/reference/mycobot/README.md"
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    assert run(project, "--check").returncode == 1
+
+
+def test_a_bad_spec_writes_nothing_and_exits_with_2(project: Path) -> None:
+    path = project / "spec/commands/jog.yaml"
+    path.write_text(path.read_text().replace("safety: motion", "safety: moton", 1))
+    result = run(project)
+    assert result.returncode == 2
+    assert "did you mean motion?" in result.stderr
+    assert "1 problem(s) in the spec; nothing was written" in result.stderr
+    assert _files(project) == {}
+
+
+def test_a_new_command_needs_yaml_and_nothing_else(project: Path) -> None:
+    """The promise of the whole: a few lines of YAML become a method, a table entry and a page."""
+    commands = project / "spec/commands/gripper.yaml"
+    commands.write_text(
+        commands.read_text()
+        + """
+  get_gripper_load:
+    id: 0x7E
+    title: Read the gripper's load
+    doc: Reads how hard the gripper presses.
+    safety: query
+    request:
+      - {name: channel, is: joint}
+    reply:
+      - {name: channel, is: joint, echo: required}
+      - {name: load, is: angle, doc: The load.}
+"""
+    )
+    missing = project / "spec/vectors/missing.yaml"
+    missing.write_text(
+        missing.read_text()
+        + """
+  - name: get_gripper_load request
+    command: get_gripper_load
+    direction: request
+    frame: FE FE 03 7E 02 FA
+    values: {channel: 2}
+    why: a test
+  - name: get_gripper_load reply
+    command: get_gripper_load
+    direction: reply
+    frame: FE FE 05 7E 02 FF FF FA
+    values: {channel: 2, load: -0.01}
+    why: a test
+"""
+    )
+    result = run(project)
+    assert result.returncode == 0, result.stderr
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "from mycobot import TABLE, MyCobot\n"
+        "from cobotwire.sim import PtyServer, SimulatedArm\n"
+        "with PtyServer(SimulatedArm(TABLE)) as server, MyCobot(server.url) as arm:\n"
+        "    print(arm.codec, arm.get_gripper_load(3))\n"
+    )
+    folder = project / "python/cobotwire/editions"
+    called = subprocess.run(
+        [sys.executable, "-c", script, str(folder)], capture_output=True, text=True, check=False
+    )
+    assert called.stdout == "native 0.0\n", called.stderr
+    assert "## get_gripper_load" in (project / "docs/reference/mycobot/gripper.md").read_text()
+
+
+def test_the_table_for_other_languages_is_the_table_of_python() -> None:
+    from dataclasses import asdict
+
+    from cobotwire.editions.mycobot import TABLE
+
+    def listed(value: object) -> object:
+        if isinstance(value, bytes):
+            return list(value)
+        if isinstance(value, dict):
+            return {key: listed(part) for key, part in value.items()}
+        return [listed(part) for part in value] if isinstance(value, tuple) else value
+
+    path = vectors.ROOT / "rust/core/tests/data/mycobot.json"
+    assert json.loads(path.read_text())["table"] == listed(asdict(TABLE))
