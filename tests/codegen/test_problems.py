@@ -66,7 +66,7 @@ def test_a_bad_spec_is_refused_with_its_place(
     with pytest.raises(SpecError) as caught:
         editions(spec)
     lines = [str(problem) for problem in caught.value.problems]
-    [match] = [line for line in lines if said in line][:1] or [None]
+    match = next((line for line in lines if said in line), None)
     assert match is not None, lines
     place, _, _ = match.partition(": ")
     name, line, column = place.rsplit(":", 2)
