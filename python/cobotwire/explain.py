@@ -83,8 +83,10 @@ def _read(codec: Codec, data: bytes, direction: Direction) -> Reading:
 
 def parts(frame: FrameFormat, data: bytes, message: Message) -> Iterator[Part]:
     """Every byte of a legal frame, in order."""
-    start = len(frame.header)
-    yield Part(0, data[:start], "header", "a frame starts here")
+    start = frame.length_at
+    yield Part(0, data[: len(frame.header)], "header", "a frame starts here")
+    if message.address is not None:
+        yield Part(start - 1, data[start - 1 : start], "address", str(message.address))
     length = data[start]
     yield Part(start, data[start : start + 1], "LEN", f"{length}: {length} bytes follow")
     command = message.command
@@ -96,7 +98,8 @@ def parts(frame: FrameFormat, data: bytes, message: Message) -> Iterator[Part]:
             chunk = data[offset : offset + number.width]
             yield Part(offset, chunk, name, in_words(field, number, single))
             offset += number.width
-    yield Part(offset, data[offset:], "footer", "the frame ends here")
+    end = "footer" if frame.check == "footer" else "check"
+    yield Part(offset, data[offset:], end, "the frame ends here")
 
 
 def _numbers(message: Message, field: Field, value: Any) -> Iterator[tuple[Number, Any]]:

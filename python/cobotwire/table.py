@@ -16,6 +16,7 @@ from cobotwire.errors import UsageError
 Direction = Literal["request", "reply"]
 Safety = Literal["query", "setting", "motion", "power", "persistent write"]
 FieldKind = Literal["number", "flag", "enum"]
+Check = Literal["footer", "crc16-modbus", "sum"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,12 +104,21 @@ class TextReply:
 
 
 @dataclass(frozen=True, slots=True)
+class TextRequest:
+    """Text that follows a request outside any frame, as TextReply, and ends with ``suffix``."""
+
+    prefixes: tuple[str, ...]
+    fields: tuple[str, ...]
+    suffix: str
+
+
+@dataclass(frozen=True, slots=True)
 class Command:
     """One call: its id, how it is asked and how it is answered.
 
-    ``request`` and ``reply`` hold the forms of the message, told apart by their size on the wire
-    and by their number of fields; the first is the full one. No ``reply`` and no ``text`` means
-    that nothing answers.
+    ``request`` and ``reply`` hold the forms of the message, told apart by their size on the wire;
+    the first is the full one. No ``reply`` and no ``text`` means that nothing answers. With ``ack``
+    the reply is an acknowledgement that may come, late or never, and is not waited for.
     """
 
     id: int
@@ -122,11 +132,13 @@ class Command:
     reply: tuple[Layout, ...] = ()
     text: TextReply | None = None
     notes: tuple[str, ...] = ()
+    ack: bool = False
+    request_text: TextRequest | None = None
 
     @property
     def answers(self) -> bool:
         """Whether a reply is due."""
-        return bool(self.reply) or self.text is not None
+        return (bool(self.reply) and not self.ack) or self.text is not None
 
     def layouts(self, direction: Direction) -> tuple[Layout, ...]:
         """The forms of this command's message in one direction."""
@@ -135,20 +147,41 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class FrameFormat:
-    """``header LEN CMD DATA footer``; LEN counts CMD, DATA and footer."""
+    """``header [address] LEN CMD DATA check``; LEN counts CMD, DATA and check.
+
+    ``check`` is a fixed ``footer``; or a CRC-16/MODBUS over everything before it, high byte first;
+    or the low byte of the sum of CMD and DATA. An address byte stands in the frame where
+    ``addresses`` lists its legal values; the first one is sent unless the caller says otherwise.
+    """
 
     header: bytes
     footer: bytes
     maximum_length: int
+    check: Check = "footer"
+    addresses: tuple[int, ...] = ()
 
     def length(self, data_size: int) -> int:
         """LEN of a frame with ``data_size`` data bytes."""
-        return 1 + data_size + len(self.footer)
+        return 1 + data_size + self.check_size
+
+    @property
+    def check_size(self) -> int:
+        """Bytes of the check."""
+        return (
+            len(self.footer)
+            if self.check == "footer"
+            else {"crc16-modbus": 2, "sum": 1}[self.check]
+        )
+
+    @property
+    def length_at(self) -> int:
+        """Where LEN stands in a frame. CMD stands behind it."""
+        return len(self.header) + (1 if self.addresses else 0)
 
     @property
     def overhead(self) -> int:
-        """Bytes of a frame that LEN does not count: the header and LEN itself."""
-        return len(self.header) + 1
+        """Bytes of a frame that LEN does not count: header, address and LEN itself."""
+        return self.length_at + 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,19 +12,17 @@ from typing import Any, Literal, NamedTuple, Protocol
 from cobotwire.table import Command, Direction, Layout, Table
 
 Listening = Literal["request", "reply", "both"]
-NoiseReason = Literal["no-header", "bad-length", "unknown-id", "bad-footer", "truncated"]
+NoiseReason = Literal[
+    "no-header", "bad-address", "bad-length", "unknown-id", "bad-check", "truncated"
+]
 
 
 class Frame(NamedTuple):
-    """A whole, legal frame; ``offset`` is where its first byte stands in the stream."""
+    """A whole, legal frame with its command id; ``offset`` is where it starts in the stream."""
 
     offset: int
     data: bytes
-
-    @property
-    def command(self) -> int:
-        """The command id."""
-        return self.data[3]
+    command: int
 
 
 class Noise(NamedTuple):
@@ -39,12 +37,13 @@ Event = Frame | Noise
 
 
 class Message(NamedTuple):
-    """A decoded frame."""
+    """A decoded frame; ``address`` is its address byte, None where the format has none."""
 
     command: Command
     direction: Direction
     layout: Layout
     values: tuple[Any, ...]
+    address: int | None = None
 
     @property
     def fields(self) -> dict[str, Any]:
@@ -82,18 +81,34 @@ class Codec(Protocol):
         """The edition that it interprets."""
         ...
 
-    def encode(self, command: str, direction: Direction, values: Sequence[Any]) -> bytes:
-        """Build one whole frame; the number of ``values`` picks the form of the message.
+    def encode(
+        self,
+        command: str,
+        direction: Direction,
+        values: Sequence[Any],
+        *,
+        form: int | None = None,
+        address: int | None = None,
+    ) -> bytes:
+        """Build one whole frame.
+
+        The form is the first one with that number of fields that takes the values, unless ``form``
+        picks one by its index. ``address`` is only for formats with an address byte.
 
         Raises:
-            UsageError: no such command or form, or a value that the field does not allow.
+            UsageError: no such command or form, or a value that the field does not allow (where
+                several forms fit in number, the first one's complaint).
         """
         ...
 
-    def decode(self, direction: Direction, data: bytes) -> Message:
+    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> Message:
         """Read ``data``, which must be one whole frame and nothing else.
 
+        Calls that share an id and a size read as the first of them that allows the values, unless
+        ``of`` names the one that it must be.
+
         Raises:
+            UsageError: ``of`` names no command.
             ProtocolError: it is not a legal frame of that direction, or a field holds a value that
                 the edition does not allow.
         """

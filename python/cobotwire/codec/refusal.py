@@ -9,10 +9,12 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from cobotwire.errors import ProtocolError, UsageError
-from cobotwire.table import Case, Command, Direction, Field, Number, Table
+from cobotwire.table import Case, Command, Direction, Field, FrameFormat, Number, Table
 
 ValueFault = Literal["type", "not-finite", "range", "choice", "count"]
-FrameFault = Literal["no-header", "bad-length", "unknown-id", "bad-footer", "truncated", "trailing"]
+FrameFault = Literal[
+    "no-header", "bad-address", "bad-length", "unknown-id", "bad-check", "truncated", "trailing"
+]
 
 
 def refuse_direction(given: Any) -> UsageError:
@@ -31,6 +33,12 @@ def refuse_form(command: Command, direction: Direction, given: int) -> UsageErro
         "(" + ", ".join(field.name for field in form.fields) + ")" for form in forms
     )
     return UsageError(f"{command.name} {direction}: number of values", given, allowed)
+
+
+def refuse_address(given: Any, addresses: tuple[int, ...]) -> UsageError:
+    """An address byte that the frame format does not have."""
+    allowed = f"one of {', '.join(map(str, addresses))}" if addresses else "none in this edition"
+    return UsageError("address", given, allowed)
 
 
 def refuse_value(
@@ -77,25 +85,34 @@ def physical(number: Number, whole: int) -> int | float:
 
 def _frame_fault(table: Table, direction: Direction, fault: FrameFault, data: bytes) -> str:
     frame = table.frame
-    header = frame.header.hex(" ").upper()
+    at = frame.length_at
     if fault == "no-header":
-        return f"a frame starts with {header}"
+        return f"a frame starts with {frame.header.hex(' ').upper()}"
+    if fault == "bad-address":
+        legal = ", ".join(f"{address:02X}" for address in frame.addresses)
+        return f"the address {data[at - 1]:02X} is none of {legal}"
     if fault == "truncated":
-        if len(data) <= len(frame.header):
+        if len(data) <= at:
             return "the bytes end before LEN"
-        missing = data[2] + frame.overhead - len(data)
-        return f"LEN {data[2]:02X} promises {missing} more byte(s)"
+        return f"LEN {data[at]:02X} promises {data[at] + frame.overhead - len(data)} more byte(s)"
     if fault == "bad-length":
         return _bad_length(table, direction, data)
     if fault == "unknown-id":
-        return f"edition {table.edition} has no {direction} with id {data[3]:02X}"
-    if fault == "bad-footer":
+        return f"edition {table.edition} has no {direction} with id {data[at + 1]:02X}"
+    if fault == "bad-check":
+        return _bad_check(frame)
+    return f"LEN {data[at]:02X} ends the frame before the last byte given"
+
+
+def _bad_check(frame: FrameFormat) -> str:
+    if frame.check == "footer":
         return f"a frame ends with {frame.footer.hex().upper()}"
-    return f"LEN {data[2]:02X} ends the frame before the last byte given"
+    return "the CRC is wrong" if frame.check == "crc16-modbus" else "the sum is wrong"
 
 
 def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
-    id = data[3] if len(data) > 3 else None
+    at = table.frame.length_at
+    id = data[at + 1] if len(data) > at + 1 else None
     legal = {
         table.frame.length(form.size): command.name
         for command in table.commands
@@ -103,10 +120,10 @@ def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
         if command.id == id
     }
     if not legal:
-        return f"no {direction} of edition {table.edition} has LEN {data[2]:02X}"
+        return f"no {direction} of edition {table.edition} has LEN {data[at]:02X}"
     name = next(iter(legal.values()))
     lengths = " or ".join(f"{length:02X}" for length in sorted(legal))
-    return f"LEN {data[2]:02X} is not legal for the {direction} {id:02X} ({name}): it is {lengths}"
+    return f"LEN {data[at]:02X} is not legal for the {direction} {id:02X} ({name}): it is {lengths}"
 
 
 def _elements(case: Case) -> str:

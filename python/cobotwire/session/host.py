@@ -154,7 +154,7 @@ class HostSession:
             # It had begun before the question was asked.
             return Unasked(frame)
         try:
-            message = self._codec.decode("reply", frame.data)
+            message = self._codec.decode("reply", frame.data, of=pending.command.name)
         except ProtocolError as error:
             self._pending = None
             return Refused(pending.command, error)

@@ -26,15 +26,24 @@ class ReferenceCodec:
             "reply": Forms(table, "reply"),
         }
 
-    def encode(self, command: str, direction: Direction, values: Sequence[Any]) -> bytes:
+    def encode(
+        self,
+        command: str,
+        direction: Direction,
+        values: Sequence[Any],
+        *,
+        form: int | None = None,
+        address: int | None = None,
+    ) -> bytes:
         """Build one whole frame."""
         found = self.table.command(command)
         self._legal(direction)
-        return encode(self.table.frame, found, direction, values)
+        return encode(self.table.frame, found, direction, values, form, address)
 
-    def decode(self, direction: Direction, data: bytes) -> Message:
+    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> Message:
         """Read one whole frame."""
-        return decode(self._legal(direction), direction, data)
+        command = None if of is None else self.table.command(of)
+        return decode(self._legal(direction), direction, data, command)
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> ReferenceFramer:
         """A new framer."""

@@ -3,15 +3,73 @@
 from __future__ import annotations
 
 from cobotwire.codec.interface import Message
-from cobotwire.codec.reference.legal import Forms
+from cobotwire.codec.reference.check import check
+from cobotwire.codec.reference.legal import Form, Forms
 from cobotwire.codec.refusal import physical, refuse_frame, refuse_raw
+from cobotwire.errors import ProtocolError
 from cobotwire.table import Case, Command, Direction, Field, Layout, Number
 
 
-def decode(forms: Forms, direction: Direction, data: bytes) -> Message:
+def decode(forms: Forms, direction: Direction, data: bytes, of: Command | None) -> Message:
     """Read one whole frame; see :meth:`cobotwire.codec.interface.Codec.decode`."""
     data = bytes(data)
-    command, layout = _form(forms, direction, data)
+    refusal: ProtocolError | None = None
+    for command, layout in _forms(forms, direction, data, of):
+        try:
+            values = _values(forms, command, layout, data)
+        except ProtocolError as error:
+            refusal = refusal or error
+            continue
+        frame = forms.table.frame
+        address = data[frame.length_at - 1] if frame.addresses else None
+        return Message(command, direction, layout, values, address)
+    assert refusal is not None, "a legal frame has a form"
+    raise refusal
+
+
+def _forms(forms: Forms, direction: Direction, data: bytes, of: Command | None) -> list[Form]:
+    """The forms that a whole, legal frame can have."""
+    table = forms.table
+    frame = table.frame
+    at = frame.length_at
+    for index, byte in enumerate(frame.header):
+        if index == len(data):
+            raise refuse_frame(table, direction, "truncated", index, data)
+        if data[index] != byte:
+            raise refuse_frame(table, direction, "no-header", index, data)
+    if frame.addresses and len(data) >= at and data[at - 1] not in frame.addresses:
+        raise refuse_frame(table, direction, "bad-address", at - 1, data)
+    if len(data) < frame.overhead:
+        raise refuse_frame(table, direction, "truncated", len(data), data)
+    if data[at] not in forms.lengths:
+        raise refuse_frame(table, direction, "bad-length", at, data)
+    if len(data) < frame.overhead + 1:
+        raise refuse_frame(table, direction, "truncated", len(data), data)
+    found = _named(forms, direction, data, of)
+    end = frame.overhead + data[at]
+    if len(data) < end:
+        raise refuse_frame(table, direction, "truncated", len(data), data)
+    last = end - frame.check_size
+    if data[last:end] != check(frame, data[:last]):
+        raise refuse_frame(table, direction, "bad-check", last, data)
+    if len(data) > end:
+        raise refuse_frame(table, direction, "trailing", end, data)
+    return found
+
+
+def _named(forms: Forms, direction: Direction, data: bytes, of: Command | None) -> list[Form]:
+    """The forms with the frame's id and LEN; those of one command, where it is named."""
+    at = forms.table.frame.length_at
+    id = data[at + 1]
+    found = [form for form in forms.find(id, data[at]) if of is None or form[0] is of]
+    if found:
+        return found
+    if id in forms.by_id if of is None else id == of.id:
+        raise refuse_frame(forms.table, direction, "bad-length", at, data)
+    raise refuse_frame(forms.table, direction, "unknown-id", at + 1, data)
+
+
+def _values(forms: Forms, command: Command, layout: Layout, data: bytes) -> tuple[object, ...]:
     values: list[object] = []
     offset = forms.table.frame.overhead + 1
     for field in layout.fields:
@@ -19,36 +77,7 @@ def decode(forms: Forms, direction: Direction, data: bytes) -> Message:
         parts = _numbers(command, field, case, offset, data)
         values.append(parts if field.many else parts[0])
         offset += field.size
-    return Message(command, direction, layout, tuple(values))
-
-
-def _form(forms: Forms, direction: Direction, data: bytes) -> tuple[Command, Layout]:
-    table = forms.table
-    frame = table.frame
-    for index, byte in enumerate(frame.header):
-        if index == len(data):
-            raise refuse_frame(table, direction, "truncated", index, data)
-        if data[index] != byte:
-            raise refuse_frame(table, direction, "no-header", index, data)
-    if len(data) < frame.overhead:
-        raise refuse_frame(table, direction, "truncated", len(data), data)
-    if data[2] not in forms.lengths:
-        raise refuse_frame(table, direction, "bad-length", 2, data)
-    if len(data) < frame.overhead + 1:
-        raise refuse_frame(table, direction, "truncated", len(data), data)
-    form = forms.find(data[3], data[2])
-    if form is None:
-        if data[3] in forms.by_id:
-            raise refuse_frame(table, direction, "bad-length", 2, data)
-        raise refuse_frame(table, direction, "unknown-id", 3, data)
-    end = frame.overhead + data[2]
-    if len(data) < end:
-        raise refuse_frame(table, direction, "truncated", len(data), data)
-    if not data[:end].endswith(frame.footer):
-        raise refuse_frame(table, direction, "bad-footer", end - len(frame.footer), data)
-    if len(data) > end:
-        raise refuse_frame(table, direction, "trailing", end, data)
-    return form
+    return tuple(values)
 
 
 def _case(forms: Forms, command: Command, layout: Layout, field: Field, data: bytes) -> Case:

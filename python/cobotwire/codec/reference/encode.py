@@ -12,7 +12,9 @@ import operator
 from collections.abc import Sequence
 from typing import Any, SupportsFloat, SupportsIndex
 
-from cobotwire.codec.refusal import ValueFault, refuse_form, refuse_value
+from cobotwire.codec.reference.check import check
+from cobotwire.codec.refusal import ValueFault, refuse_address, refuse_form, refuse_value
+from cobotwire.errors import UsageError
 from cobotwire.table import Case, Command, Direction, Field, FrameFormat, Layout, Number
 
 # Iterable, but never meant as a row of numbers.
@@ -25,23 +27,50 @@ class _Refused(Exception):
 
 
 def encode(
-    frame: FrameFormat, command: Command, direction: Direction, values: Sequence[Any]
+    frame: FrameFormat,
+    command: Command,
+    direction: Direction,
+    values: Sequence[Any],
+    form: int | None,
+    address: int | None,
 ) -> bytes:
     """Build one whole frame; see :meth:`cobotwire.codec.interface.Codec.encode`."""
     values = tuple(values)
-    for layout in command.layouts(direction):
-        if len(layout.fields) == len(values):
-            break
-    else:
-        raise refuse_form(command, direction, len(values))
+    start = frame.header + _address(frame, address)
+    data = _first_that_fits(command, direction, values, form)
+    body = start + bytes([frame.length(len(data)), command.id]) + data
+    return body + check(frame, body)
+
+
+def _address(frame: FrameFormat, address: int | None) -> bytes:
+    if address is None:
+        return bytes(frame.addresses[:1])
+    if address not in frame.addresses:
+        raise refuse_address(address, frame.addresses)
+    return bytes([address])
+
+
+def _first_that_fits(
+    command: Command, direction: Direction, values: tuple[Any, ...], form: int | None
+) -> bytes:
+    refusal: UsageError | None = None
+    for index, layout in enumerate(command.layouts(direction)):
+        if len(layout.fields) == len(values) and form in (None, index):
+            try:
+                return _data(layout, values)
+            except UsageError as error:
+                refusal = refusal or error
+    raise refusal or refuse_form(command, direction, len(values))
+
+
+def _data(layout: Layout, values: tuple[Any, ...]) -> bytes:
     # Lists, not generators: an exception that a value's own conversion raises passes as it is.
-    data = b"".join(
+    return b"".join(
         [
             _field(field, _case(layout, field, values), value)
             for field, value in zip(layout.fields, values)
         ]
     )
-    return frame.header + bytes([frame.length(len(data)), command.id]) + data + frame.footer
 
 
 def _case(layout: Layout, field: Field, values: Sequence[Any]) -> Case:

@@ -1,8 +1,8 @@
 """Framing and resync, as the law says it.
 
-At position i a frame stands if the header is there, LEN is legal for CMD, and the footer is at its
-place. A candidate is refuted by the first byte that refutes it; then the scan goes on at i + 1 and
-never skips what a false header claimed. A candidate that more bytes could complete waits.
+At position i a frame stands if the header is there, LEN is legal for CMD, and the check is right. A
+candidate is refuted by the first byte that refutes it; then the scan goes on at i + 1 and never
+skips what a false header claimed. A candidate that more bytes could complete waits.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cobotwire.codec.interface import Event, Frame, Noise, NoiseReason
+from cobotwire.codec.reference.check import check
 from cobotwire.codec.reference.legal import Forms
 from cobotwire.table import FrameFormat
 
@@ -47,7 +48,8 @@ class ReferenceFramer:
         while start < len(data):
             verdict = self._judge(data, start)
             if isinstance(verdict, int):
-                events.append(Frame(self._offset + start, data[start : start + verdict]))
+                frame = data[start : start + verdict]
+                events.append(Frame(self._offset + start, frame, frame[self._frame.overhead]))
                 start += verdict
             elif verdict == "truncated" and not at_end:
                 break
@@ -61,23 +63,27 @@ class ReferenceFramer:
     def _judge(self, data: bytes, start: int) -> int | NoiseReason:
         """The size of the frame at ``start``, or why there is none (``truncated``: not yet)."""
         frame = self._frame
-        head = data[start : start + len(frame.header)]
-        if not frame.header.startswith(head):
+        rest = data[start : start + frame.overhead + 256]
+        if not frame.header.startswith(rest[: len(frame.header)]):
             return "no-header"
-        if len(data) < start + frame.overhead:
+        address = rest[len(frame.header) : frame.length_at]
+        if address and address[0] not in frame.addresses:
+            return "bad-address"
+        if len(rest) < frame.overhead:
             return "truncated"
-        length = data[start + 2]
+        length = rest[frame.length_at]
         if length not in self._lengths:
             return "bad-length"
-        if len(data) < start + frame.overhead + 1:
+        if len(rest) < frame.overhead + 1:
             return "truncated"
-        fault = self._refute_id(data[start + 3], length)
+        fault = self._refute_id(rest[frame.overhead], length)
         if fault is not None:
             return fault
-        end = start + frame.overhead + length
-        if len(data) < end:
+        size = frame.overhead + length
+        if len(rest) < size:
             return "truncated"
-        return frame.overhead + length if data[start:end].endswith(frame.footer) else "bad-footer"
+        end = size - frame.check_size
+        return size if rest[end:size] == check(frame, rest[:end]) else "bad-check"
 
     def _refute_id(self, id: int, length: int) -> NoiseReason | None:
         if any(form.find(id, length) for form in self._forms):
