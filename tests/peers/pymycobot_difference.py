@@ -11,8 +11,8 @@ BOTH = (COBOT, M280)
 NEWER = (M280, PALLETIZER)
 ALL = (COBOT, M280, PALLETIZER)
 
-# The topic of a command that a class says otherwise whatever its arguments are (zero apart: it is the
-# same in every scale).
+# The topic of a command that a class says otherwise whatever its arguments are (zero apart, which
+# is the same in every scale).
 ALWAYS = "always"
 
 # What ``becomes`` says where pymycobot raises before it writes.
