@@ -1,0 +1,80 @@
+"""One of pymycobot's classes, as its users open it, on a simulated arm behind a real pty."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from cobotwire.codec.interface import Noise
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.session import Asked
+from cobotwire.session.device import DeviceEvent
+from cobotwire.sim import PtyServer, SimulatedArm
+from cobotwire.sim.state import ArmState
+
+
+class Bench:
+    """The library, the arm that it drives, and what that arm heard.
+
+    The arm's clock stands until it is advanced, so that no test depends on how fast this machine
+    is; only the library's own waiting takes real time.
+    """
+
+    peer: Any
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.heard: list[str] = []
+        self.refused: list[bytes] = []
+        self.arm = SimulatedArm(TABLE, clock=lambda: self.now, watch=self._watch)
+
+    @property
+    def state(self) -> ArmState:
+        """What the arm remembers."""
+        return self.arm.state
+
+    @property
+    def angles(self) -> tuple[float, ...]:
+        """Where the joints stand."""
+        return self.state.angles.position(self.now)
+
+    @property
+    def pose(self) -> tuple[float, ...]:
+        """Where the end stands."""
+        return self.state.pose.position(self.now)
+
+    def start_over(self) -> None:
+        """A new arm, powered: to have pymycobot power it would take 1.5 s in every test."""
+        self.arm.state = ArmState(TABLE.joints)
+        self.state.powered = True
+        self.state.enabled = [True] * TABLE.joints
+        self.heard.clear()
+        self.refused.clear()
+
+    def settle(self) -> None:
+        """Wait until the arm has handled all that was sent: requests are handled in order."""
+        self.peer.is_controller_connected()
+        self.heard.remove("is_controller_connected")
+
+    def advance(self, seconds: float) -> None:
+        """Let time pass for the arm. Whole halves and quarters keep its arithmetic exact."""
+        self.now += seconds
+
+    def _watch(self, event: DeviceEvent, answer: bytes) -> None:
+        if isinstance(event, Asked):
+            self.heard.append(event.message.command.name)
+        else:
+            self.refused.append(event.data if isinstance(event, Noise) else event.frame.data)
+
+
+@contextmanager
+def driven_by(kind: type[Any]) -> Iterator[Bench]:
+    """Open a port with one of pymycobot's classes; two of them sleep 1.5 s over it."""
+    bench = Bench()
+    with PtyServer(bench.arm) as server:
+        bench.peer = kind(server.url)
+        try:
+            yield bench
+        finally:
+            bench.peer.close()
