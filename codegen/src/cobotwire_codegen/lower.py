@@ -66,7 +66,14 @@ def choices(type: Type) -> tuple[int, ...]:
     """The closed list of whole numbers, or nothing."""
     if isinstance(type, Flag):
         return (0, 1)
+    if isinstance(type, Quantity):
+        return type.choices
     return tuple(member.value for member in type.members) if isinstance(type, Enum) else ()
+
+
+def field_choices(field: Field) -> tuple[int, ...]:
+    """The closed list of a field: a constant has one entry."""
+    return choices(field.type) if field.const is None else (field.const,)
 
 
 def labels(type: Type) -> tuple[str, ...]:
@@ -109,6 +116,8 @@ def table(edition: Edition) -> dict[str, Any]:
             "header": list(edition.frame.header),
             "footer": list(edition.frame.footer),
             "maximum_length": maximum_length(edition),
+            "check": edition.frame.check,
+            "addresses": [member.value for member in edition.frame.addresses],
         },
         "commands": [
             _command(family.name, c) for family in edition.families for c in family.commands
@@ -118,7 +127,7 @@ def table(edition: Edition) -> dict[str, Any]:
 
 def maximum_length(edition: Edition) -> int:
     """The highest LEN that the frame can carry."""
-    return 1 + edition.frame.maximum_data + len(edition.frame.footer)
+    return 1 + edition.frame.maximum_data + edition.frame.check_size
 
 
 def _command(family: str, command: Command) -> dict[str, Any]:
@@ -140,6 +149,13 @@ def _command(family: str, command: Command) -> dict[str, Any]:
             "silence_ms": text.silence_ms,
         },
         "notes": list(notes(command)),
+        "ack": command.ack,
+        "request_text": command.request_text
+        and {
+            "prefixes": list(command.request_text.prefixes),
+            "fields": [name for name, _ in command.request_text.fields],
+            "suffix": command.request_text.suffix,
+        },
     }
 
 
@@ -156,8 +172,8 @@ def _field(field: Field, form: tuple[Field, ...]) -> dict[str, Any]:
         ],
         "doc": field.doc,
         "many": isinstance(field.type, Value),
-        "choices": list(choices(field.type)),
-        "labels": list(labels(field.type)),
+        "choices": list(field_choices(field)),
+        "labels": list(labels(field.type)) if field.const is None else [],
         "selector": selector(field, form),
         "echo": bool(field.echo),
     }

@@ -13,7 +13,18 @@ from cobotwire_codegen.errors import Place
 
 Lines = tuple[tuple[int, int], ...]
 SAFETY = ("query", "setting", "motion", "power", "persistent write")
-UNITS = ("degree", "millimetre", "percent", "tick")
+CHECKS = ("footer", "crc16-modbus", "sum")
+UNITS = (
+    "degree",
+    "degree_celsius",
+    "hertz",
+    "millimetre",
+    "milliampere",
+    "percent",
+    "step_per_second",
+    "tick",
+    "volt",
+)
 CONFIDENCE = ("high", "medium", "low")
 VERDICTS = ("consistent", "erratum", "label only", "text and byte disagree")
 ERRATUM_KINDS = ("text", "table", "title", "label", "example", "missing")
@@ -36,6 +47,16 @@ class Dispute:
     claim: str
     reading: str
     confidence: str
+    evidence: tuple[Evidence, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What a delta edition does to its base, in words, and why."""
+
+    place: Place
+    what: str
+    why: str
     evidence: tuple[Evidence, ...]
 
 
@@ -70,7 +91,11 @@ class Wire:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A wire type with a scale, a unit and a range (in that unit; None: all that can be said)."""
+    """A wire type with a scale, a unit and a range (in that unit; None: all that can be said).
+
+    ``choices`` closes the list of legal numbers on the wire. With ``radians`` the API speaks
+    radians where the wire carries degrees.
+    """
 
     place: Place
     name: str
@@ -78,6 +103,8 @@ class Quantity:
     scale: Fraction
     unit: str
     range: tuple[Fraction, Fraction] | None
+    choices: tuple[int, ...]
+    radians: bool
     doc: str
     source: Lines
     disputed: tuple[Dispute, ...]
@@ -85,6 +112,8 @@ class Quantity:
     @property
     def bounds(self) -> tuple[Fraction, Fraction]:
         """The range as whole numbers on the wire; with a denominator of 1 if it can be said."""
+        if self.choices:
+            return Fraction(min(self.choices)), Fraction(max(self.choices))
         if self.range is None:
             return Fraction(self.wire.minimum), Fraction(self.wire.maximum)
         return self.range[0] / self.scale, self.range[1] / self.scale
@@ -142,7 +171,8 @@ class Field:
     """An argument of a request or a part of a reply.
 
     ``cases`` is empty but for a field whose type another field (``by``) decides: then it holds a
-    type for each member of that field's enum, and ``type`` is the first of them.
+    type for each value of that field, and ``type`` is the first of them. A field with ``const``
+    always holds that number; the caller does not give it.
     """
 
     place: Place
@@ -150,24 +180,34 @@ class Field:
     type: Type
     doc: str
     echo: Literal["", "required", "optional"]
+    optional: bool
+    const: int | None
     by: str
     cases: tuple[tuple[Member, Type], ...]
 
 
+Form = tuple[Field, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A reply outside any frame."""
+    """Text outside any frame: a reply that ends by silence, or what follows a request."""
 
     place: Place
     class_name: str
     prefixes: tuple[str, ...]
     fields: tuple[tuple[str, str], ...]
+    suffix: str
     silence_ms: int
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """One call."""
+    """One call.
+
+    ``requests`` and ``replies`` hold the forms of the messages, the full one first. With ``alias``
+    the call is another one's message under a name of its own.
+    """
 
     place: Place
     id: int
@@ -177,19 +217,35 @@ class Command:
     safety: str
     source: Lines
     deadline_ms: int
-    request: tuple[Field, ...]
-    reply: tuple[Field, ...]
+    requests: tuple[Form, ...]
+    replies: tuple[Form, ...]
+    ack: bool
+    alias: str
     text: Text | None
+    request_text: Text | None
     notes: tuple[str, ...]
     disputed: tuple[Dispute, ...]
+    changes: tuple[Change, ...]
 
-    def forms(self, direction: Literal["request", "reply"]) -> tuple[tuple[Field, ...], ...]:
+    @property
+    def reply(self) -> Form:
+        """The full form of the reply; no fields where nothing answers."""
+        return self.replies[0] if self.replies else ()
+
+    @property
+    def fields(self) -> tuple[Field, ...]:
+        """The fields of every form of every message."""
+        forms = (*self.requests, *self.replies)
+        return tuple(dict.fromkeys(field for form in forms for field in form))
+
+    def forms(self, direction: Literal["request", "reply"]) -> tuple[Form, ...]:
         """The forms of the message, the full one first; none where nothing answers."""
-        fields = self.request if direction == "request" else self.reply
-        if direction == "reply" and not fields:
-            return ()
-        without = tuple(field for field in fields if field.echo != "optional")
-        return (fields,) if len(without) == len(fields) else (fields, without)
+        return self.requests if direction == "request" else self.replies
+
+    @property
+    def answers(self) -> bool:
+        """Whether an answer is due."""
+        return (bool(self.replies) and not self.ack) or self.text is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,15 +261,22 @@ class Family:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """``header LEN CMD DATA footer``, and the link it travels on."""
+    """``header [address] LEN CMD DATA check``, and the link it travels on."""
 
     place: Place
     header: bytes
+    check: Literal["footer", "crc16-modbus", "sum"]
     footer: bytes
+    addresses: tuple[Member, ...]
     maximum_data: int
     doc: str
     baudrate: int
     deadline_ms: int
+
+    @property
+    def check_size(self) -> int:
+        """Bytes of the check."""
+        return len(self.footer) if self.check == "footer" else 2 if self.check != "sum" else 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,6 +322,8 @@ class Edition:
     title: str
     doc: str
     document: str
+    firmware: str
+    base: str
     joints: int
     frame: Frame
     wires: tuple[Wire, ...]
@@ -266,6 +331,7 @@ class Edition:
     families: tuple[Family, ...]
     errata: tuple[Erratum, ...]
     vectors: tuple[Vector, ...]
+    changes: tuple[Change, ...]
 
     @property
     def commands(self) -> tuple[Command, ...]:

@@ -25,6 +25,7 @@ class Reader:
         self.place = node.place
         self.what = what
         self.problems = problems
+        self.root = node
         self._asked: set[str] = set()
         self._node = node if isinstance(node, Mapping) else Mapping(node.place, {})
         if not isinstance(node, Mapping):
@@ -102,6 +103,28 @@ class Reader:
         except ValueError:
             self.problem("bad-hex", f"{key} of {self.what} must be pairs of hex digits", node.place)
             return None
+
+    def names(self, key: str) -> list[str]:
+        """A word, or a list of words."""
+        node = self.node(key)
+        nodes = node.items if isinstance(node, Sequence) else (node,) if node is not None else ()
+        found = []
+        for item in nodes:
+            if isinstance(item, Scalar) and isinstance(item.value, str):
+                found.append(item.value)
+            else:
+                self.problem("wrong-kind", f"{key} of {self.what} must be names", item.place)
+        return found
+
+    def yes(self, key: str) -> bool:
+        """A truth value; no where the key is left out."""
+        node = self.node(key)
+        if node is None:
+            return False
+        if isinstance(node, Scalar) and isinstance(node.value, bool):
+            return node.value
+        self.problem("wrong-kind", f"{key} of {self.what} must be true or false", node.place)
+        return False
 
     def items(self, key: str) -> Iterator[Node]:
         """The nodes of a list; none where the key is left out."""

@@ -23,21 +23,43 @@ def build_frame(
     Raises:
         ValueError: the message has no such form, or a value cannot be said.
     """
+    refusal = f"no {direction} of {command.name} has the fields {', '.join(values)}"
+    data = None
     for form in command.forms(direction):
-        if [field.name for field in form] == list(values):
-            break
-    else:
-        raise ValueError(f"no {direction} of {command.name} has the fields {', '.join(values)}")
-    data = b"".join(_field(field, values) for field in form)
-    return frame.header + bytes([2 + len(data), command.id]) + data + frame.footer
+        if data is None and [field.name for field in form] == list(values):
+            try:
+                data = b"".join(_field(field, values) for field in form)
+            except ValueError as error:
+                refusal = str(error)
+    if data is None:
+        raise ValueError(refusal)
+    start = frame.header + bytes(member.value for member in frame.addresses[:1])
+    body = start + bytes([1 + len(data) + frame.check_size, command.id]) + data
+    return body + _check(frame, body, len(data))
+
+
+def _check(frame: Frame, body: bytes, data_size: int) -> bytes:
+    if frame.check == "footer":
+        return frame.footer
+    if frame.check == "sum":
+        return bytes([sum(body[len(body) - data_size - 1 :]) % 256])
+    # CRC-16/MODBUS as polynomial division, bit by bit.
+    remainder = 0xFFFF
+    for byte in body:
+        for bit in range(8):
+            carry = (remainder ^ byte >> bit) & 1
+            remainder = remainder >> 1 ^ (0xA001 if carry else 0)
+    return bytes([remainder >> 8, remainder & 0xFF])
 
 
 def _field(field: Field, values: dict[str, object]) -> bytes:
-    type = field.type
+    type, value = field.type, values[field.name]
     if field.by:
-        picked = values[field.by]
+        picked = str(values[field.by])
         type = next((case for member, case in field.cases if member.name == picked), field.type)
-    return say(type, field.name, values[field.name])
+    if field.const is not None and value != field.const:
+        raise ValueError(f"{field.name} is always {field.const}")
+    return say(type, field.name, value)
 
 
 def say(type: Type, name: str, value: object) -> bytes:
@@ -64,6 +86,8 @@ def _quantity(type: Quantity, name: str, value: object) -> bytes:
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
         raise ValueError(f"{name} must be a number")
     whole = Fraction(value) / type.scale
+    if type.choices and whole not in type.choices:
+        raise ValueError(f"{name} is {value}, none of {', '.join(map(str, type.choices))}")
     lowest, highest = type.bounds
     if not lowest <= whole <= highest:
         raise ValueError(

@@ -1,209 +1,74 @@
-//! Values to bytes.
-//!
-//! A real value becomes the nearest whole number of the wire's steps, a tie the even one; the
-//! arithmetic is IEEE double, step by step as in the reference, so that the bytes are the same.
+//! Values to bytes: which form takes the values, and the frame around them.
 
-use crate::error::{BadValue, EncodeError, ValueFault};
-use crate::field::{Field, Number, Order};
-use crate::given::{Given, Row, Unread};
-use crate::table::{Command, Direction, FrameFormat, Layout};
+use crate::error::EncodeError;
+use crate::frame::FrameFormat;
+use crate::given::{Given, Row};
+use crate::table::{Command, Direction, Layout};
+use crate::write::Writer;
 
-/// Build one whole frame; the number of `values` picks the form of the message.
+/// What a caller can settle besides the values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Choice {
+    /// Only the form with this index; `None`: the first that takes the values.
+    pub form: Option<usize>,
+    /// The address byte; `None`: the format's first, if it has any.
+    pub address: Option<u8>,
+}
+
+/// Build one whole frame, of the first form with that number of fields that takes the values.
 ///
 /// # Errors
-/// There is no such form, or a value is not allowed: then it is the leftmost one.
+/// The format has no such address, there is no such form, or a value is not allowed: then it is
+/// the leftmost one, of the first form with that number of fields.
 pub fn encode<V: Given>(
     frame: &FrameFormat,
     command: &Command,
     direction: Direction,
     values: &V::Row,
+    choice: Choice,
 ) -> Result<Vec<u8>, EncodeError<V>> {
-    let mut layouts = command.layouts(direction).iter().enumerate();
-    let (index, layout) = layouts
-        .find(|(_, layout)| layout.fields().len() == values.count())
-        .ok_or(EncodeError::Form)?;
-    let length = frame.length(layout.size());
-    let mut bytes = Vec::with_capacity(length + 3);
-    bytes.extend_from_slice(&frame.header);
-    // That LEN fits a byte is checked when the table is made.
-    bytes.push(u8::try_from(length).map_err(|_| EncodeError::Form)?);
-    bytes.push(command.id);
-    Encoder {
-        index,
-        layout,
-        values,
-        bytes: &mut bytes,
+    let address = choice.address.or(frame.addresses.first().copied());
+    if address.is_some_and(|address| !frame.addresses.contains(&address)) {
+        return Err(EncodeError::Address);
     }
-    .fields()?;
-    bytes.push(frame.footer);
-    Ok(bytes)
-}
-
-struct Encoder<'a, V: Given> {
-    index: usize,
-    layout: &'a Layout,
-    values: &'a V::Row,
-    bytes: &'a mut Vec<u8>,
-}
-
-/// Where in a layout a value goes.
-#[derive(Clone, Copy)]
-struct Place<'a> {
-    index: usize,
-    field: &'a Field,
-    case: usize,
-    element: Option<usize>,
-}
-
-impl<V: Given> Encoder<'_, V> {
-    fn fields(&mut self) -> Result<(), EncodeError<V>> {
-        for (index, field) in self.layout.fields().iter().enumerate() {
-            let case = self.case(field)?;
-            let value = self.values.at(index).ok_or(EncodeError::Form)?;
-            self.field(
-                Place {
-                    index,
-                    field,
-                    case,
-                    element: None,
-                },
-                value,
-            )?;
+    let count = values.count();
+    let mut refusal = None;
+    for (index, layout) in command.layouts(direction).iter().enumerate() {
+        if layout.fields().len() != count || choice.form.is_some_and(|form| form != index) {
+            continue;
         }
-        Ok(())
-    }
-
-    /// The index of the case that the field's selector picks.
-    fn case(&self, field: &Field) -> Result<usize, EncodeError<V>> {
-        let Some((index, selector, number)) = self.layout.selector(field) else {
-            return Ok(0);
-        };
-        let place = Place {
+        let mut bytes = start(frame, command, address, layout).ok_or(EncodeError::Form)?;
+        let writer = Writer {
             index,
-            field: selector,
-            case: 0,
-            element: None,
+            layout,
+            values,
+            bytes: &mut bytes,
         };
-        let value = || self.values.at(index).ok_or(EncodeError::Form);
-        let picked = self.checked(place, number, value()?)?;
-        match field.case(picked) {
-            Some(case) => Ok(case),
-            None => Err(self.refuse(place, ValueFault::Choice, value()?)),
+        match writer.fields() {
+            Ok(()) => {
+                frame.check.end(&mut bytes, frame.overhead());
+                return Ok(bytes);
+            }
+            Err(EncodeError::Value(bad)) => refusal = refusal.or(Some(bad)),
+            Err(error) => return Err(error),
         }
     }
-
-    fn field(&mut self, place: Place<'_>, value: V) -> Result<(), EncodeError<V>> {
-        let numbers = place.field.numbers(place.case);
-        match numbers {
-            [number] if !place.field.many => self.number(place, number, value),
-            _ => self.row(place, numbers, value),
-        }
-    }
-
-    fn row(&mut self, place: Place<'_>, all: &[Number], value: V) -> Result<(), EncodeError<V>> {
-        let row = match value.row() {
-            Ok(row) => row,
-            Err(unread) => return Err(self.unread(place, unread, value)),
-        };
-        if row.count() != all.len() {
-            return Err(self.refuse(place, ValueFault::Count, row.into_value()));
-        }
-        for (element, number) in all.iter().enumerate() {
-            let value = row.at(element).ok_or(EncodeError::Form)?;
-            self.number(
-                Place {
-                    element: Some(element),
-                    ..place
-                },
-                number,
-                value,
-            )?;
-        }
-        Ok(())
-    }
-
-    fn number(
-        &mut self,
-        place: Place<'_>,
-        number: &Number,
-        value: V,
-    ) -> Result<(), EncodeError<V>> {
-        let whole = self.checked(place, number, value)?;
-        write(self.bytes, number, whole);
-        Ok(())
-    }
-
-    /// The whole number on the wire for one value.
-    fn checked(&self, place: Place<'_>, number: &Number, value: V) -> Result<i64, EncodeError<V>> {
-        match read(place.field, number, &value) {
-            Ok(whole) => Ok(whole),
-            Err(unread) => Err(self.unread(place, unread, value)),
-        }
-    }
-
-    fn unread(&self, place: Place<'_>, unread: Unread<V::Error>, value: V) -> EncodeError<V> {
-        match unread {
-            Unread::Fault(fault) => self.refuse(place, fault, value),
-            Unread::Beyond => self.refuse(place, outside(place.field), value),
-            Unread::Foreign(error) => EncodeError::Foreign(error),
-        }
-    }
-
-    fn refuse(&self, place: Place<'_>, fault: ValueFault, value: V) -> EncodeError<V> {
-        EncodeError::Value(BadValue {
-            layout: self.index,
-            field: place.index,
-            case: place.case,
-            element: place.element,
-            fault,
-            value,
-        })
-    }
+    Err(refusal.map_or(EncodeError::Form, EncodeError::Value))
 }
 
-fn read<V: Given>(field: &Field, number: &Number, value: &V) -> Result<i64, Unread<V::Error>> {
-    let whole = if number.scaled() {
-        steps(number, value.real()?)?
-    } else {
-        value.whole(field.flag)?
-    };
-    if field.allows(number, whole) {
-        Ok(whole)
-    } else {
-        Err(Unread::Fault(outside(field)))
-    }
-}
-
-/// What is wrong with a whole number that the field does not allow.
-fn outside(field: &Field) -> ValueFault {
-    if field.choices.is_empty() {
-        ValueFault::Range
-    } else {
-        ValueFault::Choice
-    }
-}
-
-/// The nearest whole number of the wire's steps. The casts to double are exact, as the table is
-/// checked for.
-fn steps<E>(number: &Number, real: f64) -> Result<i64, Unread<E>> {
-    if !real.is_finite() {
-        return Err(Unread::Fault(ValueFault::NotFinite));
-    }
-    let steps = real * number.divide as f64 / number.multiply as f64;
-    // Before rounding: a step count beyond the bounds by one or more has no whole number to be.
-    let (below, above) = ((number.minimum - 1) as f64, (number.maximum + 1) as f64);
-    if below < steps && steps < above {
-        Ok(steps.round_ties_even() as i64)
-    } else {
-        Err(Unread::Fault(ValueFault::Range))
-    }
-}
-
-/// The lowest bytes of a whole number; a negative one is its two's complement.
-fn write(bytes: &mut Vec<u8>, number: &Number, whole: i64) {
-    let word = match number.order {
-        Order::Big => (whole << (64 - 8 * number.width)).to_be_bytes(),
-        Order::Little => whole.to_le_bytes(),
-    };
-    bytes.extend(word.iter().take(number.width));
+/// A frame up to its id.
+fn start(
+    frame: &FrameFormat,
+    command: &Command,
+    address: Option<u8>,
+    layout: &Layout,
+) -> Option<Vec<u8>> {
+    let length = frame.length(layout.size());
+    let mut bytes = Vec::with_capacity(frame.overhead() + length);
+    bytes.extend_from_slice(&frame.header);
+    bytes.extend(address);
+    // That LEN fits a byte is checked when the table is made.
+    bytes.push(u8::try_from(length).ok()?);
+    bytes.push(command.id);
+    Some(bytes)
 }

@@ -8,12 +8,14 @@ use crate::given::Given;
 pub enum Reason {
     /// The header is not there.
     NoHeader,
+    /// The address byte is none of the format's.
+    BadAddress,
     /// LEN is not legal, or not with that id.
     BadLength,
     /// The table lacks the id.
     UnknownId,
-    /// The byte that LEN points at is not the footer.
-    BadFooter,
+    /// The footer, CRC or sum that LEN points at is wrong.
+    BadCheck,
     /// The bytes end before the frame does.
     Truncated,
     /// Bytes follow the frame; only [`crate::decode`] minds.
@@ -22,11 +24,12 @@ pub enum Reason {
 
 impl Reason {
     /// Every reason; `reason as usize` is its place here.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::NoHeader,
+        Self::BadAddress,
         Self::BadLength,
         Self::UnknownId,
-        Self::BadFooter,
+        Self::BadCheck,
         Self::Truncated,
         Self::Trailing,
     ];
@@ -36,9 +39,10 @@ impl Reason {
     pub fn word(self) -> &'static str {
         match self {
             Self::NoHeader => "no-header",
+            Self::BadAddress => "bad-address",
             Self::BadLength => "bad-length",
             Self::UnknownId => "unknown-id",
-            Self::BadFooter => "bad-footer",
+            Self::BadCheck => "bad-check",
             Self::Truncated => "truncated",
             Self::Trailing => "trailing",
         }
@@ -94,7 +98,9 @@ pub struct BadValue<V> {
 /// Why nothing was encoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EncodeError<V: Given> {
-    /// The command has no form with that many fields in that direction.
+    /// The frame format has no such address.
+    Address,
+    /// The command has no form with that many fields in that direction, or it is not the one chosen.
     Form,
     /// A value is not allowed.
     Value(BadValue<V>),

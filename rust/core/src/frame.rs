@@ -1,24 +1,74 @@
-//! A borrowed view of one valid frame.
+//! How frames are built, and a borrowed view of one valid frame.
 
-/// Bytes of a frame that LEN does not count: the header and LEN itself.
-pub const OVERHEAD: usize = 3;
+use crate::check::Check;
 
-/// Bytes of a frame before its data: header, LEN and id.
-pub(crate) const PREFIX: usize = OVERHEAD + 1;
+/// `header [address] LEN CMD DATA check`; LEN counts CMD, DATA and check.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FrameFormat {
+    /// How a frame starts.
+    pub header: [u8; 2],
+    /// The legal address bytes, first the one that is sent unless the caller says otherwise; empty:
+    /// a frame has none.
+    pub addresses: Vec<u8>,
+    /// How it ends.
+    pub check: Check,
+    /// The largest LEN that is believed of an id that the table lacks.
+    pub maximum_length: i64,
+}
+
+impl FrameFormat {
+    /// LEN of a frame with that many data bytes.
+    #[must_use]
+    pub fn length(&self, data_size: usize) -> usize {
+        data_size.saturating_add(1 + self.check.size())
+    }
+
+    /// Where LEN stands in a frame. CMD stands behind it.
+    #[inline]
+    #[must_use]
+    pub fn length_at(&self) -> usize {
+        self.header.len() + usize::from(!self.addresses.is_empty())
+    }
+
+    /// Bytes of a frame that LEN does not count: header, address and LEN itself.
+    #[inline]
+    #[must_use]
+    pub fn overhead(&self) -> usize {
+        self.length_at() + 1
+    }
+
+    /// The address byte of a frame.
+    #[must_use]
+    pub fn address(&self, frame: Frame<'_>) -> Option<u8> {
+        let [_, _, address, ..] = *frame.bytes else {
+            return None;
+        };
+        (!self.addresses.is_empty()).then_some(address)
+    }
+
+    /// The data bytes of a frame, between id and check.
+    #[must_use]
+    pub fn data<'a>(&self, frame: Frame<'a>) -> &'a [u8] {
+        let end = frame.bytes.len().saturating_sub(self.check.size());
+        let data = frame.bytes.get(self.overhead() + 1..end);
+        data.unwrap_or_default()
+    }
+}
 
 /// One whole frame. Only [`crate::Rules::judge`] makes them, so having one means that it is legal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     bytes: &'a [u8],
+    length: u8,
     id: u8,
 }
 
 impl<'a> Frame<'a> {
-    pub(crate) fn new(bytes: &'a [u8], id: u8) -> Self {
-        Self { bytes, id }
+    pub(crate) fn new(bytes: &'a [u8], length: u8, id: u8) -> Self {
+        Self { bytes, length, id }
     }
 
-    /// All of it, from header to footer.
+    /// All of it, from header to check.
     #[must_use]
     pub fn bytes(self) -> &'a [u8] {
         self.bytes
@@ -30,16 +80,9 @@ impl<'a> Frame<'a> {
         self.id
     }
 
-    /// LEN: the bytes from the id to the footer.
+    /// LEN: the bytes from the id to the end.
     #[must_use]
     pub fn length(self) -> u8 {
-        self.bytes.get(2).copied().unwrap_or_default()
-    }
-
-    /// The data bytes, between id and footer.
-    #[must_use]
-    pub fn data(self) -> &'a [u8] {
-        let end = self.bytes.len().saturating_sub(1);
-        self.bytes.get(PREFIX..end).unwrap_or_default()
+        self.length
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! The law: at position i a frame stands or the byte at i is noise; a candidate is refuted by the
 //! first byte that refutes it, and the scan goes on at i + 1, never skipping what a false header
-//! claimed; a candidate that more bytes could complete waits. Judging a position takes constant
-//! time and no position is refuted twice, so the work is linear whatever the input.
+//! claimed; a candidate that more bytes could complete waits. Judging a position takes at
+//! most one look at the longest frame (for its CRC or sum, once all its bytes are there) and no
+//! position is refuted twice, so the work is linear whatever the input.
 
 use std::mem;
 

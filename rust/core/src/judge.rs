@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::error::Reason;
-use crate::frame::{Frame, OVERHEAD};
+use crate::frame::{Frame, FrameFormat};
 use crate::legal::{Form, Legal, has, mark};
-use crate::table::{Command, Direction, FrameFormat};
+use crate::table::{Command, Direction};
 
 /// What the bytes at a position are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +16,13 @@ pub enum Verdict<'a> {
     Refuted(Reason),
     /// More bytes could still make it a frame.
     Waits,
+}
+
+/// What a candidate says of itself, once so much of it is there.
+#[derive(Clone, Copy)]
+pub(crate) struct Claim {
+    pub(crate) length: u8,
+    pub(crate) id: u8,
 }
 
 /// The legal frames, and whether ids that the table lacks are believed.
@@ -44,48 +51,69 @@ impl Rules {
     #[must_use]
     pub fn accepting_unknown(mut self) -> Self {
         self.accept_unknown = true;
-        // An id and a footer at least: that is LEN 2.
-        (2..=self.frame.maximum_length.min(255))
-            .filter_map(|length| usize::try_from(length).ok())
-            .for_each(|length| mark(&mut self.lengths, length));
+        let most = usize::try_from(self.frame.maximum_length.min(255)).unwrap_or_default();
+        (self.frame.length(0)..=most).for_each(|length| mark(&mut self.lengths, length));
         self
     }
 
-    /// Which message a frame is; `None` if the table lacks its id.
+    /// Which messages a frame can be, those with precedence first; none if the table lacks its id.
     #[must_use]
-    pub fn form(&self, frame: Frame<'_>) -> Option<Form> {
-        self.legal.form(frame.id(), frame.length())
+    pub fn forms(&self, frame: Frame<'_>) -> &[Form] {
+        self.legal.forms(frame.id(), frame.length())
+    }
+
+    /// The same of a frame that is not yet known to be one.
+    pub(crate) fn claimed(&self, claim: Claim) -> &[Form] {
+        self.legal.forms(claim.id, claim.length)
     }
 
     /// Bytes of the longest frame that can stand.
     #[must_use]
     pub fn longest(&self) -> usize {
-        OVERHEAD
-            + self
-                .lengths
-                .iter()
-                .rposition(|legal| *legal)
-                .unwrap_or_default()
+        let length = self.lengths.iter().rposition(|legal| *legal);
+        self.frame.overhead() + length.unwrap_or_default()
     }
 
-    /// Whether a frame stands at the start of `rest`. Takes the same time whatever the bytes.
+    /// Whether a frame stands at the start of `rest`. Takes no longer than reading the longest
+    /// frame once, whatever the bytes.
     #[inline]
     #[must_use]
     pub fn judge<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
+        match self.claim(rest) {
+            Err(reason) => Verdict::Refuted(reason),
+            Ok(None) => Verdict::Waits,
+            Ok(Some(claim)) => self.judge_body(rest, claim),
+        }
+    }
+
+    /// What a candidate there claims; `None`: so many bytes are not there yet.
+    #[inline]
+    pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
         let [first, second] = self.frame.header;
-        match *rest {
-            [byte, ..] if byte != first => Verdict::Refuted(Reason::NoHeader),
-            [_, byte, ..] if byte != second => Verdict::Refuted(Reason::NoHeader),
-            [_, _, length, ..] if !has(&self.lengths, length) => {
-                Verdict::Refuted(Reason::BadLength)
+        match rest {
+            [byte, ..] if *byte != first => Err(Reason::NoHeader),
+            [_, byte, ..] if *byte != second => Err(Reason::NoHeader),
+            [_, _, behind @ ..] if self.frame.addresses.is_empty() => self.claim_behind(behind),
+            [_, _, address, ..] if !self.frame.addresses.contains(address) => {
+                Err(Reason::BadAddress)
             }
-            [_, _, length, id, ..] => self.judge_body(rest, length, id),
-            _ => Verdict::Waits,
+            [_, _, _, behind @ ..] => self.claim_behind(behind),
+            _ => Ok(None),
         }
     }
 
     #[inline]
-    fn judge_body<'a>(&self, rest: &'a [u8], length: u8, id: u8) -> Verdict<'a> {
+    fn claim_behind(&self, behind: &[u8]) -> Result<Option<Claim>, Reason> {
+        match *behind {
+            [length, ..] if !has(&self.lengths, length) => Err(Reason::BadLength),
+            [length, id, ..] => Ok(Some(Claim { length, id })),
+            _ => Ok(None),
+        }
+    }
+
+    #[inline]
+    fn judge_body<'a>(&self, rest: &'a [u8], claim: Claim) -> Verdict<'a> {
+        let Claim { length, id } = claim;
         if !self.legal.has(id, length) {
             if has(&self.legal.ids, id) {
                 return Verdict::Refuted(Reason::BadLength);
@@ -94,12 +122,12 @@ impl Rules {
                 return Verdict::Refuted(Reason::UnknownId);
             }
         }
-        match rest.get(..OVERHEAD + usize::from(length)) {
+        match rest.get(..self.frame.overhead() + usize::from(length)) {
             None => Verdict::Waits,
-            Some(bytes) if bytes.last() == Some(&self.frame.footer) => {
-                Verdict::Stands(Frame::new(bytes, id))
+            Some(bytes) if self.frame.check.holds(bytes, self.frame.overhead()) => {
+                Verdict::Stands(Frame::new(bytes, length, id))
             }
-            Some(_) => Verdict::Refuted(Reason::BadFooter),
+            Some(_) => Verdict::Refuted(Reason::BadCheck),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Which frames are legal: id and LEN, to the form of the message.
 
-use crate::table::{Command, Direction, FrameFormat};
+use crate::frame::FrameFormat;
+use crate::table::{Command, Direction};
 
 /// One form of one command's message in one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,11 +17,13 @@ pub struct Form {
 /// The legal frames by id and LEN.
 #[derive(Debug)]
 pub(crate) struct Legal {
-    /// A row for each id, a cell for each LEN up to the longest: 0, or 1 + the index of a form.
+    /// A row for each id, a cell for each LEN up to the longest: 0, or 1 + the index of a
+    /// group.
     /// Two bytes a cell and short rows, so that what a stream uses of it stays in the cache.
     cells: Vec<u16>,
     stride: usize,
-    forms: Vec<Form>,
+    /// The forms that share an id and a LEN: their values tell them apart, tried in this order.
+    groups: Vec<Vec<Form>>,
     pub(crate) ids: [bool; 256],
     pub(crate) lengths: [bool; 256],
 }
@@ -37,7 +40,7 @@ impl Legal {
         let mut legal = Self {
             cells: vec![0; 256 * stride],
             stride,
-            forms: Vec::new(),
+            groups: Vec::new(),
             ids: [false; 256],
             lengths: [false; 256],
         };
@@ -50,19 +53,23 @@ impl Legal {
     fn add(&mut self, id: u8, length: usize, form: Form) {
         mark(&mut self.ids, usize::from(id));
         mark(&mut self.lengths, length);
-        // Calls that share an id and a size read alike on the wire: the first one names it.
-        if let Some(cell @ 0) = self.cells.get_mut(usize::from(id) * self.stride + length) {
-            self.forms.push(form);
-            // There are fewer forms than ids x LENs, which is what the cell can count.
-            *cell = u16::try_from(self.forms.len()).unwrap_or_default();
+        let Some(cell) = self.cells.get_mut(usize::from(id) * self.stride + length) else {
+            return;
+        };
+        if let Some(group) = self.groups.get_mut(usize::from(*cell).wrapping_sub(1)) {
+            group.push(form);
+            return;
         }
+        self.groups.push(vec![form]);
+        // There are fewer groups than ids x LENs, which is what the cell can count.
+        *cell = u16::try_from(self.groups.len()).unwrap_or_default();
     }
 
-    /// The form with that id and LEN.
-    pub(crate) fn form(&self, id: u8, length: u8) -> Option<Form> {
-        self.forms
+    /// The forms with that id and LEN, those with precedence first.
+    pub(crate) fn forms(&self, id: u8, length: u8) -> &[Form] {
+        self.groups
             .get(usize::from(self.cell(id, length)).wrapping_sub(1))
-            .copied()
+            .map_or(&[], Vec::as_slice)
     }
 
     /// Whether there is one.

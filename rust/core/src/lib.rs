@@ -5,6 +5,7 @@
 //! I/O, looks at a clock or makes text: errors are a kind and a place. The Python reference in
 //! `python/cobotwire/codec/reference` is the specification; this crate gives the same answers.
 
+mod check;
 mod decode;
 mod encode;
 mod error;
@@ -14,17 +15,21 @@ mod framer;
 mod given;
 mod judge;
 mod legal;
+mod read;
 mod table;
+mod write;
 
-pub use decode::{Decoded, Value, decode};
-pub use encode::encode;
+pub use check::{Check, crc16_modbus};
+pub use decode::{Decoded, decode};
+pub use encode::{Choice, encode};
 pub use error::{
     BadRaw, BadValue, DecodeError, EncodeError, Misfit, Reason, TableError, ValueFault,
 };
 pub use field::{Case, Field, Number, Order};
-pub use frame::{Frame, OVERHEAD};
+pub use frame::{Frame, FrameFormat};
 pub use framer::{Event, Framer};
 pub use given::{Given, Row, Unread};
 pub use judge::{Rules, Verdict};
 pub use legal::Form;
-pub use table::{Command, Direction, FrameFormat, Layout, Listening, Table};
+pub use read::Value;
+pub use table::{Command, Direction, Layout, Listening, Table};

@@ -4,7 +4,9 @@
 
 use crate::error::{Misfit, TableError};
 use crate::field::{Field, Number};
+use crate::frame::FrameFormat;
 use crate::judge::Rules;
+use crate::legal::Form;
 
 /// Which way a message goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,25 +107,6 @@ impl Command {
     }
 }
 
-/// `header LEN CMD DATA footer`; LEN counts CMD, DATA and footer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FrameFormat {
-    /// How a frame starts.
-    pub header: [u8; 2],
-    /// How it ends.
-    pub footer: u8,
-    /// The largest LEN that is believed of an id that the table lacks.
-    pub maximum_length: i64,
-}
-
-impl FrameFormat {
-    /// LEN of a frame with that many data bytes.
-    #[must_use]
-    pub fn length(&self, data_size: usize) -> usize {
-        data_size.saturating_add(2)
-    }
-}
-
 /// One edition of the protocol, checked and with its legal frames indexed.
 #[derive(Clone, Debug)]
 pub struct Table {
@@ -169,6 +152,11 @@ impl Table {
     #[must_use]
     pub fn commands(&self) -> &[Command] {
         &self.commands
+    }
+
+    pub(crate) fn layout(&self, form: Form) -> Option<&Layout> {
+        let command = self.commands.get(form.command)?;
+        command.layouts(form.direction).get(form.layout)
     }
 
     /// What a listener takes for a frame.

@@ -1,17 +1,18 @@
 //! `NativeCodec`: the core behind `cobotwire.codec.interface.Codec`.
 
-use std::collections::HashMap;
-
-use cobotwire_core::{DecodeError, Direction, EncodeError, Form, Framer, Listening, Table, Value};
-use pyo3::exceptions::PyKeyError;
+use cobotwire_core::{
+    Choice, DecodeError, Decoded, Direction, EncodeError, Framer, Listening, Table,
+};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyString};
+use pyo3::types::PyBytes;
 
-use crate::framer::{NativeFramer, copied};
+use crate::framer::NativeFramer;
 use crate::given::Object;
 use crate::names::Names;
+use crate::objects::Commands;
 use crate::values::{objects, row};
-use crate::{convert, errors};
+use crate::words::{one_way, word};
+use crate::{convert, errors, words};
 
 /// One edition's encoder, decoder and framer.
 #[pyclass(frozen, module = "cobotwire._native")]
@@ -20,15 +21,7 @@ pub struct NativeCodec {
     #[pyo3(get)]
     table: Py<PyAny>,
     core: Table,
-    by_name: HashMap<String, usize>,
-    /// The Python objects of the table's commands, for messages and errors.
-    commands: Vec<Command>,
-}
-
-struct Command {
-    object: Py<PyAny>,
-    request: Vec<Py<PyAny>>,
-    reply: Vec<Py<PyAny>>,
+    commands: Commands,
 }
 
 #[pymethods]
@@ -36,19 +29,10 @@ impl NativeCodec {
     #[new]
     fn new(table: Bound<'_, PyAny>) -> PyResult<Self> {
         let (core, names) = convert::table(&table)?;
-        let mut by_name = HashMap::new();
-        for (index, name) in names.into_iter().enumerate() {
-            by_name.entry(name).or_insert(index);
-        }
-        let commands = table.getattr("commands")?.try_iter()?;
-        let commands = commands
-            .map(|command| Command::new(command?))
-            .collect::<PyResult<_>>()?;
         Ok(Self {
+            commands: Commands::new(&table, names)?,
             table: table.unbind(),
             core,
-            by_name,
-            commands,
         })
     }
 
@@ -58,26 +42,37 @@ impl NativeCodec {
         "native"
     }
 
-    /// Build one whole frame; the number of `values` picks the form of the message.
+    /// Build one whole frame, of the first form with that number of fields that takes `values`.
+    #[pyo3(signature = (command, direction, values, *, form = None, address = None))]
     fn encode<'py>(
         &self,
         command: &Bound<'py, PyAny>,
         direction: &Bound<'py, PyAny>,
         values: &Bound<'py, PyAny>,
+        form: Option<&Bound<'py, PyAny>>,
+        address: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let py = command.py();
-        let index = self.find(command)?;
+        let index = self.commands.find(&self.table, command)?;
         let way = one_way(direction)?;
-        let (Some(objects), Some(record)) =
-            (self.commands.get(index), self.core.commands().get(index))
-        else {
-            return Err(PyKeyError::new_err(index));
-        };
+        let objects = self.commands.get(index)?;
         let values = row(values)?;
-        match cobotwire_core::encode::<Object<'_>>(self.core.frame(), record, way, &values) {
+        let format = self.core.frame();
+        let address = address.map(|given| words::address(given, &self.table, &format.addresses));
+        let form = form.map(|given| words::form(given, objects.layouts(way).len()));
+        let choice = Choice {
+            address: address.transpose()?,
+            form: form.transpose()?,
+        };
+        let record = self.core.commands().get(index);
+        let encoded = record.map_or(Err(EncodeError::Form), |record| {
+            cobotwire_core::encode::<Object<'_>>(format, record, way, &values, choice)
+        });
+        match encoded {
             Ok(frame) => Ok(PyBytes::new(py, &frame)),
             Err(EncodeError::Foreign(error)) => Err(error),
-            Err(EncodeError::Form) => Err(errors::bad_form(
+            // The address was looked at above.
+            Err(EncodeError::Form | EncodeError::Address) => Err(errors::bad_form(
                 objects.object.bind(py),
                 direction,
                 values.0.len(),
@@ -89,18 +84,27 @@ impl NativeCodec {
     }
 
     /// Read `data`, which must be one whole frame and nothing else.
+    #[pyo3(signature = (direction, data, *, of = None))]
     fn decode<'py>(
         &self,
         direction: &Bound<'py, PyAny>,
         data: &Bound<'py, PyAny>,
+        of: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let of = of.map(|name| self.commands.find(&self.table, name));
+        let of = of.transpose()?;
         let way = one_way(direction)?;
-        let decoded = match data.cast::<PyBytes>() {
-            Ok(bytes) => cobotwire_core::decode(&self.core, way, bytes.as_bytes()),
-            Err(_) => cobotwire_core::decode(&self.core, way, &copied(data)?),
+        let copy;
+        let data = match data.cast_exact::<PyBytes>() {
+            Ok(bytes) => bytes,
+            Err(_) => {
+                let bytes = data.py().get_type::<PyBytes>();
+                copy = bytes.call1((data,))?.cast_into::<PyBytes>()?;
+                &copy
+            }
         };
-        match decoded {
-            Ok(decoded) => self.message(decoded.form, direction, &decoded.values),
+        match cobotwire_core::decode(&self.core, way, data.as_bytes(), of) {
+            Ok(decoded) => self.message(direction, &decoded),
             Err(error) => Err(self.refused(way, error, direction, data)?),
         }
     }
@@ -123,37 +127,21 @@ impl NativeCodec {
 }
 
 impl NativeCodec {
-    /// The index of the command with that name.
-    fn find(&self, name: &Bound<'_, PyAny>) -> PyResult<usize> {
-        if let Some(index) = word(name).and_then(|name| self.by_name.get(name)) {
-            return Ok(*index);
-        }
-        // The table says that there is none, and which name is nearest.
-        let found = self
-            .table
-            .bind(name.py())
-            .call_method1("command", (name,))?;
-        let place = self
-            .commands
-            .iter()
-            .position(|command| command.object.is(&found));
-        place.ok_or_else(|| PyKeyError::new_err((name.clone().unbind(),)))
-    }
-
     fn message<'py>(
         &self,
-        form: Form,
         direction: &Bound<'py, PyAny>,
-        values: &[Value],
+        decoded: &Decoded,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = direction.py();
-        let command = self.command(form.command)?;
+        let form = decoded.form;
+        let command = self.commands.get(form.command)?;
         let layout = command.layout(py, form.direction, form.layout)?;
         let items = (
             command.object.bind(py),
             direction,
             layout,
-            objects(py, values)?,
+            objects(py, &decoded.values)?,
+            decoded.address,
         );
         let names = Names::get(py)?;
         names.make(&names.message, items.into_pyobject(py)?)
@@ -165,7 +153,7 @@ impl NativeCodec {
         way: Direction,
         error: DecodeError,
         direction: &Bound<'_, PyAny>,
-        data: &Bound<'_, PyAny>,
+        data: &Bound<'_, PyBytes>,
     ) -> PyResult<PyErr> {
         let py = data.py();
         match error {
@@ -177,54 +165,10 @@ impl NativeCodec {
                 data,
             )),
             DecodeError::Raw(bad) => {
-                let command = self.command(bad.command)?;
+                let command = self.commands.get(bad.command)?;
                 let layout = command.layout(py, way, bad.layout)?;
                 Ok(errors::bad_raw(command.object.bind(py), layout, bad, data))
             }
         }
-    }
-
-    fn command(&self, index: usize) -> PyResult<&Command> {
-        self.commands
-            .get(index)
-            .ok_or_else(|| PyKeyError::new_err(index))
-    }
-}
-
-impl Command {
-    fn new(object: Bound<'_, PyAny>) -> PyResult<Self> {
-        Ok(Self {
-            request: object.getattr("request")?.extract()?,
-            reply: object.getattr("reply")?.extract()?,
-            object: object.unbind(),
-        })
-    }
-
-    fn layout<'py>(
-        &self,
-        py: Python<'py>,
-        direction: Direction,
-        index: usize,
-    ) -> PyResult<&Bound<'py, PyAny>> {
-        let layouts = match direction {
-            Direction::Request => &self.request,
-            Direction::Reply => &self.reply,
-        };
-        let layout = layouts
-            .get(index)
-            .ok_or_else(|| PyKeyError::new_err(index))?;
-        Ok(layout.bind(py))
-    }
-}
-
-fn word<'a>(given: &'a Bound<'_, PyAny>) -> Option<&'a str> {
-    given.cast::<PyString>().ok()?.to_str().ok()
-}
-
-fn one_way(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
-    match word(given) {
-        Some("request") => Ok(Direction::Request),
-        Some("reply") => Ok(Direction::Reply),
-        _ => Err(errors::bad_direction(given)),
     }
 }

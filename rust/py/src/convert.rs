@@ -1,6 +1,8 @@
 //! Reads a Python `Table`, attribute by attribute, into the core's.
 
-use cobotwire_core::{Case, Command, Field, FrameFormat, Layout, Misfit, Number, Order, Table};
+use cobotwire_core::{
+    Case, Check, Command, Field, FrameFormat, Layout, Misfit, Number, Order, Table,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -48,6 +50,8 @@ struct FrameRecord {
     header: Vec<u8>,
     footer: Vec<u8>,
     maximum_length: i64,
+    check: String,
+    addresses: Vec<u8>,
 }
 
 #[derive(FromPyObject)]
@@ -69,21 +73,22 @@ pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
 }
 
 fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
-    let FrameRecord {
-        header,
-        footer,
-        maximum_length,
-    } = record;
-    match (header.as_slice(), footer.as_slice()) {
-        (&[first, second], &[footer]) => Ok(FrameFormat {
-            header: [first, second],
-            footer,
-            maximum_length,
-        }),
-        _ => Err(PyValueError::new_err(
-            "table: the header is two bytes and the footer one",
-        )),
-    }
+    let refused = |what: &str| Err(PyValueError::new_err(format!("table: {what}")));
+    let &[first, second] = record.header.as_slice() else {
+        return refused("the header is two bytes");
+    };
+    let check = match (record.check.as_str(), record.footer.as_slice()) {
+        ("footer", &[footer]) => Check::Footer(footer),
+        ("crc16-modbus", []) => Check::Crc16Modbus,
+        ("sum", []) => Check::Sum,
+        _ => return refused("the check is a footer of one byte, crc16-modbus or sum"),
+    };
+    Ok(FrameFormat {
+        header: [first, second],
+        addresses: record.addresses,
+        check,
+        maximum_length: record.maximum_length,
+    })
 }
 
 fn command(record: CommandRecord) -> Command {

@@ -38,6 +38,12 @@ pub fn bad_direction(given: &Bound<'_, PyAny>) -> PyErr {
     raised(Names::get(py).and_then(|names| names.refuse_direction.bind(py).call1((given,))))
 }
 
+/// The error of an address that the frame format does not have.
+pub fn bad_address(given: &Bound<'_, PyAny>, addresses: &Bound<'_, PyAny>) -> PyErr {
+    let py = given.py();
+    raised(Names::get(py).and_then(|names| names.refuse_address.bind(py).call1((given, addresses))))
+}
+
 /// The error of a number on the wire that its field does not allow.
 pub fn bad_raw(
     command: &Bound<'_, PyAny>,

@@ -1,6 +1,6 @@
 //! The core's events as Python's `Frame` and `Noise`.
 
-use cobotwire_core::{Event, Reason};
+use cobotwire_core::{Event, Frame, Reason};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 
@@ -36,7 +36,7 @@ impl<'py> Events<'py> {
 
     fn try_add(&self, event: Event<'_>) -> PyResult<()> {
         self.list.append(match event {
-            Event::Frame { offset, frame } => self.frame(offset, frame.bytes())?,
+            Event::Frame { offset, frame } => self.frame(offset, frame)?,
             Event::Noise {
                 offset,
                 reason,
@@ -45,9 +45,9 @@ impl<'py> Events<'py> {
         })
     }
 
-    fn frame(&self, offset: u64, bytes: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+    fn frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<Bound<'py, PyAny>> {
         let py = self.list.py();
-        let items = (offset, PyBytes::new(py, bytes)).into_pyobject(py)?;
+        let items = (offset, PyBytes::new(py, frame.bytes()), frame.id()).into_pyobject(py)?;
         self.names.make(&self.names.frame, items)
     }
 

@@ -12,7 +12,9 @@ mod events;
 mod framer;
 mod given;
 mod names;
+mod objects;
 mod values;
+mod words;
 
 #[pymodule]
 mod _native {

@@ -1,16 +1,20 @@
-"""An edition file, and through it every other file of the edition."""
+"""An edition file, and through it every other file of the edition and of its base."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from cobotwire_codegen.build.commands import build_family
+from cobotwire_codegen.build.delta import apply_changes
+from cobotwire_codegen.build.frame import build_frame_format
+from cobotwire_codegen.build.parts import Files, Parts, add_own
 from cobotwire_codegen.build.types import Types
-from cobotwire_codegen.build.vectors import build_errata, build_vectors
+from cobotwire_codegen.build.vectors import build_erratum, build_vector
 from cobotwire_codegen.errors import Problem, SpecError
-from cobotwire_codegen.load import Node, Scalar, load
-from cobotwire_codegen.model import Edition, Family, Frame, Vector
+from cobotwire_codegen.model import Edition
 from cobotwire_codegen.reader import Reader
+
+_OWN = ("edition", "class", "title", "doc", "document", "firmware")
 
 
 def build_edition(path: Path, root: Path) -> Edition:
@@ -20,16 +24,42 @@ def build_edition(path: Path, root: Path) -> Edition:
         SpecError: with every problem that reading found.
     """
     problems: list[Problem] = []
-    files = _Files(path, root, problems)
+    reader, parts = _collect(path, root, problems, ())
+    edition = _build(reader, parts, problems)
+    if problems:
+        raise SpecError(problems)
+    return edition
+
+
+def _collect(
+    path: Path, root: Path, problems: list[Problem], above: tuple[Path, ...]
+) -> tuple[Reader, Parts]:
+    """The parts of an edition: the base's, changed by the delta, with the edition's own."""
+    files = Files(path.parent, root, problems)
     reader = Reader(files.load(path), "the edition", problems)
-    frame = _frame(files.named(reader, "frame"), problems)
-    types = Types(files.named(reader, "types"), problems)
-    families: list[Family] = []
-    for node in files.listed(reader, "commands"):
-        families.append(build_family(node, types, frame.deadline_ms, problems))
-    vectors: list[Vector] = []
-    for node in files.listed(reader, "vectors"):
-        vectors.extend(build_vectors(node, problems))
+    base = reader.node("base")
+    parts = Parts()
+    if base is not None:
+        above = (*above, path.resolve())
+        base_path = files.path(base)
+        if base_path.resolve() in above:
+            problem = Problem(base.place, "base-circle", "an edition cannot stand on itself")
+            raise SpecError([*problems, problem])
+        base_reader, parts = _collect(base_path, root, problems, above)
+        for key in _OWN:
+            base_reader.node(key)
+        base_reader.done()
+        # The base's errata speak of the base's document; its changes are its own story.
+        parts.errata, parts.changes, parts.general_changes = [], {}, []
+        for node in files.listed(reader, "changes"):
+            apply_changes(parts, node, problems)
+    add_own(parts, reader, files)
+    return reader, parts
+
+
+def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
+    frame = build_frame_format(parts, reader, problems)
+    types = Types(parts.types, problems)
     edition = Edition(
         place=reader.place,
         name=reader.text("edition"),
@@ -37,73 +67,20 @@ def build_edition(path: Path, root: Path) -> Edition:
         title=reader.text("title"),
         doc=reader.text("doc"),
         document=reader.text("document", ""),
-        joints=reader.integer("joints"),
+        firmware=reader.text("firmware", ""),
+        base=reader.text("base", "").rpartition("/")[2].removesuffix(".yaml"),
+        joints=parts.joints or 0,
         frame=frame,
         wires=tuple(types.wires.values()),
         types=tuple(types.types.values()),
-        families=tuple(families),
-        errata=build_errata(files.named(reader, "errata"), problems),
-        vectors=tuple(vectors),
+        families=tuple(
+            build_family(family, parts, types, frame.deadline_ms, problems)
+            for family in parts.families.values()
+            if family.commands
+        ),
+        errata=tuple(build_erratum(node, problems) for node in parts.errata),
+        vectors=tuple(build_vector(node, problems) for node in parts.vectors),
+        changes=tuple(parts.general_changes),
     )
     reader.done()
-    if problems:
-        raise SpecError(problems)
     return edition
-
-
-class _Files:
-    """Loads the files that an edition names, relative to the edition's own."""
-
-    def __init__(self, edition: Path, root: Path, problems: list[Problem]) -> None:
-        self._folder = edition.parent
-        self._root = root
-        self._problems = problems
-
-    def load(self, path: Path) -> Node:
-        path = path.resolve()
-        root = self._root.resolve()
-        shown = path.relative_to(root) if path.is_relative_to(root) else path
-        return load(path, shown.as_posix())
-
-    def named(self, reader: Reader, key: str) -> Node:
-        node = reader.required(key)
-        return self._at(node) if node is not None else Scalar(reader.place, None)
-
-    def listed(self, reader: Reader, key: str) -> list[Node]:
-        return [self._at(node) for node in reader.items(key)]
-
-    def _at(self, node: Node) -> Node:
-        name = node.value if isinstance(node, Scalar) else None
-        if not isinstance(name, str) or not (self._folder / name).is_file():
-            raise SpecError(
-                [*self._problems, Problem(node.place, "no-file", f"there is no file {name}")]
-            )
-        return self.load(self._folder / name)
-
-
-def _frame(root: Node, problems: list[Problem]) -> Frame:
-    reader = Reader(root, "the frame file", problems)
-    frame = Reader(reader.required("frame") or root, "the frame", problems)
-    link = Reader(reader.required("link") or root, "the link", problems)
-    counts = frame.texts("length_counts")
-    if counts != ("command", "data", "footer"):
-        frame.problem("bad-frame", "length_counts must be [command, data, footer]")
-    frame.lines("source")
-    for word in ("data_bits", "stop_bits"):
-        link.integer(word)
-    link.one_of("parity", ("none", "even", "odd"))
-    link.lines("source")
-    built = Frame(
-        place=frame.place,
-        header=frame.bytes("header") or b"",
-        footer=frame.bytes("footer") or b"",
-        maximum_data=frame.integer("maximum_data"),
-        doc=frame.text("doc"),
-        baudrate=link.integer("baudrate"),
-        deadline_ms=link.integer("deadline_ms"),
-    )
-    if len(built.header) != 2 or len(built.footer) != 1:
-        frame.problem("bad-frame", "the header has two bytes and the footer one")
-    for part in (frame, link, reader):
-        part.done()
-    return built

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 
+from cobotwire_codegen.build.parts import Named
 from cobotwire_codegen.errors import Place, Problem, nearest
 from cobotwire_codegen.load import Node, Scalar
 from cobotwire_codegen.model import (
@@ -25,28 +27,27 @@ from cobotwire_codegen.reader import Reader
 def stand_in(place: Place) -> Quantity:
     """A harmless type in the place of one that is wrong, so that reading can go on."""
     wire = Wire(place, "byte", 1, "big", 255, "", (), ())
-    return Quantity(place, "", wire, Fraction(1), "", None, "", (), ())
+    return Quantity(place, "", wire, Fraction(1), "", None, (), False, "", (), ())
 
 
 class Types:
     """Every type of an edition by name; looking one up that is not there is a problem."""
 
-    def __init__(self, root: Node, problems: list[Problem]) -> None:
+    def __init__(self, sections: dict[str, Named], problems: list[Problem]) -> None:
         self._problems = problems
-        self.wires: dict[str, Wire] = {}
+        self.wires = {
+            name: self._wire(name, place, node) for name, (place, node) in sections["wire"].items()
+        }
         self.types: dict[str, Type] = {}
-        reader = Reader(root, "the types file", problems)
-        for name, place, node in reader.entries("wire"):
-            self.wires[name] = self._wire(name, place, node)
-        for name, place, node in reader.entries("quantities"):
-            self._add(name, place, self._quantity(name, place, node))
-        for name, place, node in reader.entries("flags"):
-            self._add(name, place, self._flag(name, place, node))
-        for name, place, node in reader.entries("enums"):
-            self._add(name, place, self._enum(name, place, node))
-        for name, place, node in reader.entries("values"):
-            self._add(name, place, self._value(name, place, node))
-        reader.done()
+        makers: tuple[tuple[str, Callable[[str, Place, Node], Type]], ...] = (
+            ("quantities", self._quantity),
+            ("flags", self._flag),
+            ("enums", self._enum),
+            ("values", self._value),
+        )
+        for section, make in makers:
+            for name, (place, node) in sections[section].items():
+                self.types[name] = make(name, place, node)
 
     def find(self, name: str, place: Place) -> Type:
         """The type called ``name``."""
@@ -55,14 +56,6 @@ class Types:
         hint = nearest(name, self.types)
         self._problems.append(Problem(place, "unknown-type", f"there is no type {name}{hint}"))
         return stand_in(place)
-
-    def _add(self, name: str, place: Place, type: Type) -> None:
-        if name in self.types:
-            first = self.types[name].place
-            self._problems.append(
-                Problem(place, "duplicate-type", f"{name} is a type already, at {first}")
-            )
-        self.types[name] = type
 
     def _wire(self, name: str, place: Place, node: Node) -> Wire:
         reader = Reader(node, f"the wire type {name}", self._problems)
@@ -107,12 +100,29 @@ class Types:
             reader.fraction("scale", Fraction(1)),
             reader.one_of("unit", UNITS, ""),
             reader.range("range"),
+            self._choices(reader),
+            reader.one_of("shown_in", ("radian",), "") == "radian",
             reader.text("doc"),
             reader.lines("source"),
             disputes(reader),
         )
+        if quantity.choices and (quantity.range is not None or quantity.scale != 1):
+            reader.problem("bad-choices", f"{name} has choices: it takes no range and no scale")
+        if quantity.radians and quantity.unit != "degree":
+            reader.problem("bad-unit", f"{name} is shown in radians: its unit must be degree")
         reader.done()
         return quantity
+
+    def _choices(self, reader: Reader) -> tuple[int, ...]:
+        found = []
+        for node in reader.items("choices"):
+            value = node.value if isinstance(node, Scalar) else None
+            if isinstance(value, int) and not isinstance(value, bool):
+                found.append(value)
+            else:
+                message = f"choices of {reader.what} must be whole numbers"
+                reader.problem("wrong-kind", message, node.place)
+        return tuple(found)
 
     def _flag(self, name: str, place: Place, node: Node) -> Flag:
         reader = Reader(node, f"the flag {name}", self._problems)
@@ -163,20 +173,25 @@ def disputes(reader: Reader) -> tuple[Dispute, ...]:
     found = []
     for node in reader.items("disputed"):
         inner = Reader(node, f"a dispute of {reader.what}", reader.problems)
-        evidence = []
-        for item in inner.items("evidence"):
-            source = Reader(item, "a piece of evidence", reader.problems)
-            evidence.append(Evidence(source.text("source"), source.lines("lines"), source.text("says")))
-            source.done()
         dispute = Dispute(
             node.place,
             inner.text("claim"),
             inner.text("reading"),
             inner.one_of("confidence", CONFIDENCE),
-            tuple(evidence),
+            evidence(inner),
         )
         inner.done()
-        if not evidence:
+        if not dispute.evidence:
             inner.problem("no-evidence", "a disputed fact must carry its evidence")
         found.append(dispute)
+    return tuple(found)
+
+
+def evidence(reader: Reader) -> tuple[Evidence, ...]:
+    """The ``evidence`` list of a dispute or change."""
+    found = []
+    for node in reader.items("evidence"):
+        inner = Reader(node, "a piece of evidence", reader.problems)
+        found.append(Evidence(inner.text("source"), inner.lines("lines"), inner.text("says")))
+        inner.done()
     return tuple(found)

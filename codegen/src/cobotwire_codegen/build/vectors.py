@@ -10,15 +10,8 @@ from cobotwire_codegen.model import ERRATUM_KINDS, VERDICTS, Erratum, Vector
 from cobotwire_codegen.reader import Reader
 
 
-def build_errata(root: Node, problems: list[Problem]) -> tuple[Erratum, ...]:
-    """The errata file."""
-    reader = Reader(root, "the errata file", problems)
-    errata = [_erratum(node, problems) for node in reader.items("errata")]
-    reader.done()
-    return tuple(errata)
-
-
-def _erratum(node: Node, problems: list[Problem]) -> Erratum:
+def build_erratum(node: Node, problems: list[Problem]) -> Erratum:
+    """An entry of the errata file."""
     reader = Reader(node, "an erratum", problems)
     reader.required("line")
     erratum = Erratum(
@@ -35,15 +28,8 @@ def _erratum(node: Node, problems: list[Problem]) -> Erratum:
     return erratum
 
 
-def build_vectors(root: Node, problems: list[Problem]) -> list[Vector]:
-    """A vectors file."""
-    reader = Reader(root, "the vectors file", problems)
-    vectors = [_vector(node, problems) for node in reader.items("vectors")]
-    reader.done()
-    return vectors
-
-
-def _vector(node: Node, problems: list[Problem]) -> Vector:
+def build_vector(node: Node, problems: list[Problem]) -> Vector:
+    """An entry of a vectors file."""
     reader = Reader(node, "a vector", problems)
     example = reader.integer("example", 0) or None
     name = f"example-{example}" if example else reader.text("name")

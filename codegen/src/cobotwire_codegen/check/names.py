@@ -30,10 +30,13 @@ def _named(edition: Edition) -> Iterator[tuple[str, Place, re.Pattern[str], str]
         yield family.name, family.place, _LOWER, "motion"
     for command in edition.commands:
         yield command.name, command.place, _LOWER, "get_angles"
-        for field in (*command.request, *command.reply):
+        for field in command.fields:
             yield field.name, field.place, _LOWER, "speed"
         if command.text is not None:
             yield command.text.class_name, command.text.place, _CLASS, "WifiAccount"
+        for text in (command.text, command.request_text):
+            for name, _ in text.fields if text is not None else ():
+                yield name, command.place, _LOWER, "ssid"
     for type in edition.types:
         yield type.name, type.place, _LOWER, "angle"
         if isinstance(type, Enum | Value):
@@ -54,9 +57,9 @@ def commands_apart(edition: Edition) -> Iterator[Problem]:
             message = f"{command.name} is a command already, at {seen[command.name]}"
             yield Problem(command.place, "duplicate-command", message)
         seen.setdefault(command.name, command.place)
-        for message_fields in (command.request, command.reply):
-            names = [field.name for field in message_fields]
-            for index, field in enumerate(message_fields):
+        for form in (*command.requests, *command.replies):
+            names = [field.name for field in form]
+            for index, field in enumerate(form):
                 if field.name in names[:index]:
                     yield Problem(field.place, "duplicate-field", f"{field.name} stands twice")
 

@@ -9,7 +9,7 @@ from cobotwire_codegen.model import Edition, Enum, Quantity, Type
 
 
 def _quantities(edition: Edition) -> Iterator[Quantity]:
-    fields = [f for c in edition.commands for f in (*c.request, *c.reply)]
+    fields = [field for command in edition.commands for field in command.fields]
     types: list[Type] = [*edition.types, *(field.type for field in fields)]
     yield from (type for type in types if isinstance(type, Quantity))
 

@@ -9,7 +9,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
-from cobotwire_codegen.render import markdown, python_api, python_table, words
+from cobotwire_codegen.render import markdown, parameters, python_api, python_table, words
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.vectors_json import vectors_json
 
@@ -70,7 +70,14 @@ def _environment() -> Environment:
         keep_trailing_newline=True,
         autoescape=False,  # noqa: S701  (the output is Python, Markdown and JSON, never HTML)
     )
-    jinja.globals.update(api=python_api, table=python_table, words=words, md=markdown, lower=lower)
+    jinja.globals.update(
+        api=python_api,
+        params=parameters,
+        table=python_table,
+        words=words,
+        md=markdown,
+        lower=lower,
+    )
     jinja.filters.update(
         literal=literal,
         quoted=quoted,

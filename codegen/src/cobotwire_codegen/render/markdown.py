@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Literal
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Edition, Erratum, Field, Quantity, Type, Value, Vector
+from cobotwire_codegen.model import (
+    Command,
+    Edition,
+    Erratum,
+    Field,
+    Frame,
+    Quantity,
+    Text,
+    Type,
+    Value,
+    Vector,
+)
 from cobotwire_codegen.render.words import decimal
 from cobotwire_codegen.wire import size
 
@@ -19,9 +30,13 @@ def byte_rows(
 ) -> Iterator[tuple[str, str, str]]:
     """The rows of a message's byte table: position, content, value."""
     frame = edition.frame
-    length = 1 + sum(size(field.type) for field in form) + len(frame.footer)
+    length = 1 + sum(size(field.type) for field in form) + frame.check_size
     position = len(frame.header)
     yield f"0-{position - 1}", "header", frame.header.hex(" ").upper()
+    if frame.addresses:
+        legal = ", ".join(f"{member.value:02X} {member.name}" for member in frame.addresses)
+        yield str(position), "address", legal
+        position += 1
     yield str(position), "LEN", f"{length:02X}"
     yield str(position + 1), "CMD", f"{command.id:02X}"
     position += 2
@@ -30,7 +45,19 @@ def byte_rows(
             last = position + width - 1
             yield (str(position) if width == 1 else f"{position}-{last}"), name, content
             position += width
-    yield str(position), "footer", frame.footer.hex().upper()
+    last = position + frame.check_size - 1
+    place = str(position) if last == position else f"{position}-{last}"
+    yield place, *CHECKS[frame.check](frame)
+
+
+CHECKS: dict[str, Callable[[Frame], tuple[str, str]]] = {
+    "footer": lambda frame: ("footer", frame.footer.hex().upper()),
+    "crc16-modbus": lambda frame: (
+        "check",
+        "CRC-16/MODBUS over all bytes before it, high byte first",
+    ),
+    "sum": lambda frame: ("check", "low byte of the sum of CMD and DATA"),
+}
 
 
 def _parts(field: Field) -> Iterator[tuple[str, int, str]]:
@@ -53,6 +80,8 @@ def wire_form(type: Type) -> str:
         return ", ".join(wire_form(item) for _, item in type.items)
     if not isinstance(type, Quantity):
         return type.wire.name
+    if type.choices:
+        return f"{type.wire.name}, one of {', '.join(map(str, type.choices))}"
     if type.scale == 1:
         return f"{type.wire.name}, {type.unit}" if type.unit else type.wire.name
     times = decimal(Fraction(1) / type.scale)
@@ -109,10 +138,45 @@ def cell(text: str) -> str:
 def disputed_types(edition: Edition, command: Command) -> list[Quantity]:
     """The quantities of a command whose own reading is disputed."""
     found: dict[str, Quantity] = {}
-    for field in (*command.request, *command.reply):
+    for field in command.fields:
         for _, type in lower.cases(field):
             items = [item for _, item in type.items] if isinstance(type, Value) else [type]
             for item in items:
                 if isinstance(item, Quantity) and item.disputed:
                     found[item.name] = item
     return list(found.values())
+
+
+def field_rows(command: Command) -> list[tuple[str, Field]]:
+    """The fields of every form, each once."""
+    rows = [("request", field) for form in command.requests for field in form]
+    rows += [("reply", field) for form in command.replies for field in form]
+    seen: dict[tuple[str, str, Type], tuple[str, Field]] = {}
+    for direction, field in rows:
+        seen.setdefault((direction, field.name, field.type), (direction, field))
+    return list(seen.values())
+
+
+def field_doc(field: Field) -> str:
+    """What a field is, and how it may be left out."""
+    words = [field.doc]
+    if field.echo:
+        older = "; older firmware leaves it out" if field.echo == "optional" else ""
+        words.append(f"Echoes the request{older}.")
+    if field.optional:
+        words.append("May be left out.")
+    if field.const is not None:
+        words.append(f"Always {field.const}.")
+    return " ".join(words)
+
+
+def pattern(text: Text) -> str:
+    """Text outside a frame, with its fields in angle brackets."""
+    pairs = zip(text.prefixes, text.fields)
+    return "".join(f"{prefix}<{name}>" for prefix, (name, _) in pairs) + text.suffix
+
+
+def reply_note(command: Command) -> str:
+    """What a further form of a reply is."""
+    older = any(field.echo == "optional" for field in command.reply)
+    return "older firmware" if older else "another form"

@@ -1,52 +1,32 @@
-"""What the Python client's templates need: annotations, conversions, signatures."""
+"""What the Python client's templates need: signatures, bodies, docstrings, imports."""
 
 from __future__ import annotations
 
 import textwrap
 
-from cobotwire_codegen import lower
-from cobotwire_codegen.model import (
-    Command,
-    Edition,
-    Enum,
-    Family,
-    Field,
-    Flag,
-    Quantity,
-    Type,
-    Value,
+from cobotwire_codegen.model import Command, Edition, Enum, Family, Value
+from cobotwire_codegen.render.parameters import (
+    Parameter,
+    argument_expression,
+    argument_type,
+    parameters,
+    result_expression,
+    result_type,
+    results,
 )
 
 INDENT = 8
 WIDTH = 100
 
 
-def annotation(field: Field) -> str:
-    """The type of an argument."""
-    words = dict.fromkeys(_argument(type) for _, type in lower.cases(field))
-    if len(words) > 1 and set(words) == {"int", "float"}:
-        return "float"
-    return " | ".join(words)
-
-
-def _argument(type: Type) -> str:
-    if isinstance(type, Value):
-        scaled = any(item.scale != 1 for _, item in type.items)
-        return f"Sequence[{'float' if scaled else 'int'}]"
-    if isinstance(type, Enum):
-        return f"{type.class_name} | int"
-    return _scalar(type)
-
-
-def _scalar(type: Type) -> str:
-    if isinstance(type, Flag):
-        return "bool"
-    return "int" if isinstance(type, Quantity) and type.scale == 1 else "float"
-
-
-def results(command: Command) -> tuple[Field, ...]:
-    """The parts of a reply that the caller does not know already."""
-    return tuple(field for field in command.reply if not field.echo)
+def returns(command: Command) -> str:
+    """The type of the result."""
+    found = results(command)
+    if command.text is not None:
+        return command.text.class_name
+    if not found:
+        return "None"
+    return result_type(found[0]) if len(found) == 1 else result_class(command)
 
 
 def result_class(command: Command) -> str:
@@ -54,47 +34,25 @@ def result_class(command: Command) -> str:
     return "".join(word.capitalize() for word in command.name.split("_")) + "Reply"
 
 
-def returns(command: Command) -> str:
-    """The type of the result."""
-    fields = results(command)
-    if command.text is not None:
-        return command.text.class_name
-    if not fields:
-        return "None"
-    return result(fields[0]) if len(fields) == 1 else result_class(command)
-
-
-def result(field: Field) -> str:
-    """The type of one result."""
-    if isinstance(field.type, Value):
-        return "tuple[float, ...]" if field.by else field.type.class_name
-    if field.by:
-        return "float"
-    return field.type.class_name if isinstance(field.type, Enum) else _scalar(field.type)
-
-
-def convert(field: Field) -> str:
-    """The expression that makes one result out of the reply."""
-    value = f'reply["{field.name}"]'
-    if isinstance(field.type, Value):
-        return f"tuple({value})" if field.by else f"{field.type.class_name}(*{value})"
-    return f"{result(field)}({value})"
-
-
 def answer(command: Command) -> str:
     """The expression that makes the whole result out of the reply."""
     if command.text is not None:
         names = ", ".join(f'reply["{name}"]' for name, _ in command.text.fields)
         return f"{command.text.class_name}({names})"
-    fields = results(command)
-    if len(fields) == 1:
-        return convert(fields[0])
-    return f"{result_class(command)}({', '.join(convert(field) for field in fields)})"
+    found = results(command)
+    if len(found) == 1:
+        return result_expression(found[0])
+    return f"{result_class(command)}({', '.join(map(result_expression, found))})"
 
 
 def signature(command: Command) -> str:
     """The method's head, laid out as ruff lays it out."""
-    parts = ["self", *(f"{field.name}: {annotation(field)}" for field in command.request)]
+    parts = ["self"]
+    for parameter in parameters(command):
+        default = " = None" if parameter.optional else ""
+        parts.append(f"{parameter.name}: {argument_type(parameter)}{default}")
+    if command.request_text is not None:
+        parts.extend(f"{name}: str" for name, _ in command.request_text.fields)
     tail = f") -> {returns(command)}:"
     flat = f"def {command.name}({', '.join(parts)}{tail}"
     if len(flat) + 4 <= WIDTH:
@@ -106,10 +64,21 @@ def signature(command: Command) -> str:
     return f"def {command.name}(\n{lines}    {tail}"
 
 
-def arguments(command: Command) -> str:
-    """The tuple of values for the codec."""
-    names = [field.name for field in command.request]
-    return f"({names[0]},)" if len(names) == 1 else f"({', '.join(names)})"
+def call(command: Command) -> str:
+    """The arguments of the driver's own call."""
+    longest = max(command.requests, key=len)
+    known = {parameter.name: parameter for parameter in parameters(command)}
+    values = [
+        argument_expression(known[field.name]) if field.name in known else str(field.const)
+        for field in longest
+    ]
+    row = f"({values[0]},)" if len(values) == 1 else f"({', '.join(values)})"
+    if any(parameter.optional for parameter in known.values()):
+        row = f"given{row}" if len(values) > 1 else f"given({values[0]})"
+    if command.request_text is not None:
+        pairs = ", ".join(f'"{name}": {name}' for name, _ in command.request_text.fields)
+        row += f", {{{pairs}}}"
+    return f'"{command.name}", {row}'
 
 
 def docstring(text: str, indent: int) -> str:
@@ -133,24 +102,42 @@ def wrapped(text: str, indent: int, hanging: int = 0) -> str:
     )
 
 
+def argument_doc(parameter: Parameter) -> str:
+    """An argument's line in the docstring."""
+    shown = " Given in radians; on the wire:" if parameter.radians else " Allowed:"
+    left_out = " May be left out." if parameter.optional else ""
+    return f"{parameter.name}: {parameter.doc}{shown} {parameter.allowed}.{left_out}"
+
+
+def helpers(family: Family) -> list[str]:
+    """The functions of the package that a family's methods call."""
+    names = set()
+    for command in family.commands:
+        if any(parameter.optional for parameter in parameters(command)):
+            names.add("given")
+        if any(parameter.radians for parameter in parameters(command)):
+            names.add("to_degrees")
+        if any(parameter.radians for parameter in results(command)):
+            names.add("to_radians")
+    return sorted(names)
+
+
 def imports(family: Family) -> tuple[list[str], list[str], bool]:
     """What a family's methods need: enums, value classes, and whether Sequence."""
     enums: set[str] = set()
     values: set[str] = set()
     sequence = False
     for command in family.commands:
-        for field in command.request:
-            for _, type in lower.cases(field):
-                sequence = sequence or isinstance(type, Value)
-                if isinstance(type, Enum):
-                    enums.add(type.class_name)
-        for field in results(command):
-            if isinstance(field.type, Enum):
-                enums.add(field.type.class_name)
-            if isinstance(field.type, Value) and not field.by and len(results(command)) == 1:
-                values.add(field.type.class_name)
-        if command.text is not None or len(results(command)) > 1:
+        for parameter in parameters(command):
+            sequence = sequence or any(isinstance(type, Value) for type in parameter.types)
+            enums |= {type.class_name for type in parameter.types if isinstance(type, Enum)}
+        found = results(command)
+        if command.text is not None or len(found) > 1:
             values.add(returns(command))
+        for parameter in found:
+            kind = result_type(parameter)
+            enums |= {t.class_name for t in parameter.types if isinstance(t, Enum)} & {kind}
+            values |= {t.class_name for t in parameter.types if isinstance(t, Value)} & {kind}
     return sorted(enums), sorted(values), sequence
 
 
@@ -165,8 +152,9 @@ def value_classes(edition: Edition) -> list[str]:
 
 def replies_need_enums(edition: Edition) -> list[str]:
     """The enums that stand in replies with several results."""
-    fields = [f for c in edition.commands if len(results(c)) > 1 for f in results(c)]
-    return sorted({f.type.class_name for f in fields if isinstance(f.type, Enum)})
+    found = [p for c in edition.commands if len(results(c)) > 1 for p in results(c)]
+    types = {type for parameter in found for type in parameter.types}
+    return sorted(type.class_name for type in types if isinstance(type, Enum))
 
 
 def capitalize_first(text: str) -> str:

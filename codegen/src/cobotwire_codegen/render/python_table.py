@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Family, Field, Type, Value
+from cobotwire_codegen.model import Command, Family, Field, Text, Type, Value
 from cobotwire_codegen.render.literal import Call, Name
 
 
@@ -32,9 +32,18 @@ def command_expression(family: Family, command: Command, named: dict[Type, str])
             "TextReply", text.prefixes, tuple(name for name, _ in text.fields), text.silence_ms
         ),
         "notes": lower.notes(command),
+        "ack": command.ack,
+        "request_text": _text_request(command.request_text),
     }
-    needed = ("reply", "text", "notes")
+    needed = ("reply", "text", "notes", "ack", "request_text")
     return Call("Command", **{k: v for k, v in keywords.items() if k not in needed or v})
+
+
+def _text_request(text: Text | None) -> Call | None:
+    if text is None:
+        return None
+    fields = tuple(name for name, _ in text.fields)
+    return Call("TextRequest", text.prefixes, fields, text.suffix)
 
 
 def _layout(form: tuple[Field, ...], named: dict[Type, str]) -> Call:
@@ -48,8 +57,8 @@ def _field(field: Field, form: tuple[Field, ...], named: dict[Type, str]) -> Cal
     )
     keywords = {
         "many": isinstance(field.type, Value),
-        "choices": lower.choices(field.type),
-        "labels": lower.labels(field.type),
+        "choices": lower.field_choices(field),
+        "labels": lower.labels(field.type) if field.const is None else (),
         "selector": lower.selector(field, form),
         "echo": bool(field.echo),
     }
@@ -60,13 +69,13 @@ def _field(field: Field, form: tuple[Field, ...], named: dict[Type, str]) -> Cal
 
 def types_used(family: Family, named: dict[Type, str]) -> bool:
     """Whether a family's table refers to the table of types."""
-    fields = [f for c in family.commands for f in (*c.request, *c.reply)]
+    fields = [field for command in family.commands for field in command.fields]
     return any(type in named for field in fields for _, type in lower.cases(field))
 
 
 def names_used(family: Family, named: dict[Type, str]) -> list[str]:
     """The record classes that a family's table needs."""
-    fields = [f for c in family.commands for f in (*c.request, *c.reply)]
+    fields = [field for command in family.commands for field in command.fields]
     names = {"Command", "Layout"}
     if fields:
         names |= {"Case", "Field"}
@@ -74,4 +83,6 @@ def names_used(family: Family, named: dict[Type, str]) -> list[str]:
         names.add("Number")
     if any(command.text for command in family.commands):
         names.add("TextReply")
+    if any(command.request_text for command in family.commands):
+        names.add("TextRequest")
     return sorted(names)

@@ -40,7 +40,7 @@ def plain(edition: Edition, vector: Vector, name: str, value: object) -> Any:
     if isinstance(value, Fraction):
         return float(value)
     command = next(command for command in edition.commands if command.name == vector.command)
-    fields = command.request if vector.direction == "request" else command.reply
+    fields = (f for form in command.forms(vector.direction) for f in form)
     type = next((field.type for field in fields if field.name == name), None)
     if isinstance(type, Enum):
         return next(member.value for member in type.members if member.name == value)

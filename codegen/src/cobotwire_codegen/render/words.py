@@ -24,6 +24,8 @@ def span(type: Type) -> str:
         return "True or False"
     if isinstance(type, Enum):
         return "one of " + ", ".join(f"{member.name} ({member.value})" for member in type.members)
+    if isinstance(type, Quantity) and type.choices:
+        return "one of " + ", ".join(map(str, type.choices))
     if isinstance(type, Quantity):
         lowest, highest = (bound * type.scale for bound in type.bounds)
         unit = f" {type.unit}" if type.unit else ""

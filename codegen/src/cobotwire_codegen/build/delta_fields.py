@@ -1,0 +1,94 @@
+"""Changes inside a command or type: keys set and unset; fields added, removed, renamed, changed."""
+
+from __future__ import annotations
+
+from cobotwire_codegen.build.parts import find
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
+from cobotwire_codegen.reader import Reader
+
+_VERBS = ("add", "remove", "rename", "change")
+
+
+def set_keys(node: Mapping, reader: Reader, what: str) -> tuple[Mapping, list[str]]:
+    """A copy of a mapping with keys set and unset; and what was done, in words."""
+    changed = Mapping(node.place, dict(node.entries), dict(node.keys))
+    words = []
+    for key, place, value in reader.entries("set"):
+        changed.entries[key], changed.keys[key] = value, place
+        words.append(f"{key} set{_shown(value)}")
+    for key in reader.names("unset"):
+        if key not in changed.entries:
+            reader.problem("nothing-there", f"{what} has no {key} that could be unset")
+        changed.entries.pop(key, None)
+        words.append(f"{key} unset")
+    return changed, words
+
+
+def change_fields(command: Mapping, key: str, operations: list[Node], outer: Reader) -> str:
+    """Add, remove, rename and change fields of a message."""
+    node = command.entries.get(key)
+    fields = list(node.items) if isinstance(node, Sequence) else []
+    words = [_change_field(fields, operation, key, outer) for operation in operations]
+    place = operations[0].place
+    command.entries[key] = Sequence(place, tuple(fields))
+    command.keys.setdefault(key, place)
+    if not fields:
+        del command.entries[key]
+    return f"{key}: {', '.join(words)}"
+
+
+def _change_field(fields: list[Node], operation: Node, key: str, outer: Reader) -> str:
+    reader = Reader(operation, f"a change of the {key}", outer.problems)
+    verbs = [verb for verb in _VERBS if reader.node(verb) is not None]
+    words = ""
+    if len(verbs) != 1:
+        reader.problem("bad-change", f"a change of a field is just one of {', '.join(_VERBS)}")
+    elif verbs == ["add"]:
+        words = _add(fields, reader)
+    else:
+        index = _index(fields, reader.text(verbs[0]), reader)
+        if index >= 0:
+            words = _change_one(fields, index, verbs[0], reader)
+    reader.done()
+    return words
+
+
+def _add(fields: list[Node], reader: Reader) -> str:
+    field = reader.required("add")
+    after = reader.text("after", "")
+    index = _index(fields, after, reader) + 1 if after else len(fields)
+    assert field is not None
+    fields.insert(index, field)
+    return f"{_name(field)} added"
+
+
+def _change_one(fields: list[Node], index: int, verb: str, reader: Reader) -> str:
+    field = fields[index]
+    name = _name(field)
+    assert isinstance(field, Mapping), "only a mapping has a name to be found by"
+    if verb == "remove":
+        del fields[index]
+        return f"{name} removed"
+    if verb == "change":
+        fields[index], words = set_keys(field, reader, f"the field {name}")
+        return f"{name} changed ({', '.join(words)})"
+    renamed = Mapping(field.place, dict(field.entries), dict(field.keys))
+    renamed.entries["name"] = reader.required("to") or field.entries["name"]
+    fields[index] = renamed
+    return f"{name} renamed to {_name(renamed)}"
+
+
+def _index(fields: list[Node], name: str, reader: Reader) -> int:
+    names = [_name(node) for node in fields]
+    known = find(iter(names), name, "field", reader.place, reader.problems)
+    return names.index(name) if known else -1
+
+
+def _name(node: Node) -> str:
+    value = node.entries.get("name") if isinstance(node, Mapping) else None
+    return str(value.value) if isinstance(value, Scalar) else ""
+
+
+def _shown(value: Node) -> str:
+    text = str(value.value) if isinstance(value, Scalar) else ""
+    return f" to {text}" if text and len(text) <= 20 else ""

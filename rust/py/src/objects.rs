@@ -1,0 +1,87 @@
+//! The Python objects of a table's commands, for messages and errors.
+
+use std::collections::HashMap;
+
+use cobotwire_core::Direction;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+
+use crate::words::word;
+
+/// Those of all commands, by index.
+pub struct Commands {
+    all: Vec<Command>,
+    by_name: HashMap<String, usize>,
+}
+
+/// Those of one.
+pub struct Command {
+    pub object: Py<PyAny>,
+    request: Vec<Py<PyAny>>,
+    reply: Vec<Py<PyAny>>,
+}
+
+impl Commands {
+    /// Those of a table, whose commands have these names.
+    pub fn new(table: &Bound<'_, PyAny>, names: Vec<String>) -> PyResult<Self> {
+        let mut by_name = HashMap::new();
+        for (index, name) in names.into_iter().enumerate() {
+            by_name.entry(name).or_insert(index);
+        }
+        let commands = table.getattr("commands")?.try_iter()?;
+        let all = commands
+            .map(|command| Command::new(command?))
+            .collect::<PyResult<_>>()?;
+        Ok(Self { all, by_name })
+    }
+
+    /// The index of the command with that name, which the table itself is asked for where it is
+    /// not known: it says that there is none, and which is nearest.
+    pub fn find(&self, table: &Py<PyAny>, name: &Bound<'_, PyAny>) -> PyResult<usize> {
+        if let Some(index) = word(name).and_then(|name| self.by_name.get(name)) {
+            return Ok(*index);
+        }
+        let found = table.bind(name.py()).call_method1("command", (name,))?;
+        let place = self
+            .all
+            .iter()
+            .position(|command| command.object.is(&found));
+        place.ok_or_else(|| PyKeyError::new_err((name.clone().unbind(),)))
+    }
+
+    pub fn get(&self, index: usize) -> PyResult<&Command> {
+        self.all
+            .get(index)
+            .ok_or_else(|| PyKeyError::new_err(index))
+    }
+}
+
+impl Command {
+    fn new(object: Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            request: object.getattr("request")?.extract()?,
+            reply: object.getattr("reply")?.extract()?,
+            object: object.unbind(),
+        })
+    }
+
+    /// The forms in one direction.
+    pub fn layouts(&self, direction: Direction) -> &[Py<PyAny>] {
+        match direction {
+            Direction::Request => &self.request,
+            Direction::Reply => &self.reply,
+        }
+    }
+
+    /// One of them.
+    pub fn layout<'py>(
+        &self,
+        py: Python<'py>,
+        direction: Direction,
+        index: usize,
+    ) -> PyResult<&Bound<'py, PyAny>> {
+        let layout = self.layouts(direction).get(index);
+        let layout = layout.ok_or_else(|| PyKeyError::new_err(index))?;
+        Ok(layout.bind(py))
+    }
+}

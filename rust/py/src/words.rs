@@ -1,0 +1,50 @@
+//! What callers say besides values and bytes: directions, a form, an address.
+//!
+//! What is not plain is asked as the reference asks it, so that `True` and `1.0` count alike.
+
+use cobotwire_core::Direction;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyInt, PyList, PyString};
+
+use crate::errors;
+
+pub fn word<'a>(given: &'a Bound<'_, PyAny>) -> Option<&'a str> {
+    given.cast::<PyString>().ok()?.to_str().ok()
+}
+
+pub fn one_way(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
+    match word(given) {
+        Some("request") => Ok(Direction::Request),
+        Some("reply") => Ok(Direction::Reply),
+        _ => Err(errors::bad_direction(given)),
+    }
+}
+
+/// The index of the form that a caller picks of `count`; one too high where it is none of them.
+pub fn form(given: &Bound<'_, PyAny>, count: usize) -> PyResult<usize> {
+    for index in 0..count {
+        if given.eq(index)? {
+            return Ok(index);
+        }
+    }
+    Ok(count)
+}
+
+/// The address byte that a caller picks of those that `table` has.
+pub fn address(given: &Bound<'_, PyAny>, table: &Py<PyAny>, legal: &[u8]) -> PyResult<u8> {
+    let py = given.py();
+    if given.is_exact_instance_of::<PyInt>() {
+        match given.extract() {
+            Ok(address) if legal.contains(&address) => return Ok(address),
+            _ => (),
+        }
+    }
+    let addresses = table.bind(py).getattr("frame")?.getattr("addresses")?;
+    if !addresses.contains(given)? {
+        return Err(errors::bad_address(given, &addresses));
+    }
+    let byte = py
+        .get_type::<PyBytes>()
+        .call1((PyList::new(py, [given])?,))?;
+    byte.get_item(0)?.extract()
+}
