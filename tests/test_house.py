@@ -17,12 +17,13 @@ PACKAGE = vectors.ROOT / "python" / "cobotwire"
 # A part may import the parts behind it in this list, and nothing else of the package.
 MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
+    "values": set(),
     "table": {"errors"},
     "codec": {"errors", "table", "_native"},
     "session": {"errors", "table", "codec"},
     "transport": {"errors"},
     "driver": {"errors", "table", "codec", "session", "transport"},
-    "editions": {"errors", "table", "driver"},
+    "editions": {"errors", "table", "values", "driver"},
     "sim": {"errors", "table", "codec", "session"},
     "explain": {"errors", "table", "codec"},
     "demo": {"codec", "driver", "editions", "sim"},

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import groupby
 from types import TracebackType
 from typing import Any, ClassVar, Literal, NamedTuple, Self
@@ -94,10 +94,12 @@ class Driver:
         """Give the link back. The arm is told nothing. Closing twice is harmless."""
         self._link.close()
 
-    def _tell(self, name: str, values: Sequence[Any]) -> None:
-        """Send a request that nothing answers."""
+    def _tell(
+        self, name: str, values: Sequence[Any], text_values: Mapping[str, str] | None = None
+    ) -> None:
+        """Send a request that nothing answers, or whose acknowledgement is not waited for."""
         with self._lock:
-            self._send(name, values)
+            self._send(name, values, text_values)
 
     def _ask(self, name: str, values: Sequence[Any]) -> dict[str, Any]:
         """Send a request and wait for its reply; gives the reply's fields by name."""
@@ -109,11 +111,14 @@ class Driver:
                 # Ctrl-C and a vanished link leave the session ready for the next request.
                 self._session.abandon()
 
-    def _send(self, name: str, values: Sequence[Any]) -> None:
+    def _send(
+        self, name: str, values: Sequence[Any], text_values: Mapping[str, str] | None = None
+    ) -> None:
         # What came since the last call is looked at first, so it cannot pass for this answer.
         while data := self._link.read(0):
             self._receive(data)
-        frame = self._session.request(name, values, time.monotonic(), self._timeout)
+        now = time.monotonic()
+        frame = self._session.request(name, values, now, self._timeout, text_values)
         try:
             self._note("sent", frame)
             self._link.write(frame)

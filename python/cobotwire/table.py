@@ -101,6 +101,7 @@ class TextReply:
     prefixes: tuple[str, ...]
     fields: tuple[str, ...]
     silence_ms: int
+    suffix: str = ""
 
 
 @dataclass(frozen=True, slots=True)

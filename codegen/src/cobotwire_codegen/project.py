@@ -18,14 +18,23 @@ def editions(root: Path) -> list[Edition]:
     Raises:
         SpecError: the spec is wrong, or there is none.
     """
+    found = [build_edition(path, root) for path in edition_files(root)]
+    for edition in found:
+        check(edition)
+    return found
+
+
+def edition_files(root: Path) -> list[Path]:
+    """The edition files of a project.
+
+    Raises:
+        SpecError: there is none.
+    """
     paths = sorted((root / "spec" / "editions").glob("*.yaml"))
     if not paths:
         place = Place(str(root / "spec" / "editions"), 1, 1)
         raise SpecError([Problem(place, "no-edition", "there is no edition here")])
-    found = [build_edition(path, root) for path in paths]
-    for edition in found:
-        check(edition)
-    return found
+    return paths
 
 
 def targets(root: Path, found: list[Edition]) -> list[Target]:

@@ -1,6 +1,6 @@
 """The conversation without a port, clock or thread: bytes and times in, events out."""
 
-from cobotwire.session.device import Asked, DeviceSession, Malformed
+from cobotwire.session.device import Asked, DeviceSession, Malformed, Told
 from cobotwire.session.host import Answered, Expired, HostSession, Refused, SessionEvent, Unasked
 
 __all__ = [
@@ -12,5 +12,6 @@ __all__ = [
     "Malformed",
     "Refused",
     "SessionEvent",
+    "Told",
     "Unasked",
 ]

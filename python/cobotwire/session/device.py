@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec, Event, Frame, Message, Noise
 from cobotwire.errors import ProtocolError
 from cobotwire.session import text
+from cobotwire.table import Command
 
 
 class Asked(NamedTuple):
@@ -24,7 +25,14 @@ class Malformed(NamedTuple):
     error: ProtocolError
 
 
-DeviceEvent = Asked | Malformed | Noise
+class Told(NamedTuple):
+    """The text that followed a request outside its frame."""
+
+    command: Command
+    fields: dict[str, str]
+
+
+DeviceEvent = Asked | Malformed | Told | Noise
 
 
 class DeviceSession:
@@ -33,6 +41,8 @@ class DeviceSession:
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
         self._framer = codec.framer("request")
+        self._text_of: Command | None = None
+        self._text = b""
 
     @property
     def pending(self) -> int:
@@ -63,10 +73,34 @@ class DeviceSession:
         return self._codec.encode(name, "reply", tuple(values.values()))
 
     def _sort(self, heard: Sequence[Event]) -> list[DeviceEvent]:
-        return [event if isinstance(event, Noise) else self._read(event) for event in heard]
+        events: list[DeviceEvent] = []
+        for event in heard:
+            if isinstance(event, Noise):
+                events.append(event)
+                events.extend(self._read_text(event.data))
+            else:
+                events.append(self._read(event))
+        return events
 
     def _read(self, frame: Frame) -> DeviceEvent:
+        self._text_of, self._text = None, b""
         try:
-            return Asked(frame, self._codec.decode("request", frame.data))
+            message = self._codec.decode("request", frame.data)
         except ProtocolError as error:
             return Malformed(frame, error)
+        if message.command.request_text is not None:
+            self._text_of = message.command
+        return Asked(frame, message)
+
+    def _read_text(self, data: bytes) -> Iterator[Told]:
+        """What looks like noise may be the text of the last request; its suffix ends it."""
+        command = self._text_of
+        if command is None or command.request_text is None:
+            return
+        self._text += data
+        try:
+            fields = text.read(command.request_text, self._text)
+        except ProtocolError:
+            return
+        self._text_of, self._text = None, b""
+        yield Told(command, fields)

@@ -7,7 +7,7 @@ that was heard is dropped unseen.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -85,9 +85,16 @@ class HostSession:
         return min(pending.heard_at + silence, pending.deadline + silence)
 
     def request(
-        self, name: str, values: Sequence[Any], now: float, timeout: float | None = None
+        self,
+        name: str,
+        values: Sequence[Any],
+        now: float,
+        timeout: float | None = None,
+        text_values: Mapping[str, str] | None = None,
     ) -> bytes:
         """The bytes to send; if a reply is due, the session waits for it from now on.
+
+        ``text_values`` are the fields of the text that follows some requests outside the frame.
 
         Raises:
             UsageError: the arguments are not allowed, or a request waits already. Nothing changed.
@@ -96,6 +103,8 @@ class HostSession:
         if self._pending is not None:
             raise UsageError("command", name, f"nothing while {self._pending.command.name} waits")
         frame = self._codec.encode(name, "request", values)
+        if command.request_text is not None:
+            return frame + text.spell(command.request_text, text_values or {})
         if command.answers:
             # Our own frame, read back, gives the arguments as an echo would spell them.
             asked = self._codec.decode("request", frame).fields

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from cobotwire import codec as codecs
-from cobotwire.session import Asked, DeviceSession
+from cobotwire.session import Asked, DeviceSession, Told
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim.behaviour import BEHAVIOUR
 from cobotwire.sim.state import ArmState
@@ -27,6 +27,7 @@ class SimulatedArm:
         clock: Clock = time.monotonic,
         codec: codecs.CodecName | None = None,
         watch: Watch | None = None,
+        acks: bool = True,
     ) -> None:
         """Make an arm that is switched off and stands at zero.
 
@@ -35,11 +36,13 @@ class SimulatedArm:
             clock: gives the time in seconds.
             codec: ``native`` or ``reference``; left out: the one in use.
             watch: called with everything that was heard and what was answered.
+            acks: whether it acknowledges what the edition says it may.
         """
         self.table = table
         self.state = ArmState(table.joints)
         self._clock = clock
         self._watch = watch
+        self._acks = acks
         self._session = DeviceSession(codecs.load(table, codec))
 
     @property
@@ -60,6 +63,8 @@ class SimulatedArm:
         for event in events:
             # Noise and malformed requests are not answered: the document knows no error reply.
             answer = self._answer(event) if isinstance(event, Asked) else b""
+            if isinstance(event, Told):
+                self._do(event.command, event.fields)
             if self._watch is not None:
                 self._watch(event, answer)
             said += answer
@@ -67,28 +72,43 @@ class SimulatedArm:
 
     def _answer(self, asked: Asked) -> bytes:
         command, given = asked.message.command, asked.message.fields
-        handler = BEHAVIOUR.get(command.name)
-        result = handler(self.state, self._clock(), **given) if handler else None
-        if not command.answers:
+        # A request with a text behind it is done when the text has come.
+        result = {} if command.request_text is not None else self._do(command, given)
+        if not command.answers and not (command.ack and self._acks):
             return b""
-        return self._session.answer(command.name, _complete(command, given, result or {}))
+        return self._session.answer(command.name, _complete(command, given, result))
+
+    def _do(self, command: Command, given: Mapping[str, Any]) -> dict[str, Any]:
+        handler = BEHAVIOUR.get(command.name)
+        return (handler(self.state, self._clock(), **given) if handler else None) or {}
 
 
 def _complete(command: Command, given: dict[str, Any], result: dict[str, Any]) -> dict[str, Any]:
-    """Fill a reply up: echoes from the request, the rest with what is legal and nearest to zero."""
+    """Fill a reply up: echoes from the request, the rest with what is legal and usual."""
     if command.text is not None:
         return {name: result.get(name, "") for name in command.text.fields}
-    fields = command.reply[0].fields
+    form = command.reply[_form(command, result)]
+    # An acknowledgement says 1, done.
+    usual = 1 if command.ack else 0
     return {
-        field.name: given[field.name] if field.echo else result.get(field.name, _neutral(field))
-        for field in fields
+        field.name: given[field.name] if field.echo else result.get(field.name, _near(field, usual))
+        for field in form.fields
     }
 
 
-def _neutral(field: Field) -> Any:
+def _form(command: Command, result: dict[str, Any]) -> int:
+    """The first form of the reply that has room for the whole result."""
+    for index, form in enumerate(command.reply):
+        if set(result) <= {field.name for field in form.fields}:
+            return index
+    return 0
+
+
+def _near(field: Field, usual: int) -> Any:
+    """The legal value that is nearest to the usual one."""
     numbers = field.cases[0].numbers
     values = [
-        field.choices[0] if field.choices else min(max(0, number.minimum), number.maximum)
+        field.choices[0] if field.choices else min(max(usual, number.minimum), number.maximum)
         for number in numbers
     ]
     scaled = [

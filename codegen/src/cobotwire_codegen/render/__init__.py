@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import (
+    ChoiceLoader,
+    Environment,
+    FileSystemLoader,
+    PackageLoader,
+    StrictUndefined,
+)
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
@@ -16,9 +22,12 @@ from cobotwire_codegen.render.vectors_json import vectors_json
 Files = dict[PurePosixPath, str]
 
 
-def render_python(edition: Edition) -> Files:
-    """The edition's Python package: paths are relative to the package's folder."""
-    jinja = _environment()
+def render_python(edition: Edition, templates: Path | None = None) -> Files:
+    """The edition's Python package: paths are relative to the package's folder.
+
+    Templates in ``templates`` take the place of those of the same name.
+    """
+    jinja = _environment(templates)
     common = {"edition": edition, "named": _named_types(edition)}
     files = {
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
@@ -37,9 +46,9 @@ def render_python(edition: Edition) -> Files:
     return files
 
 
-def render_reference(edition: Edition) -> Files:
+def render_reference(edition: Edition, templates: Path | None = None) -> Files:
     """The edition's command reference in Markdown: a page a family, and an index."""
-    jinja = _environment()
+    jinja = _environment(templates)
     files = {
         PurePosixPath("README.md"): jinja.get_template("markdown/index.md.j2").render(
             edition=edition
@@ -61,9 +70,11 @@ def _named_types(edition: Edition) -> dict[Type, str]:
     return {type: type.name.upper() for type in edition.types}
 
 
-def _environment() -> Environment:
+def _environment(templates: Path | None) -> Environment:
+    shipped = PackageLoader("cobotwire_codegen")
+    own = [FileSystemLoader(templates)] if templates is not None else []
     jinja = Environment(
-        loader=PackageLoader("cobotwire_codegen"),
+        loader=ChoiceLoader([*own, shipped]),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -1,0 +1,39 @@
+"""The verbs together."""
+
+from __future__ import annotations
+
+import click
+
+from cobotwire_codegen.cli.build import build
+from cobotwire_codegen.cli.check import check
+from cobotwire_codegen.cli.generate import generate
+from cobotwire_codegen.cli.model import model
+from cobotwire_codegen.cli.shared import root_option
+
+_EPILOG = (
+    "Exit codes: 0 done; 1 the answer is no (something is stale, or differs); 2 the spec or the "
+    "call is wrong."
+)
+
+
+@click.group(
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=_EPILOG,
+)
+@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if not fresh.")
+@root_option
+@click.version_option(package_name="cobotwire-codegen")
+@click.pass_context
+def main(ctx: click.Context, check_only: bool, root: str) -> None:
+    """Generate software from a protocol in YAML.
+
+    Without a verb: generate this project's own files (editions, reference, test data) from spec/.
+    With --check, show what on disk is stale, missing or left over instead.
+    """
+    if ctx.invoked_subcommand is None:
+        ctx.invoke(generate, check_only=check_only, root=root)
+
+
+for verb in (build, check, model):
+    main.add_command(verb)

@@ -1,0 +1,53 @@
+"""``cobotwire-gen build``: a protocol of one's own becomes a Python package."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check as check_edition
+from cobotwire_codegen.cli.generate import show_stale, write_all
+from cobotwire_codegen.cli.shared import edition_path, format_option, problems_told
+from cobotwire_codegen.emit import Target, foreign
+from cobotwire_codegen.render import render_python, render_reference
+
+
+@click.command()
+@click.argument("file")
+@click.option(
+    "--out", required=True, type=click.Path(file_okay=False), help="The package's folder."
+)
+@click.option("--docs", type=click.Path(file_okay=False), help="A folder for the reference, too.")
+@click.option(
+    "--templates",
+    type=click.Path(exists=True, file_okay=False),
+    help="Templates of your own; each takes the place of the one of the same name.",
+)
+@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if not fresh.")
+@format_option
+def build(
+    file: str, out: str, docs: str | None, templates: str | None, check_only: bool, form: str
+) -> None:
+    """Generate a typed Python package from the edition FILE.
+
+    The package works with the installed cobotwire: its codecs, driver, simulator and command line
+    (`cobotwire --edition PACKAGE`). The folders must hold nothing else.
+    """
+    path = edition_path(file)
+    with problems_told(form):
+        edition = build_edition(path, Path.cwd())
+        check_edition(edition)
+    own = Path(templates) if templates else None
+    wanted = [Target(Path(out), render_python(edition, own))]
+    if docs:
+        wanted.append(Target(Path(docs), render_reference(edition, own)))
+    if check_only:
+        sys.exit(show_stale(wanted))
+    strangers = [path for target in wanted for path in foreign(target)]
+    if strangers:
+        shown = ", ".join(str(path) for path in strangers[:3])
+        raise click.UsageError(f"not generated, and in the way: {shown}; choose another folder")
+    click.echo(f"{edition.name} ({len(edition.commands)} commands): {write_all(wanted)} file(s)")

@@ -1,0 +1,39 @@
+"""``cobotwire-gen check``: what is wrong with a spec."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check as check_edition
+from cobotwire_codegen.cli.shared import edition_path, format_option, problems_told, root_option
+from cobotwire_codegen.errors import Problem, SpecError
+from cobotwire_codegen.project import edition_files
+
+
+@click.command()
+@click.argument("files", nargs=-1)
+@root_option
+@format_option
+def check(files: tuple[str, ...], root: str, form: str) -> None:
+    """Check the edition FILES, or all of spec/editions; tell every problem at once.
+
+    A problem is `file:line:column: code: message`. Codes are stable; `cobotwire-gen explain CODE`
+    tells what one means.
+    """
+    problems: list[Problem] = []
+    with problems_told(form):
+        paths = [edition_path(file) for file in files] or edition_files(Path(root))
+        for path in paths:
+            try:
+                check_edition(build_edition(path, Path(root)))
+            except SpecError as error:
+                problems.extend(error.problems)
+        if problems:
+            raise SpecError(problems)
+    if form == "json":
+        click.echo("[]")
+    elif form == "text":
+        click.echo(f"{len(paths)} edition(s), no problem")

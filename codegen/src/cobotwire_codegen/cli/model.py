@@ -1,0 +1,31 @@
+"""``cobotwire-gen model``: the model as JSON, for generators in any language."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check as check_edition
+from cobotwire_codegen.cli.shared import edition_path, format_option, problems_told
+from cobotwire_codegen.publish import model_json
+
+
+@click.command()
+@click.argument("file")
+@click.option("--out", type=click.Path(dir_okay=False), help="Write there instead of printing.")
+@format_option
+def model(file: str, out: str | None, form: str) -> None:
+    """Publish the checked model of the edition FILE as versioned JSON.
+
+    References are resolved, defaults filled in, deltas folded: nothing is left to interpret.
+    """
+    with problems_told(form):
+        edition = build_edition(edition_path(file), Path.cwd())
+        check_edition(edition)
+    text = model_json(edition)
+    if out is None:
+        click.echo(text, nl=False)
+    else:
+        Path(out).write_text(text, encoding="utf-8")

@@ -1,0 +1,80 @@
+"""What the verbs share: the root, reading editions, and telling problems."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from cobotwire_codegen.errors import Problem, SpecError
+
+FORMATS = ("text", "json", "github")
+
+root_option = click.option(
+    "--root",
+    type=click.Path(exists=True, file_okay=False),
+    default=".",
+    help="The folder that file names in messages are relative to, and that holds spec/.",
+)
+format_option = click.option(
+    "--format",
+    "form",
+    type=click.Choice(FORMATS),
+    default="text",
+    show_default=True,
+    help="How problems are told.",
+)
+
+
+@contextmanager
+def problems_told(form: str = "text") -> Iterator[None]:
+    """Turn a spec's problems into lines and exit code 2."""
+    try:
+        yield
+    except SpecError as error:
+        tell(error.problems, form)
+        if form == "text":
+            click.echo(
+                f"{len(error.problems)} problem(s) in the spec; nothing was written", err=True
+            )
+        sys.exit(2)
+
+
+def tell(problems: Sequence[Problem], form: str) -> None:
+    """Print problems: as lines for people, as JSON, or as GitHub's annotations."""
+    if form == "json":
+        click.echo(json.dumps([_plain(problem) for problem in problems], indent=1))
+        return
+    for problem in problems:
+        click.echo(_github(problem) if form == "github" else str(problem), err=form == "text")
+
+
+def _plain(problem: Problem) -> dict[str, str | int]:
+    place = problem.place
+    return {
+        "file": place.file,
+        "line": place.line,
+        "column": place.column,
+        "code": problem.code,
+        "message": problem.message,
+    }
+
+
+def _github(problem: Problem) -> str:
+    place = problem.place
+    # What GitHub asks for in the properties and the message of an annotation.
+    message = problem.message.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    where = f"file={place.file},line={place.line},col={place.column},title={problem.code}"
+    return f"::error {where}::{message}"
+
+
+def edition_path(file: str) -> Path:
+    """The edition file that a person named."""
+    path = Path(file)
+    if not path.is_file():
+        raise click.UsageError(f"there is no file {file}")
+    return path
