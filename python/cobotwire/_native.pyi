@@ -22,7 +22,8 @@ class NativeCodec:
         Raises:
             AttributeError, TypeError, OverflowError: it is not a table, or something in it has the
                 wrong type or is far too large.
-            ValueError: it cannot be interpreted: the header is not two bytes or the footer not one,
+            ValueError: it cannot be interpreted: the header is not two bytes, the check is unknown,
+                the footer is not one byte where it is the check or not empty where it is not,
                 a form is longer than LEN can say, a number is not one to four bytes wide, a scale
                 or bound is beyond what a double holds exactly, or a field's cases do not fit.
         """
@@ -35,17 +36,31 @@ class NativeCodec:
     def table(self) -> Table:
         """The edition that it interprets."""
 
-    def encode(self, command: str, direction: Direction, values: Sequence[Any]) -> bytes:
-        """Build one whole frame; the number of ``values`` picks the form of the message.
+    def encode(
+        self,
+        command: str,
+        direction: Direction,
+        values: Sequence[Any],
+        *,
+        form: int | None = None,
+        address: int | None = None,
+    ) -> bytes:
+        """Build one whole frame, of the first form of that many fields that takes ``values``.
+
+        ``form`` picks one by its index; ``address`` is only for formats with an address byte.
 
         Raises:
-            UsageError: no such command or form, or a value that the field does not allow.
+            UsageError: no such command, address or form, or a value that the field does not allow.
         """
 
-    def decode(self, direction: Direction, data: bytes) -> Message:
+    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> Message:
         """Read ``data``, which must be one whole frame and nothing else.
 
+        Calls that share an id and a size read as the first of them that allows the values, unless
+        ``of`` names the one that it must be.
+
         Raises:
+            UsageError: ``of`` names no command.
             ProtocolError: it is not a legal frame of that direction, or a field holds a value that
                 the edition does not allow.
         """

@@ -37,7 +37,7 @@ def test_the_framer_finds_the_frame_behind_noise(codec: Codec, vector: Vector) -
     assert vector.frame is not None
     framer = codec.framer(vector.direction)
     found = [e for e in framer.feed(b"\xff\xfe\xfe" + vector.frame) if isinstance(e, Frame)]
-    assert found == [Frame(3, vector.frame)]
+    assert found == [Frame(3, vector.frame, vector.frame[3])]
 
 
 def test_five_examples_have_an_illegal_length_whichever_way_they_go(codec: Codec) -> None:

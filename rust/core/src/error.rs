@@ -93,6 +93,8 @@ pub struct BadValue<V> {
     pub fault: ValueFault,
     /// The culprit, as it was given.
     pub value: V,
+    /// What it stands for on the wire, where that is the fault: it picks none of a field's cases.
+    pub picked: Option<i64>,
 }
 
 /// Why nothing was encoded.

@@ -60,7 +60,10 @@ impl<V: Given> Writer<'_, V> {
         let picked = self.checked(place, number, value()?)?;
         match field.case(picked) {
             Some(case) => Ok(case),
-            None => Err(self.refuse(place, ValueFault::Choice, value()?)),
+            None => Err(EncodeError::Value(BadValue {
+                picked: Some(picked),
+                ..self.bad(place, ValueFault::Choice, value()?)
+            })),
         }
     }
 
@@ -122,14 +125,19 @@ impl<V: Given> Writer<'_, V> {
     }
 
     fn refuse(&self, place: Place<'_>, fault: ValueFault, value: V) -> EncodeError<V> {
-        EncodeError::Value(BadValue {
+        EncodeError::Value(self.bad(place, fault, value))
+    }
+
+    fn bad(&self, place: Place<'_>, fault: ValueFault, value: V) -> BadValue<V> {
+        BadValue {
             layout: self.index,
             field: place.index,
             case: place.case,
             element: place.element,
             fault,
             value,
-        })
+            picked: None,
+        }
     }
 }
 

@@ -11,8 +11,8 @@
 mod common;
 
 use cobotwire_core::{
-    BadValue, Case, DecodeError, Direction, EncodeError, Field, Misfit, Number, Order, Reason,
-    Table, TableError, Value, ValueFault, decode, encode,
+    BadValue, Case, Choice, DecodeError, Direction, EncodeError, Field, Misfit, Number, Order,
+    Reason, Table, TableError, Value, ValueFault, decode, encode,
 };
 use common::{Broken, Sample, Samples, field, frame_format, number, table, word};
 
@@ -25,6 +25,7 @@ fn say(table: &Table, values: &[Sample]) -> Encoded {
         &table.commands()[0],
         Direction::Request,
         &values,
+        Choice::default(),
     )
 }
 
@@ -103,7 +104,7 @@ fn every_raw_word_survives_the_round_trip() {
         for raw in 0..=u16::MAX {
             let [high, low] = raw.to_be_bytes();
             let frame = [0xFE, 0xFE, 4, 0x20, high, low, 0xFA];
-            let values = decode(&table, Direction::Request, &frame)
+            let values = decode(&table, Direction::Request, &frame, None)
                 .expect("all words")
                 .values;
             let value = match values[0] {
@@ -186,7 +187,7 @@ fn a_selector_picks_the_case_and_is_checked_first() {
     assert_eq!(fault(say(f64::NAN, 9)), (1, None, ValueFault::Choice));
     assert_eq!(fault(say(f64::NAN, 2)), (1, None, ValueFault::Choice)); // no case has it
     let frame = |choice| [0xFE, 0xFE, 5, 0x20, 0, 100, choice, 0xFA];
-    let decoded = |choice| decode(&table, Direction::Reply, &frame(choice));
+    let decoded = |choice| decode(&table, Direction::Reply, &frame(choice), None);
     assert_eq!(
         decoded(0).unwrap().values,
         [Value::Real(10.0), Value::Whole(0)]
@@ -204,7 +205,7 @@ fn a_selector_picks_the_case_and_is_checked_first() {
 #[test]
 fn a_refused_frame_says_where() {
     let table = one(number(1, 1, 0, 9));
-    let refused = |bytes: &[u8]| match decode(&table, Direction::Reply, bytes) {
+    let refused = |bytes: &[u8]| match decode(&table, Direction::Reply, bytes, None) {
         Err(DecodeError::Frame { reason, offset }) => (reason, offset),
         other => panic!("the frame was not refused: {other:?}"),
     };
@@ -216,7 +217,7 @@ fn a_refused_frame_says_where() {
     assert_eq!(refused(&[0xFE, 0xFE, 3, 0x20, 1]), (Reason::Truncated, 5));
     assert_eq!(
         refused(&[0xFE, 0xFE, 3, 0x20, 1, 0xFB]),
-        (Reason::BadFooter, 5)
+        (Reason::BadCheck, 5)
     );
     assert_eq!(
         refused(&[0xFE, 0xFE, 3, 0x20, 1, 0xFA, 0]),

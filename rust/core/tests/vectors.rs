@@ -17,7 +17,7 @@ mod records;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cobotwire_core::{DecodeError, Direction, Framer, Listening, Value, decode, encode};
+use cobotwire_core::{Choice, DecodeError, Direction, Framer, Listening, Value, decode, encode};
 use common::{Sample, Samples, events};
 use records::{Edition, Vector};
 
@@ -69,7 +69,8 @@ fn every_sample_holds() {
 fn check(edition: &Edition, vector: &Vector) -> bool {
     if let (Some(frame), false) = (&vector.frame, vector.text) {
         assert_eq!(&encoded(edition, vector), frame, "encode {}", vector.name);
-        let decoded = decode(&edition.table, vector.direction, frame);
+        let of = Some(index(edition, vector));
+        let decoded = decode(&edition.table, vector.direction, frame, of);
         let decoded = decoded.unwrap_or_else(|error| panic!("decode {}: {error:?}", vector.name));
         assert!(
             same(&decoded.values, &vector.values),
@@ -79,7 +80,7 @@ fn check(edition: &Edition, vector: &Vector) -> bool {
         find(edition, vector.direction, frame, &vector.name);
     }
     if let (Some(printed), Some(refused)) = (&vector.printed, &vector.refused) {
-        let met = match decode(&edition.table, vector.direction, printed) {
+        let met = match decode(&edition.table, vector.direction, printed, None) {
             Err(DecodeError::Frame { reason, offset }) => (reason.word().to_owned(), offset),
             Err(DecodeError::Raw(bad)) => ("bad-value".to_owned(), bad.offset),
             Ok(decoded) => panic!("{} was decoded: {decoded:?}", vector.name),
@@ -90,15 +91,21 @@ fn check(edition: &Edition, vector: &Vector) -> bool {
 }
 
 fn encoded(edition: &Edition, vector: &Vector) -> Vec<u8> {
-    let index = edition
-        .names
-        .iter()
-        .position(|name| name == &vector.command);
-    let index = index.unwrap_or_else(|| panic!("no command {}", vector.command));
-    let command = &edition.table.commands()[index];
+    let (frame, command) = (
+        edition.table.frame(),
+        &edition.table.commands()[index(edition, vector)],
+    );
     let values = Samples(vector.values.clone());
-    encode::<Sample>(edition.table.frame(), command, vector.direction, &values)
+    let choice = Choice::default();
+    encode::<Sample>(frame, command, vector.direction, &values, choice)
         .unwrap_or_else(|error| panic!("encode {}: {error:?}", vector.name))
+}
+
+fn index(edition: &Edition, vector: &Vector) -> usize {
+    let mut names = edition.names.iter();
+    names
+        .position(|name| name == &vector.command)
+        .unwrap_or_else(|| panic!("no command {}", vector.command))
 }
 
 fn same(mut decoded: &[Value], values: &[Sample]) -> bool {

@@ -16,7 +16,12 @@ pub fn bad_value(layout: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr 
             .and_then(|index| isize::try_from(index).ok())
             .unwrap_or(-1);
         let refuse = Names::get(layout.py())?.refuse_value.bind(layout.py());
-        refuse.call1((field, case, element, bad.fault.word(), &bad.value.0))
+        // Where no case was picked, the reference shows the whole number that picks none.
+        let value = match bad.picked {
+            Some(picked) => picked.into_pyobject(layout.py())?.into_any(),
+            None => bad.value.0,
+        };
+        refuse.call1((field, case, element, bad.fault.word(), value))
     };
     raised(make())
 }

@@ -45,7 +45,7 @@ impl NativeFramer {
 }
 
 /// The bytes of any buffer, taken as the reference takes them: refused alike, too.
-pub fn copied(data: &Bound<'_, PyAny>) -> PyResult<Vec<u8>> {
+fn copied(data: &Bound<'_, PyAny>) -> PyResult<Vec<u8>> {
     let all = PyByteArray::new(data.py(), &[]).call_method1("__iadd__", (data,))?;
     Ok(all.cast_into::<PyByteArray>()?.to_vec())
 }

@@ -4,8 +4,8 @@
 #![allow(dead_code)]
 
 use cobotwire_core::{
-    Case, Command, Event, Field, FrameFormat, Framer, Given, Layout, Number, Order, Reason, Row,
-    Table, Unread, ValueFault,
+    Case, Check, Command, Event, Field, FrameFormat, Framer, Given, Layout, Number, Order, Reason,
+    Row, Table, Unread, ValueFault,
 };
 
 /// A value as a caller may have it.
@@ -114,20 +114,26 @@ pub fn field(numbers: Vec<Number>, many: bool) -> Field {
 pub fn frame_format() -> FrameFormat {
     FrameFormat {
         header: [0xFE, 0xFE],
-        footer: 0xFA,
+        addresses: vec![],
+        check: Check::Footer(0xFA),
         maximum_length: 16,
     }
 }
 
 /// A table whose command `n` has id `0x20 + n`, and one form in each direction: these fields.
 pub fn table(forms: Vec<Vec<Field>>) -> Table {
+    table_of(frame_format(), forms)
+}
+
+/// The same with other frames.
+pub fn table_of(frame: FrameFormat, forms: Vec<Vec<Field>>) -> Table {
     let command = |(id, fields): (u8, Vec<Field>)| Command {
         id,
         request: vec![Layout::new(fields.clone())],
         reply: vec![Layout::new(fields)],
     };
     let commands = (0x20..).zip(forms).map(command).collect();
-    Table::new(frame_format(), commands).expect("the tests' tables are sound")
+    Table::new(frame, commands).expect("the tests' tables are sound")
 }
 
 /// An event with its own bytes; `None` is a frame.

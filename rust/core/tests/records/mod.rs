@@ -1,6 +1,8 @@
 //! Reads the generator's JSON: the records of Python's `cobotwire.table`, attribute by attribute.
 
-use cobotwire_core::{Case, Command, Direction, Field, FrameFormat, Layout, Number, Order, Table};
+use cobotwire_core::{
+    Case, Check, Command, Direction, Field, FrameFormat, Layout, Number, Order, Table,
+};
 use serde_json::Value;
 
 use crate::common::Sample;
@@ -74,15 +76,31 @@ fn sample(json: &Value) -> Sample {
 }
 
 fn frame(json: &Value) -> FrameFormat {
-    let (header, footer) = (all(&json["header"], whole), all(&json["footer"], whole));
-    let byte = |value: i64| u8::try_from(value).expect("a byte");
-    match (header.as_slice(), footer.as_slice()) {
-        ([first, second], [last]) => FrameFormat {
-            header: [byte(*first), byte(*second)],
-            footer: byte(*last),
-            maximum_length: whole(&json["maximum_length"]),
+    let bytes = |json: &Value| -> Vec<u8> {
+        let wholes = all(json, whole).into_iter();
+        wholes
+            .map(|value| u8::try_from(value).expect("a byte"))
+            .collect()
+    };
+    // Files of before there were other checks than a footer do not name it.
+    let check = match json["check"].as_str().unwrap_or("footer") {
+        "footer" => Check::Footer(bytes(&json["footer"])[0]),
+        "crc16-modbus" => Check::Crc16Modbus,
+        "sum" => Check::Sum,
+        other => panic!("{other} is no check"),
+    };
+    let addresses = &json["addresses"];
+    FrameFormat {
+        header: bytes(&json["header"])
+            .try_into()
+            .expect("the header is two bytes"),
+        addresses: if addresses.is_null() {
+            vec![]
+        } else {
+            bytes(addresses)
         },
-        _ => panic!("the header is two bytes and the footer one"),
+        check,
+        maximum_length: whole(&json["maximum_length"]),
     }
 }
 
