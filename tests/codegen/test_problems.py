@@ -1,104 +1,95 @@
-"""A bad spec is refused with file, line, column, what is wrong, and the nearest right spelling."""
+"""Every bad spec is refused in the exact words that stand beside it: place, code, message."""
 
 from __future__ import annotations
 
-import shutil
+import json
+import subprocess
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
-
-import vectors
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check
 from cobotwire_codegen.errors import SpecError
-from cobotwire_codegen.project import editions
+from ruamel.yaml import YAML
 
-TYPES, COORDS, DOCUMENT = "types.yaml", "commands/coords.yaml", "vectors/document.yaml"
-
-# Each: the file, what stands in it, what takes its place, and what the generator says of it. The
-# place is where the replaced text starts, unless the problem shows elsewhere.
-BAD = [
-    ("unknown key", COORDS, "    safety: query\n", "    safty: query\n", "unknown-key: the command get_coords has no key safty; did you mean safety?"),
-    ("missing key", COORDS, "    title: Read the coordinates\n", "", "missing-key: the command get_coords lacks the key title"),
-    ("unknown word", COORDS, "safety: query", "safety: querry", "unknown-word: safety of the command get_coords cannot be querry; did you mean query?"),
-    ("unknown type", COORDS, "is: move_mode", "is: move_mod", "unknown-type: there is no type move_mod; did you mean move_mode?"),
-    ("duplicate key", COORDS, "    id: 0x23\n", "    id: 0x23\n    id: 0x23\n", "duplicate-key: id stands already in line"),
-    ("syntax", COORDS, "safety: query", "safety: [query", "syntax: "),
-    ("a word for an id", COORDS, "id: 0x23", "id: twenty", "wrong-kind: id of the command get_coords must be a whole number"),
-    ("an id that is no byte", COORDS, "id: 0x23", "id: 0x123", "bad-id: the id 0x123 is no byte"),
-    ("an ambiguous layout", COORDS, "id: 0x23", "id: 0x20", "ambiguous-layout: the request of get_coords has the id 0x20 and 0 data bytes"),
-    ("a keyword for a name", COORDS, "name: speed, is: speed}\n    disputed", "name: class, is: speed}\n    disputed", "bad-name: class cannot be a name here"),
-    ("a field twice", COORDS, "name: mode, is", "name: speed, is", "duplicate-field: speed stands twice"),
-    ("an unknown selector", COORDS, "by: axis", "by: axs", "bad-selector: by: axs must name an enum field"),
-    ("a missing case", COORDS, "          RZ: {is: rotation}\n", "", "missing-case: the field coord of the command send_coord has no case for RZ"),
-    ("an unknown case", COORDS, "          RZ: {is: rotation}\n", "          RZZ: {is: rotation}\n", "unknown-case: RZZ is no open case; did you mean RZ?"),
-    ("uneven cases", COORDS, "          RZ: {is: rotation}\n", "          RZ: {is: speed}\n", "uneven-cases: the cases of coord differ in length"),
-    ("a query without a reply", COORDS, "    reply:\n      - {name: coords, is: coords}\n", "", "mute-query: the query get_coords has no reply"),
-    ("a dispute without evidence", TYPES, "        evidence:\n          - {source: document, lines: [1732]", "        proof:\n          - {source: document, lines: [1732]", "no-evidence: a disputed fact must carry its evidence"),
-    ("an unsayable range", TYPES, "    wire: word\n    range: [1, 65535]", "    wire: word\n    scale: 2\n    range: [1, 65535]", "unsayable-range: the range of port falls between two steps of 2"),
-    ("a range beyond the wire", TYPES, "range: [1, 65535]", "range: [1, 65536]", "range-too-wide: the range of port is wider than its wire type: 0..65535"),
-    ("a range upside down", TYPES, "range: [1, 65535]", "range: [65535, 1]", "bad-range: range of the quantity port must be [lowest, highest]"),
-    ("an unknown wire type", TYPES, "    wire: word\n    range: [1, 65535]", "    wire: wrod\n    range: [1, 65535]", "unknown-wire: there is no wire type wrod; did you mean word?"),
-    ("an unknown unit", TYPES, "unit: millimetre", "unit: milimetre", "unknown-word: unit of the quantity length cannot be milimetre; did you mean millimetre?"),
-    ("a member twice", TYPES, "TOOL: {value: 1,", "TOOL: {value: 0,", "duplicate-value: TOOL and FLANGE are both 0"),
-    ("a member too wide", TYPES, "TOOL: {value: 1,", "TOOL: {value: 256,", "value-too-wide: TOOL = 256 does not fit into byte"),
-    ("a vector that differs", DOCUMENT, "values: {axis: X, coord: 200, speed: 20}", "values: {axis: X, coord: 201, speed: 20}", "vector-differs: example-19: the values build FE FE 06 24 01 07 DA 14 FA"),
-    ("a vector of nothing", DOCUMENT, "command: send_coord\n", "command: send_cord\n", "unknown-command: there is no command send_cord; did you mean send_coord?"),
-    ("a tag", COORDS, "safety: query", "safety: !!python/name:os.system query", "bad-tag: "),
-]  # fmt: skip
+HERE = Path(__file__).parent
+LAMP = (HERE / "lamp.yaml").read_text()
+BAD: dict[str, list[dict[str, Any]]] = YAML(typ="safe").load(HERE / "bad_specs.yaml")
 
 
-@pytest.fixture
-def spec(tmp_path: Path) -> Path:
-    """A copy of the project's spec that a test may spoil."""
-    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
-    return tmp_path
+def _name(case: dict[str, Any]) -> str:
+    return str(case["name"])
 
 
-@pytest.mark.parametrize(
-    ("file", "old", "new", "said"), [b[1:] for b in BAD], ids=[b[0] for b in BAD]
-)
-def test_a_bad_spec_is_refused_with_its_place(
-    spec: Path, file: str, old: str, new: str, said: str
-) -> None:
-    path = spec / "spec" / file
-    text = path.read_text()
-    assert old in text, "the test must spoil something"
-    path.write_text(text.replace(old, new, 1))
-    with pytest.raises(SpecError) as caught:
-        editions(spec)
-    lines = [str(problem) for problem in caught.value.problems]
-    match = next((line for line in lines if said in line), None)
-    assert match is not None, lines
-    place, _, _ = match.partition(": ")
-    name, line, column = place.rsplit(":", 2)
-    assert name.startswith("spec/")
-    assert int(line) >= 1
-    assert int(column) >= 1
+def _problems(path: Path) -> list[str]:
+    try:
+        check(build_edition(path, path.parent))
+    except SpecError as error:
+        return [str(problem) for problem in error.problems]
+    return []
 
 
-def test_the_place_is_the_very_line_and_column(spec: Path) -> None:
-    path = spec / "spec" / COORDS
-    lines = path.read_text().splitlines()
-    row = next(index for index, line in enumerate(lines) if "safety: query" in line)
-    lines[row] = lines[row].replace("safety", "safty")
-    path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(SpecError) as caught:
-        editions(spec)
-    place = next(p.place for p in caught.value.problems if p.code == "unknown-key")
-    assert str(place) == f"spec/commands/coords.yaml:{row + 1}:5"
+def test_the_base_of_all_is_good(tmp_path: Path) -> None:
+    (tmp_path / "lamp.yaml").write_text(LAMP)
+    assert _problems(tmp_path / "lamp.yaml") == []
 
 
-def test_all_problems_are_told_at_once(spec: Path) -> None:
-    path = spec / "spec" / COORDS
-    path.write_text(
-        path.read_text().replace("is: speed", "is: sped").replace("is: axis", "is: axs")
+@pytest.mark.parametrize("case", BAD["one_file"], ids=_name)
+def test_a_bad_file_is_refused_in_these_words(tmp_path: Path, case: dict[str, Any]) -> None:
+    assert LAMP.count(case["replace"]) >= 1, "the case must spoil something"
+    path = tmp_path / "lamp.yaml"
+    path.write_text(LAMP.replace(case["replace"], case["by"], 1))
+    assert case["problems"]
+    assert _problems(path) == case["problems"]
+
+
+@pytest.mark.parametrize("case", BAD["delta"], ids=_name)
+def test_a_bad_delta_is_refused_in_these_words(tmp_path: Path, case: dict[str, Any]) -> None:
+    (tmp_path / "lamp.yaml").write_text(LAMP)
+    (tmp_path / "lantern.yaml").write_text(case["text"])
+    assert bool(case["problems"]) == (case["name"] != "good")
+    assert _problems(tmp_path / "lantern.yaml") == case["problems"]
+
+
+def test_files_that_cannot_be_read_are_problems_too(tmp_path: Path) -> None:
+    binary = tmp_path / "lamp.yaml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    [problem] = _problems(binary)
+    assert problem.startswith("lamp.yaml:1:1: unreadable: ")
+    empty = tmp_path / "empty.yaml"
+    empty.write_text("")
+    assert "empty.yaml:1:1: wrong-kind: the edition is a plain value, but must be a mapping" in (
+        _problems(empty)
     )
-    with pytest.raises(SpecError) as caught:
-        editions(spec)
-    unknown = [p for p in caught.value.problems if p.code == "unknown-type"]
-    assert len(unknown) == 3
 
 
-def test_a_missing_file_is_named(spec: Path) -> None:
-    (spec / "spec" / TYPES).unlink()
-    with pytest.raises(SpecError, match=r"spec/editions/mycobot\.yaml:\d+:\d+: no-file: .*types"):
-        editions(spec)
+@pytest.mark.parametrize("form", ["text", "json", "github"])
+def test_the_checker_tells_all_at_once_in_three_formats(tmp_path: Path, form: str) -> None:
+    path = tmp_path / "lamp.yaml"
+    path.write_text(LAMP.replace("id: 0x30", "id: 0x130").replace("range: [1, 4]", "range: [4, 1]"))
+    command = [sys.executable, "-m", "cobotwire_codegen", "check", "lamp.yaml", "--format", form]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert result.returncode == 2
+    first = "range of the quantity channel must be [lowest, highest]"
+    if form == "json":
+        problems = json.loads(result.stdout)
+        assert problems[0]["code"] == "bad-range"
+        assert (problems[0]["file"], problems[0]["line"], problems[0]["column"]) == (
+            "lamp.yaml",
+            22,
+            35,
+        )
+    elif form == "github":
+        line = f"::error file=lamp.yaml,line=22,col=35,title=bad-range::{first}"
+        assert line in result.stdout
+    else:
+        assert f"lamp.yaml:22:35: bad-range: {first}" in result.stderr
+
+
+def test_a_folder_without_an_edition_is_a_problem(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "cobotwire_codegen", "--root", str(tmp_path)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert "no-edition: there is no edition here" in result.stderr

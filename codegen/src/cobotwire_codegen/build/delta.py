@@ -34,6 +34,8 @@ def _apply(parts: Parts, node: Node, problems: list[Problem]) -> None:
         reader.problem("bad-change", f"a change is just one of {', '.join(OPERATIONS)}")
         return
     names = reader.names(chosen[0])
+    for key in _KEYS.get(chosen[0], ()):
+        reader.node(key)
     what = OPERATIONS[chosen[0]](parts, reader, names)
     change = Change(node.place, what, reader.text("why"), evidence(reader))
     if not change.evidence:
@@ -112,6 +114,14 @@ OPERATIONS: dict[str, Operation] = {
     "change": _change,
     "change_type": _change_type,
     "withdraw": _withdraw,
+}
+
+
+# The keys that a change may have, whether or not what it changes is there.
+_KEYS = {
+    "rename": ("to",),
+    "change": ("set", "unset", "request", "reply"),
+    "change_type": ("set", "unset"),
 }
 
 

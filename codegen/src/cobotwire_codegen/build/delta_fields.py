@@ -40,6 +40,8 @@ def change_fields(command: Mapping, key: str, operations: list[Node], outer: Rea
 def _change_field(fields: list[Node], operation: Node, key: str, outer: Reader) -> str:
     reader = Reader(operation, f"a change of the {key}", outer.problems)
     verbs = [verb for verb in _VERBS if reader.node(verb) is not None]
+    for key in ("after", "to", "set", "unset"):
+        reader.node(key)
     words = ""
     if len(verbs) != 1:
         reader.problem("bad-change", f"a change of a field is just one of {', '.join(_VERBS)}")

@@ -137,8 +137,8 @@ def _add_commands(parts: Parts, reader: Reader, files: Files) -> None:
     node = reader.node("commands")
     if isinstance(node, Mapping):
         # A protocol in one file: its commands are one family.
-        family = FamilyParts(node.place, "commands", "Commands", "All commands.")
-        _fill(parts, family, node, reader.problems)
+        new = FamilyParts(node.place, "commands", "Commands", "All commands.")
+        _fill(parts, parts.families.get("commands") or new, node, reader.problems)
         return
     for content in files.listed(reader, "commands"):
         inner = Reader(content, "the commands file", reader.problems)

@@ -22,9 +22,9 @@ def ranges_sayable(edition: Edition) -> Iterator[Problem]:
             message = f"the range of {quantity.name} falls between two steps of {quantity.scale}"
             yield Problem(quantity.place, "unsayable-range", message)
         elif lowest < quantity.wire.minimum or highest > quantity.wire.maximum:
-            low = quantity.wire.minimum * quantity.scale
-            high = quantity.wire.maximum * quantity.scale
-            message = f"the range of {quantity.name} is wider than its wire type: {low}..{high}"
+            low = float(quantity.wire.minimum * quantity.scale)
+            high = float(quantity.wire.maximum * quantity.scale)
+            message = f"the range of {quantity.name} is wider than its wire type: {low:g}..{high:g}"
             yield Problem(quantity.place, "range-too-wide", message)
 
 
