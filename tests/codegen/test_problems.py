@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from ruamel.yaml import YAML
+
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.errors import SpecError
-from ruamel.yaml import YAML
 
 HERE = Path(__file__).parent
 LAMP = (HERE / "lamp.yaml").read_text()

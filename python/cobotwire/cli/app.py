@@ -31,7 +31,12 @@ def _version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> No
 
 
 @click.group(cls=_App, context_settings={"help_option_names": ["-h", "--help"]}, epilog=EPILOG)
-@click.option("--edition", default=DEFAULT, show_default=True, help="The edition of the protocol.")
+@click.option(
+    "--edition",
+    default=DEFAULT,
+    show_default=True,
+    help="The edition of the protocol, or a package that cobotwire-gen build made.",
+)
 @click.option(
     "--version",
     is_flag=True,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from difflib import get_close_matches
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
 from typing import Protocol, cast
 
@@ -27,13 +29,26 @@ def names() -> list[str]:
 
 
 def load(name: str = DEFAULT) -> Edition:
-    """The edition called ``name``.
+    """The edition called ``name``: one that comes with cobotwire, or a package of your own.
+
+    Your own package is found as any import is, and also by the path of its folder.
 
     Raises:
-        UsageError: there is no such edition.
+        UsageError: there is no such edition, or the package is none.
     """
-    if name not in names():
+    if name in names():
+        return cast(Edition, import_module(f"cobotwire.editions.{name}"))
+    folder = Path(name)
+    if (folder / "__init__.py").is_file():
+        sys.path.insert(0, str(folder.resolve().parent))
+        name = folder.resolve().name
+    try:
+        package = import_module(name)
+    except (ModuleNotFoundError, ValueError, TypeError):
         near = get_close_matches(name, names(), n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
-        raise UsageError("edition", name, f"one of {', '.join(names())}{hint}")
-    return cast(Edition, import_module(f"cobotwire.editions.{name}"))
+        allowed = f"one of {', '.join(names())}, or a package that cobotwire-gen build made{hint}"
+        raise UsageError("edition", name, allowed) from None
+    if not hasattr(package, "TABLE") or not hasattr(package, "CLIENT"):
+        raise UsageError("edition", name, "a package that cobotwire-gen build made")
+    return cast(Edition, package)

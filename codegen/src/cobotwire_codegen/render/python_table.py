@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Family, Field, Text, Type, Value
+from cobotwire_codegen.model import Command, Edition, Family, Field, Text, Type, Value
 from cobotwire_codegen.render.literal import Call, Name
+
+
+def all_commands(edition: Edition) -> tuple[Name, ...]:
+    """The commands of all families, as one tuple."""
+    return tuple(Name(f"*{family.name}.COMMANDS") for family in edition.families)
+
+
+def addresses(edition: Edition) -> tuple[int, ...]:
+    """The legal address bytes, as one tuple."""
+    return tuple(member.value for member in edition.frame.addresses)
 
 
 def type_expression(type: Type) -> tuple[Call, ...]:

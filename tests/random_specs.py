@@ -1,0 +1,217 @@
+"""Random protocols: every part of the spec's language, in any mixture that the checker takes."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from hypothesis import strategies as st
+from ruamel.yaml import YAML
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.model import Command, Edition, Enum, Field, Flag, Form, Quantity, Type
+from cobotwire_codegen.wire import build_frame
+
+# Scales whose multiples are finite decimals, so that a vector can say them exactly.
+SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
+UNITS = ["degree", "millimetre", "percent", "volt"]
+
+
+@st.composite
+def frames(draw: st.DrawFn) -> dict[str, Any]:
+    """One of the maker's three frame variants."""
+    check = draw(st.sampled_from(["footer", "crc16-modbus", "sum"]))
+    frame: dict[str, Any] = {"header": "FE FE", "maximum_data": 60, "doc": "A frame."}
+    if check == "footer":
+        frame["footer"] = draw(st.sampled_from(["FA", "00", "FE"]))
+        frame["length_counts"] = ["command", "data", "footer"]
+    else:
+        frame["check"] = check
+        frame["length_counts"] = ["command", "data", "check"]
+    if draw(st.booleans()):
+        values = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
+        frame["addresses"] = {f"A{v}": {"value": v, "doc": "An arm."} for v in values}
+    return {"frame": frame, "link": {"baudrate": 115200, "deadline_ms": 500}}
+
+
+@st.composite
+def types(draw: st.DrawFn) -> dict[str, Any]:
+    """Wire types, quantities, flags, enums and values."""
+    wires: dict[str, Any] = {"byte": {"bytes": 1, "doc": "A byte."}}
+    for index in range(draw(st.integers(1, 3))):
+        width = draw(st.integers(1, 4))
+        top = 256**width - 1
+        signs = st.sampled_from([top, top // 2]) | st.integers(0, top)
+        order = draw(st.sampled_from(["big", "little"]))
+        sign = draw(signs)
+        wires[f"w{index}"] = {"bytes": width, "order": order, "signed_at": sign, "doc": "A wire."}
+    quantities = {f"q{index}": draw(quantity(wires)) for index in range(draw(st.integers(2, 4)))}
+    names = st.sampled_from(sorted(quantities))
+    members = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
+    items = draw(st.lists(names, min_size=1, max_size=4))
+    return {
+        "wire": wires,
+        "quantities": {"joint": {"wire": "byte", "range": [1, 3], "doc": "A joint."}, **quantities},
+        "flags": {"flag": {"wire": "byte", "doc": "Yes or no."}},
+        "enums": {
+            "mode": {
+                "class": "Mode",
+                "wire": "byte",
+                "doc": "A mode.",
+                "members": {f"M{v}": {"value": v, "doc": "A member."} for v in members},
+            }
+        },
+        "values": {
+            "row": {
+                "class": "Row",
+                "doc": "A row.",
+                "items": {f"i{index}": name for index, name in enumerate(items)},
+            }
+        },
+    }
+
+
+@st.composite
+def quantity(draw: st.DrawFn, wires: dict[str, Any]) -> dict[str, Any]:
+    """A quantity on one of the wire types, with or without a range or choices."""
+    name = draw(st.sampled_from(sorted(wires)))
+    wire = wires[name]
+    top = 256 ** wire["bytes"] - 1
+    signed_at = wire.get("signed_at", top)
+    lowest = 0 if signed_at == top else signed_at + 1 - 256 ** wire["bytes"]
+    made: dict[str, Any] = {"wire": name, "doc": "A quantity."}
+    steps = st.integers(lowest, signed_at)
+    if draw(st.integers(0, 3)) == 0:
+        made["choices"] = draw(st.lists(steps, min_size=1, max_size=4, unique=True))
+        return made
+    scale = draw(st.sampled_from(SCALES))
+    made |= {"scale": scale, "unit": draw(st.sampled_from(UNITS))}
+    if draw(st.booleans()):
+        ends = sorted([draw(steps), draw(steps)])
+        made["range"] = [decimal(end * Fraction(scale)) for end in ends]
+    return made
+
+
+def decimal(exact: Fraction) -> Any:
+    """A number that YAML says exactly."""
+    if exact.denominator == 1:
+        return int(exact)
+    return float(Decimal(exact.numerator) / Decimal(exact.denominator))
+
+
+@st.composite
+def commands(draw: st.DrawFn) -> dict[str, Any]:
+    """Some commands; each has an id of its own, so that no two can be confused."""
+    kinds = st.sampled_from(["joint", "q0", "q1", "flag", "mode", "row"])
+    ids = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
+    made: dict[str, Any] = {}
+    for index, id in enumerate(ids):
+        fields: list[dict[str, Any]] = [
+            {"name": f"f{position}", "is": draw(kinds)}
+            for position in range(draw(st.integers(0, 3)))
+        ]
+        if draw(st.booleans()):
+            cases = {str(n): {"is": draw(st.sampled_from(["q0", "q0"]))} for n in (1, 2, 3)}
+            fields += [{"name": "chosen", "by": "number", "cases": cases}]
+            fields += [{"name": "number", "is": "joint"}]
+        if draw(st.booleans()):
+            fields.insert(0, {"name": "always", "is": "flag", "const": 1})
+        if draw(st.booleans()):
+            fields.append({"name": "extra", "is": draw(kinds), "optional": True})
+        command = {"id": id, "title": "A call", "doc": "Does it.", "safety": "setting"}
+        if fields:
+            command["request"] = fields
+        if draw(st.booleans()):
+            command["safety"] = "query"
+            reply: list[dict[str, Any]] = [{"name": "answer", "is": draw(kinds)}]
+            if any(field == {"name": "f0", "is": "joint"} for field in fields):
+                echo = draw(st.sampled_from(["required", "optional"]))
+                reply.insert(0, {"name": "f0", "is": "joint", "echo": echo})
+            command["reply"] = reply
+        made[f"call{index}"] = command
+    return made
+
+
+@st.composite
+def specs(draw: st.DrawFn, folder: Path, name: str = "rnd") -> tuple[Path, Edition]:
+    """A whole protocol as one YAML file, with a vector for each form; and its model."""
+    data: dict[str, Any] = {
+        "edition": name,
+        "class": "Rnd",
+        "title": "A random protocol",
+        "doc": "A random protocol.",
+        "joints": 3,
+        "frame": draw(frames()),
+        "types": draw(types()),
+        "commands": draw(commands()),
+    }
+    path = folder / f"{name}.yaml"
+    _write(path, data)
+    edition = build_edition(path, folder)
+    data["vectors"] = [
+        vector
+        for command in edition.commands
+        for direction in ("request", "reply")
+        for form in command.forms("request" if direction == "request" else "reply")
+        for vector in [draw(vectors(edition, command, direction, form))]
+    ]
+    _write(path, data)
+    return path, build_edition(path, folder)
+
+
+def _write(path: Path, data: dict[str, Any]) -> None:
+    yaml = YAML()
+    yaml.width = 4096
+    with path.open("w") as file:
+        yaml.dump(data, file)
+
+
+@st.composite
+def vectors(
+    draw: st.DrawFn, edition: Edition, command: Command, direction: Any, form: Form
+) -> dict[str, Any]:
+    """A vector for a form, its frame built by the generator's exact encoder."""
+    values: dict[str, Any] = {}
+    for field in form:
+        if not field.by:
+            values[field.name] = draw(_value(field, field.type))
+    for field in form:
+        if field.by:
+            cases = {member.name: type for member, type in field.cases}
+            values[field.name] = draw(_value(field, cases[str(values[field.by])]))
+    exact = {field.name: values[field.name] for field in form}
+    frame = build_frame(edition.frame, command, direction, exact)
+    return {
+        "name": f"{command.name} {direction} {len(form)}",
+        "command": command.name,
+        "direction": direction,
+        "frame": frame.hex(" "),
+        "values": {key: _said(value) for key, value in exact.items()},
+    }
+
+
+def _value(field: Field, type: Type) -> st.SearchStrategy[Any]:
+    if field.const is not None:
+        return st.just(bool(field.const) if isinstance(type, Flag) else field.const)
+    if isinstance(type, Flag):
+        return st.booleans()
+    if isinstance(type, Enum):
+        return st.sampled_from([member.name for member in type.members])
+    if isinstance(type, Quantity):
+        return _number(type)
+    return st.tuples(*(_number(item) for _, item in type.items))
+
+
+def _number(type: Quantity) -> st.SearchStrategy[Fraction]:
+    if type.choices:
+        return st.sampled_from(type.choices).map(Fraction)
+    lowest, highest = (int(bound) for bound in type.bounds)
+    return st.integers(lowest, highest).map(lambda steps: steps * type.scale)
+
+
+def _said(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_said(item) for item in value]
+    return decimal(value) if isinstance(value, Fraction) else value
