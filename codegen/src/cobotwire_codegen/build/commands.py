@@ -9,7 +9,17 @@ from typing import Literal
 from cobotwire_codegen.build.types import Types, disputes, stand_in
 from cobotwire_codegen.errors import Place, Problem, nearest
 from cobotwire_codegen.load import Node
-from cobotwire_codegen.model import SAFETY, Command, Enum, Family, Field, Member, Quantity, Text, Type
+from cobotwire_codegen.model import (
+    SAFETY,
+    Command,
+    Enum,
+    Family,
+    Field,
+    Member,
+    Quantity,
+    Text,
+    Type,
+)
 from cobotwire_codegen.reader import Reader
 
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")

@@ -166,7 +166,9 @@ def disputes(reader: Reader) -> tuple[Dispute, ...]:
         evidence = []
         for item in inner.items("evidence"):
             source = Reader(item, "a piece of evidence", reader.problems)
-            evidence.append(Evidence(source.text("source"), source.lines("lines"), source.text("says")))
+            evidence.append(
+                Evidence(source.text("source"), source.lines("lines"), source.text("says"))
+            )
             source.done()
         dispute = Dispute(
             node.place,
