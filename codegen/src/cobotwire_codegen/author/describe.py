@@ -1,0 +1,122 @@
+"""A problem code or a command in plain text, for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from textwrap import fill, indent
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.author.codes import Explanation
+from cobotwire_codegen.model import Command, Edition, Evidence, Form, Vector
+from cobotwire_codegen.render import markdown, words
+
+_WIDTH = 96
+
+
+def describe_code(explanation: Explanation) -> str:
+    """All that is said of a problem code."""
+    parts = [
+        f"{explanation.code}: {explanation.means}",
+        f"Why: {explanation.why}",
+        f"Mend: {explanation.mend}",
+    ]
+    text = "\n".join(fill(part, _WIDTH, subsequent_indent="  ") for part in parts)
+    wrong, right = indent(explanation.wrong, "  "), indent(explanation.right, "  ")
+    return f"{text}\n\nWrong:\n{wrong}\n\nRight:\n{right}"
+
+
+def describe_command(edition: Edition, command: Command) -> str:
+    """The reference of a command."""
+    return "\n".join(line.rstrip() for line in _command(edition, command))
+
+
+def _command(edition: Edition, command: Command) -> Iterator[str]:
+    source = f", document {words.lines(command.source)}" if command.source else ""
+    yield f"{command.name}: {command.title} (id {command.id:#04x}, {command.safety}{source})"
+    yield _paragraph(command.doc)
+    for note in command.notes:
+        yield _paragraph(f"Note: {note}")
+    if command.alias:
+        yield _paragraph(f"The same message as {command.alias}, under a name of its own.")
+    for form in command.requests:
+        yield from _message(edition, command, "request", form)
+    yield from _answer(edition, command)
+    yield from _fields(command)
+    yield from _vectors(edition, command)
+    yield from _disputes(edition, command)
+    yield from _history(edition, command)
+
+
+def _paragraph(text: str) -> str:
+    return fill(text, _WIDTH, initial_indent="  ", subsequent_indent="    ")
+
+
+def _message(edition: Edition, command: Command, direction: str, form: Form) -> Iterator[str]:
+    yield ""
+    yield f"{direction.capitalize()}, byte by byte:"
+    for position, content, value in markdown.byte_rows(edition, command, form):
+        yield f"  {position:<6} {content.replace('`', ''):<24} {value}"
+
+
+def _answer(edition: Edition, command: Command) -> Iterator[str]:
+    if command.request_text is not None:
+        yield f"\nFollowed by text outside any frame: {markdown.pattern(command.request_text)}"
+    for form in command.replies:
+        yield from _message(edition, command, "reply", form)
+    if command.ack:
+        yield "  An acknowledgement: it may come, late or never, and is not waited for."
+    if command.text is not None:
+        yield f"\nReply, text outside any frame: {markdown.pattern(command.text)}"
+    if command.answers:
+        yield f"  Answered within {command.deadline_ms} ms."
+    elif not command.replies:
+        yield "\nReply: none."
+
+
+def _fields(command: Command) -> Iterator[str]:
+    rows = markdown.field_rows(command)
+    if rows:
+        yield "\nFields:"
+    for direction, field in rows:
+        doc = markdown.field_doc(field)
+        yield _paragraph(f"{field.name} ({direction}): {doc} {words.allowed(field)}.")
+
+
+def _vectors(edition: Edition, command: Command) -> Iterator[str]:
+    found = [vector for vector in edition.vectors if vector.command == command.name]
+    if found:
+        yield "\nVectors:"
+    yield from map(_vector, found)
+
+
+def _vector(vector: Vector) -> str:
+    shown = vector.text if vector.frame is None else markdown.hexed(vector.frame)
+    values = f": {markdown.spoken(vector)}" if vector.values else ""
+    line = f" (line {vector.line})" if vector.line else ""
+    stray = "no frame of its own; see the errata"
+    return f"  {vector.name}{line}, {vector.direction}: {shown or stray}{values}"
+
+
+def _disputes(edition: Edition, command: Command) -> Iterator[str]:
+    types = (q.disputed for q in markdown.disputed_types(edition, command))
+    for dispute in (*command.disputed, *(dispute for some in types for dispute in some)):
+        yield ""
+        yield lower.dispute_note(dispute)
+        yield from _evidence(dispute.evidence)
+
+
+def _history(edition: Edition, command: Command) -> Iterator[str]:
+    for change in command.changes:
+        yield f"\nAgainst {edition.base}: {change.what} {change.why}"
+        yield from _evidence(change.evidence)
+    for erratum in markdown.errata(edition, command):
+        where = words.lines(erratum.lines)
+        yield f"\nErratum ({where}): the document says {erratum.says!r}"
+        yield _paragraph(f"read as: {erratum.read}")
+        yield _paragraph(f"because {erratum.why}")
+
+
+def _evidence(pieces: tuple[Evidence, ...]) -> Iterator[str]:
+    for piece in pieces:
+        where = f", {words.lines(piece.lines)}" if piece.lines else ""
+        yield _paragraph(f"{piece.source}{where}: {piece.says}")

@@ -1,0 +1,49 @@
+"""``cobotwire-gen explain``: what a problem code means, or what a command is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cobotwire_codegen.author.codes import CODES
+from cobotwire_codegen.author.describe import describe_code, describe_command
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.cli.shared import edition_path, problems_told
+from cobotwire_codegen.errors import nearest
+
+DEFAULT_EDITION = "spec/editions/mycobot.yaml"
+
+
+@click.command()
+@click.argument("word", required=False)
+@click.option(
+    "--edition",
+    "file",
+    default=DEFAULT_EDITION,
+    show_default=True,
+    help="The edition whose commands can be explained.",
+)
+def explain(word: str | None, file: str) -> None:
+    """Explain WORD: a problem code, or a command of the edition. Without WORD, list the codes."""
+    if word is None:
+        for code, explanation in sorted(CODES.items()):
+            click.echo(f"{code:<20} {explanation.means}")
+        return
+    if word in CODES:
+        click.echo(describe_code(CODES[word]))
+        return
+    with problems_told():
+        # Not checked: who asks what a command is may be in the middle of mending it.
+        edition = build_edition(edition_path(file), Path.cwd())
+    commands = {command.name: command for command in edition.commands}
+    if word not in commands:
+        hint = _hint(word, [*CODES, *commands])
+        raise click.UsageError(f"{word} is no problem code and no command of {edition.name}{hint}")
+    click.echo(describe_command(edition, commands[word]))
+
+
+def _hint(word: str, known: list[str]) -> str:
+    hint = nearest(word, known)
+    # Two hundred words help nobody.
+    return hint if "did you mean" in hint else "; `cobotwire-gen explain` lists the codes"

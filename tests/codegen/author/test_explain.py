@@ -1,0 +1,132 @@
+"""Every problem code is explained, and every explanation's lines give what they say."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+from textwrap import dedent, indent
+
+import pytest
+
+import vectors
+from cobotwire_codegen.author.codes import CODES, Explanation
+from cobotwire_codegen.project import editions
+from codegen.author import samples
+
+SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
+# What speaks of a folder, not of lines in a file.
+WITHOUT_LINES = {"no-edition"}
+
+
+def _calls() -> Iterator[tuple[str, ast.Call]]:
+    for path in SOURCES.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call):
+                function = node.func
+                name = function.attr if isinstance(function, ast.Attribute) else ""
+                yield (function.id if isinstance(function, ast.Name) else name), node
+
+
+def _emitted() -> set[str]:
+    """The codes in the sources: where each is an argument, and the kinds behind ``find``."""
+    found = set()
+    for name, call in _calls():
+        code = {"Problem": 1, "problem": 0}.get(name)
+        argument = call.args[code] if code is not None and len(call.args) > code else None
+        if isinstance(argument, ast.Constant):
+            found.add(str(argument.value))
+        elif argument is not None:
+            assert ast.unparse(argument) in ("f'unknown-{what}'", "code"), ast.unparse(argument)
+        if name == "find" and len(call.args) == 5:
+            what = call.args[2]
+            assert isinstance(what, ast.Constant) and isinstance(what.value, str)
+            found.add(f"unknown-{what.value}")
+    return found
+
+
+def test_every_code_is_explained_and_no_other() -> None:
+    assert _emitted() == set(CODES)
+
+
+def test_the_samples_have_no_problem() -> None:
+    for name in samples.EDITIONS:
+        assert samples.problems(samples.FOLDER / name) == []
+
+
+def _places(text: str, block: str) -> Iterator[tuple[int, int, str]]:
+    """Where the lines of a block stand in a text, at whatever indentation."""
+    lines, size = text.splitlines(), block.count("\n") + 1
+    for start in range(len(lines) - size + 1):
+        piece = "\n".join(lines[start : start + size])
+        if dedent(piece) == block:
+            yield start, start + size, " " * (len(lines[start]) - len(lines[start].lstrip()))
+
+
+def _spoilt(folder: Path, explanation: Explanation) -> Iterator[Path]:
+    """The files of a folder in turn, with each right block made wrong."""
+    for path in sorted(folder.glob("*.yaml")):
+        text = path.read_text()
+        lines = text.splitlines()
+        for start, end, margin in _places(text, explanation.right):
+            wrong = indent(explanation.wrong, margin).splitlines()
+            path.write_text("\n".join([*lines[:start], *wrong, *lines[end:]]) + "\n")
+            yield path
+        path.write_text(text)
+
+
+@pytest.mark.parametrize("code", sorted(CODES.keys() - WITHOUT_LINES))
+def test_the_wrong_lines_give_the_code_and_the_right_ones_do_not(tmp_path: Path, code: str) -> None:
+    folder = samples.copied(tmp_path)
+    (folder / "photo.jpg").write_bytes(b"\xff\xd8\xff")
+    found = {
+        problem.code
+        for _ in _spoilt(folder, CODES[code])
+        for name in samples.EDITIONS
+        for problem in samples.problems(folder / name)
+    }
+    assert code in found
+
+
+def test_a_code_is_explained_in_text(tmp_path: Path) -> None:
+    result = samples.run(tmp_path, "explain", "uneven-cases")
+    assert result.returncode == 0
+    for part in (CODES["uneven-cases"].means, "Why: ", "Mend: ", "TURN: {is: pose}"):
+        assert part in result.stdout
+
+
+def test_without_a_word_all_codes_are_listed(tmp_path: Path) -> None:
+    lines = samples.run(tmp_path, "explain").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == sorted(CODES)
+
+
+def test_a_command_is_explained_whole() -> None:
+    result = samples.run(vectors.ROOT, "explain", "send_angle")
+    assert result.returncode == 0
+    assert "send_angle: Send one joint to an angle (id 0x21, motion" in result.stdout
+    assert "FE FE 06 21 01 00 00 14 FA: joint = 1, angle = 0, speed = 20" in result.stdout
+
+
+def test_every_command_of_every_edition_can_be_explained() -> None:
+    from cobotwire_codegen.author.describe import describe_command
+
+    for edition in editions(vectors.ROOT):
+        for command in edition.commands:
+            text = describe_command(edition, command)
+            assert text.startswith(f"{command.name}: ")
+            assert command.doc.split()[0] in text
+
+
+def test_the_edition_can_be_chosen() -> None:
+    result = samples.run(samples.FOLDER, "explain", "set_light", "--edition", "lamp2.yaml")
+    assert "Against lamp: Changed set_light" in result.stdout
+    assert "it shone red" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("word", "near"), [("uneven-case", "uneven-cases"), ("send_angel", "send_angle")]
+)
+def test_an_unknown_word_gets_the_nearest(word: str, near: str) -> None:
+    result = samples.run(vectors.ROOT, "explain", word)
+    assert result.returncode == 2
+    assert f"did you mean {near}?" in result.stderr
