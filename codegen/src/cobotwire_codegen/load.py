@@ -10,6 +10,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.nodes import MappingNode, ScalarNode, SequenceNode
 from ruamel.yaml.nodes import Node as YamlNode
+from ruamel.yaml.reader import ReaderError
 
 from cobotwire_codegen.errors import Place, Problem, SpecError
 
@@ -63,33 +64,52 @@ def load(path: Path, shown: str | None = None) -> Node:
 
 def parse(text: str, name: str) -> Node:
     """Read YAML text; ``name`` stands for the file in messages."""
+    problems: list[Problem] = []
     try:
         root = YAML(typ="safe", pure=True).compose(text)
+        node = None if root is None else _convert(root, name, problems, ())
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = Place(name, mark.line + 1, mark.column + 1) if mark else Place(name, 1, 1)
         raise SpecError([Problem(place, "syntax", error.problem or "not YAML")]) from error
-    if root is None:
-        return Scalar(Place(name, 1, 1), None)
-    problems: list[Problem] = []
-    node = _convert(root, name, problems)
+    except ReaderError as error:
+        before = text[: error.position]
+        column = error.position - (before.rfind("\n") + 1) + 1
+        place = Place(name, before.count("\n") + 1, column)
+        message = f"the character U+{ord(text[error.position]):04X} cannot stand in YAML"
+        raise SpecError([Problem(place, "syntax", message)]) from error
+    except RecursionError:
+        raise SpecError([Problem(Place(name, 1, 1), "syntax", "nested too deeply")]) from None
     if problems:
         raise SpecError(problems)
-    return node
+    return node if node is not None else Scalar(Place(name, 1, 1), None)
 
 
-def _convert(node: YamlNode, name: str, problems: list[Problem]) -> Node:
+def _convert(
+    node: YamlNode, name: str, problems: list[Problem], above: tuple[YamlNode, ...]
+) -> Node:
     place = Place(name, node.start_mark.line + 1, node.start_mark.column + 1)
+    if any(node is outer for outer in above):
+        problems.append(Problem(place, "syntax", "an alias stands inside of what it names"))
+        return Scalar(place, None)
+    above = (*above, node)
     if isinstance(node, ScalarNode):
         return _scalar(node, place, problems)
     if isinstance(node, SequenceNode):
-        return Sequence(place, tuple(_convert(item, name, problems) for item in node.value))
+        items = tuple(_convert(item, name, problems, above) for item in node.value)
+        return Sequence(place, items)
     if isinstance(node, MappingNode):
-        return _mapping(node, place, name, problems)
+        return _mapping(node, place, name, problems, above)
     raise AssertionError(f"{place}: unknown kind of node {node!r}")
 
 
-def _mapping(node: MappingNode, place: Place, name: str, problems: list[Problem]) -> Mapping:
+def _mapping(
+    node: MappingNode,
+    place: Place,
+    name: str,
+    problems: list[Problem],
+    above: tuple[YamlNode, ...],
+) -> Mapping:
     mapping = Mapping(place, {})
     for key_node, value in node.value:
         key_place = Place(name, key_node.start_mark.line + 1, key_node.start_mark.column + 1)
@@ -103,27 +123,32 @@ def _mapping(node: MappingNode, place: Place, name: str, problems: list[Problem]
                 Problem(key_place, "duplicate-key", f"{key} stands already in line {first.line}")
             )
             continue
-        mapping.entries[key] = _convert(value, name, problems)
+        mapping.entries[key] = _convert(value, name, problems, above)
         mapping.keys[key] = key_place
     return mapping
 
 
 def _scalar(node: ScalarNode, place: Place, problems: list[Problem]) -> Scalar:
     text, tag = node.value, str(node.tag).removeprefix(_TAG)
-    if tag == "int":
-        return Scalar(place, int(text.replace("_", ""), 0))
     if tag == "bool":
         return Scalar(place, text.lower() == "true")
     if tag == "null":
         return Scalar(place, None)
-    if tag == "float":
+    if tag in ("int", "float"):
         try:
-            return Scalar(place, Fraction(text))
+            return Scalar(place, _whole(text) if tag == "int" else Fraction(text))
         except ValueError:
-            problems.append(
-                Problem(place, "bad-number", f"{text} is no number with an exact value")
-            )
+            shown = text if len(text) <= 40 else f"{text[:37]}..."
+            message = f"{shown} is no number with an exact value"
+            problems.append(Problem(place, "bad-number", message))
             return Scalar(place, None)
     if tag != "str":
         problems.append(Problem(place, "bad-tag", f"the tag {node.tag} is not taken"))
     return Scalar(place, text)
+
+
+def _whole(text: str) -> int:
+    """A whole number as YAML 1.2 spells it: a leading 0 alone changes nothing."""
+    digits = text.replace("_", "")
+    bases = {"0x": 16, "0o": 8, "0b": 2}
+    return int(digits, bases.get(digits.lstrip("+-")[:2].lower(), 10))

@@ -27,6 +27,16 @@ UNITS = (
 )
 CONFIDENCE = ("high", "medium", "low")
 VERDICTS = ("consistent", "erratum", "label only", "text and byte disagree")
+REASONS = (
+    "no-header",
+    "bad-address",
+    "bad-length",
+    "unknown-id",
+    "bad-check",
+    "truncated",
+    "trailing",
+    "bad-value",
+)
 ERRATUM_KINDS = ("text", "table", "title", "label", "example", "missing")
 
 

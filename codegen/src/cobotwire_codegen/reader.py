@@ -62,11 +62,25 @@ class Reader:
         if node is None:
             return default or ""
         if isinstance(node, Scalar) and isinstance(node.value, str) and node.value.strip():
-            return " ".join(node.value.split())
+            text = " ".join(node.value.split())
+            odd = next((letter for letter in text if not letter.isprintable()), None)
+            if odd is not None:
+                message = f"{key} of {self.what} holds U+{ord(odd):04X}, which cannot be printed"
+                self.problem("bad-character", message, node.place)
+                return default or ""
+            return text
         if isinstance(node, Scalar) and type(node.value) is int and default is None:
             return str(node.value)
         self.problem("wrong-kind", f"{key} of {self.what} must be text", node.place)
         return default or ""
+
+    def positive(self, key: str, default: int | None = None) -> int:
+        """A whole number above 0."""
+        value = self.integer(key, default)
+        node = self.node(key)
+        if value <= 0 and isinstance(node, Scalar) and type(node.value) is int:
+            self.problem("bad-number", f"{key} of {self.what} must be above 0", node.place)
+        return value
 
     def integer(self, key: str, default: int | None = None) -> int:
         """A whole number."""
@@ -172,13 +186,14 @@ class Reader:
 
     def range(self, key: str) -> tuple[Fraction, Fraction] | None:
         """A pair of numbers, lowest and highest."""
-        nodes = tuple(self.items(key))
-        if not nodes:
+        found = self.node(key)
+        if found is None:
             return None
+        nodes = tuple(self.items(key))
         ends = [as_fraction(node) for node in nodes]
         if len(ends) == 2 and ends[0] is not None and ends[1] is not None and ends[0] <= ends[1]:
             return ends[0], ends[1]
-        self.problem("bad-range", f"{key} of {self.what} must be [lowest, highest]", nodes[0].place)
+        self.problem("bad-range", f"{key} of {self.what} must be [lowest, highest]", found.place)
         return None
 
     def lines(self, key: str) -> Lines:

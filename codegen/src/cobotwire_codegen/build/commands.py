@@ -75,7 +75,7 @@ def _command(
         doc=reader.text("doc"),
         safety=reader.one_of("safety", SAFETY),
         source=reader.lines("source"),
-        deadline_ms=reader.integer("deadline_ms", deadline_ms),
+        deadline_ms=reader.positive("deadline_ms", deadline_ms),
         requests=build_forms(reader, "request", types) or ((),),
         replies=replies,
         ack=ack,

@@ -29,8 +29,8 @@ def build_frame_format(parts: Parts, outer: Reader, problems: list[Problem]) -> 
         addresses=_addresses(frame),
         maximum_data=frame.integer("maximum_data"),
         doc=frame.text("doc"),
-        baudrate=link.integer("baudrate"),
-        deadline_ms=link.integer("deadline_ms"),
+        baudrate=link.positive("baudrate"),
+        deadline_ms=link.positive("deadline_ms"),
     )
     if len(built.header) != 2 or len(built.footer) != (1 if word == "footer" else 0):
         frame.problem(

@@ -77,10 +77,17 @@ class Files:
             SpecError: there is none, and nothing can be said of what it would hold.
         """
         name = node.value if isinstance(node, Scalar) else None
-        if not isinstance(name, str) or not (self._folder / name).is_file():
-            problem = Problem(node.place, "no-file", f"there is no file {name}")
+        if not isinstance(name, str) or not self._is_file(name):
+            shown = str(name) if len(str(name)) <= 80 else f"{str(name)[:77]}..."
+            problem = Problem(node.place, "no-file", f"there is no file {shown}")
             raise SpecError([*self._problems, problem])
         return self._folder / name
+
+    def _is_file(self, name: str) -> bool:
+        try:
+            return (self._folder / name).is_file()
+        except (OSError, ValueError):  # a name that no file can have
+            return False
 
     def content(self, node: Node) -> Node:
         """The content of the file that a node names, or the node itself if it names none."""
@@ -96,6 +103,8 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
     _add_frame(parts, reader, files)
     if reader.node("joints") is not None or parts.joints is None:
         parts.joints = reader.integer("joints")
+        if parts.joints < 0:
+            reader.problem("bad-number", f"an edition cannot have {parts.joints} joints")
     parts.acks = reader.node("acks") or parts.acks
     node = reader.node("types")
     if node is not None:

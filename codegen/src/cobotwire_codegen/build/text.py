@@ -35,7 +35,7 @@ def build_text(outer: Reader, key: str) -> Text | None:
         tuple(prefixes),
         tuple(docs.items()),
         suffix,
-        reader.integer("silence_ms") if reply else 0,
+        reader.positive("silence_ms") if reply else 0,
     )
     reader.done()
     return text

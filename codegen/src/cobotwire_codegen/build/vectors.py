@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.load import Node, Scalar, Sequence
-from cobotwire_codegen.model import ERRATUM_KINDS, VERDICTS, Erratum, Vector
+from cobotwire_codegen.model import ERRATUM_KINDS, REASONS, VERDICTS, Erratum, Vector
 from cobotwire_codegen.reader import Reader
 
 
@@ -62,7 +62,7 @@ def _refused(outer: Reader, problems: list[Problem]) -> tuple[str, int] | None:
     if node is None:
         return None
     reader = Reader(node, f"the refusal of {outer.what}", problems)
-    refused = (reader.text("reason"), reader.integer("offset"))
+    refused = (reader.one_of("reason", REASONS), reader.integer("offset"))
     reader.done()
     return refused
 

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from cobotwire_codegen.check import commands, evidence, names, types
+from cobotwire_codegen.check import commands, evidence, names, reserved, types
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.model import Edition
 
 Rule = Callable[[Edition], Iterator[Problem]]
 
-RULES: tuple[Rule, ...] = (*names.RULES, *types.RULES, *commands.RULES, *evidence.RULES)
+RULES: tuple[Rule, ...] = (
+    *names.RULES,
+    *reserved.RULES,
+    *types.RULES,
+    *commands.RULES,
+    *evidence.RULES,
+)
 
 
 def check(edition: Edition) -> None:

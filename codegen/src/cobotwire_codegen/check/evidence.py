@@ -86,6 +86,16 @@ def _same(vector: Vector) -> bool:
     return vector.printed == vector.frame
 
 
+def vectors_apart(edition: Edition) -> Iterator[Problem]:
+    """No vector twice."""
+    seen: dict[str, Vector] = {}
+    for vector in edition.vectors:
+        first = seen.setdefault(vector.name, vector)
+        if first is not vector:
+            message = f"{vector.name} is a vector already, at {first.place}"
+            yield Problem(vector.place, "duplicate-vector", message)
+
+
 def errata_name_commands(edition: Edition) -> Iterator[Problem]:
     """Errata speak of commands that exist."""
     known = {command.name for command in edition.commands}
@@ -97,6 +107,7 @@ def errata_name_commands(edition: Edition) -> Iterator[Problem]:
 
 
 RULES = (
+    vectors_apart,
     vectors_hold,
     text_vectors_hold,
     every_form_shown,

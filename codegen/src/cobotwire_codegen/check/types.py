@@ -44,4 +44,13 @@ def members_fit(edition: Edition) -> Iterator[Problem]:
             seen.setdefault(member.value, member.name)
 
 
-RULES = (ranges_sayable, members_fit)
+def exact_in_a_double(edition: Edition) -> Iterator[Problem]:
+    """Both codecs compute with doubles: every step must be a whole number that one can hold."""
+    for quantity in _quantities(edition):
+        most = max(map(abs, quantity.bounds)) * quantity.scale.numerator
+        if most > 2**53 or quantity.scale.denominator > 2**53:
+            message = f"the steps of {quantity.name} are too fine for an exact double"
+            yield Problem(quantity.place, "inexact-scale", message)
+
+
+RULES = (exact_in_a_double, ranges_sayable, members_fit)

@@ -93,6 +93,7 @@ def _environment(templates: Path | None) -> Environment:
         literal=literal,
         quoted=quoted,
         docstring=python_api.docstring,
+        escaped=python_api.escaped,
         wrapped=python_api.wrapped,
         capitalize_first=python_api.capitalize_first,
         oneline=python_api.oneline,

@@ -36,8 +36,8 @@ def literal(value: Any, indent: int = 0, before: int = 0, after: int = 0) -> str
     opening, parts, closing = _brackets(value), _parts(value), ")"
     inner = " " * (indent + 4)
     joined = ", ".join(name + _flat(part) for name, part in parts)
-    # ruff tries the whole content on one line of its own first.
-    if len(parts) > 1 and indent + 4 + len(joined) <= WIDTH:
+    # ruff tries the arguments of a call on one line of their own first; not so a tuple.
+    if isinstance(value, Call) and len(parts) > 1 and indent + 4 + len(joined) <= WIDTH:
         return f"{opening}\n{inner}{joined}\n{' ' * indent}{closing}"
     lines = [f"{inner}{name}{literal(part, indent + 4, len(name), 1)}," for name, part in parts]
     return "\n".join([opening, *lines, " " * indent + closing])

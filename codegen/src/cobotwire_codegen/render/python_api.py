@@ -81,17 +81,28 @@ def call(command: Command) -> str:
     return f'"{command.name}", {row}'
 
 
+def escaped(text: str) -> str:
+    """Text that may stand in a docstring, also right before its end."""
+    text = text.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+    return f'{text[:-1]}\\"' if text.endswith('"') else text
+
+
 def docstring(text: str, indent: int) -> str:
     """A docstring of one paragraph, on one line if it fits."""
+    text = escaped(text)
     flat = f'{" " * indent}"""{text}"""'
     if len(flat) <= WIDTH:
         return flat
-    opened = wrapped(f'"""{text}', indent)
+    opened = _filled(f'"""{text}', indent, 0)
     return f'{opened}\n{" " * indent}"""'
 
 
 def wrapped(text: str, indent: int, hanging: int = 0) -> str:
-    """A paragraph, wrapped; further lines stand ``hanging`` deeper."""
+    """A paragraph of a docstring; further lines stand ``hanging`` deeper."""
+    return _filled(escaped(text), indent, hanging)
+
+
+def _filled(text: str, indent: int, hanging: int) -> str:
     return textwrap.fill(
         text,
         WIDTH,

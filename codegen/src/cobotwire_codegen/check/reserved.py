@@ -1,0 +1,86 @@
+"""Names that the generated code needs for itself, and classes that would hide each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire_codegen.errors import Place, Problem
+from cobotwire_codegen.model import Edition, Enum, Value
+
+# What the generated code itself calls by these names.
+RESERVED_FIELDS = frozenset(
+    {"self", "int", "float", "bool", "str", "tuple", "reply", "given", "to_degrees", "to_radians"}
+)
+# What every client is and can beside its commands.
+RESERVED_COMMANDS = frozenset({"close", "codec", "table"})
+RESERVED_FAMILIES = frozenset({"types"})
+RESERVED_CLASSES = frozenset(
+    {
+        "CLIENT",
+        "Case",
+        "ClassVar",
+        "Command",
+        "Driver",
+        "Field",
+        "FrameFormat",
+        "IntEnum",
+        "Layout",
+        "NamedTuple",
+        "Number",
+        "Sequence",
+        "TABLE",
+        "Table",
+        "TextReply",
+        "TextRequest",
+    }
+)
+
+
+def reserved(edition: Edition) -> Iterator[Problem]:
+    """No name hides what the generated code needs."""
+    for family in edition.families:
+        if family.name in RESERVED_FAMILIES:
+            yield _reserved(family.name, family.place)
+    for command in edition.commands:
+        if command.name in RESERVED_COMMANDS:
+            yield _reserved(command.name, command.place)
+        for field in command.fields:
+            if field.name in RESERVED_FIELDS:
+                yield _reserved(field.name, field.place)
+
+
+def _reserved(name: str, place: Place) -> Problem:
+    message = f"{name} has a meaning of its own in the generated code; choose another name"
+    return Problem(place, "reserved-name", message)
+
+
+def classes_apart(edition: Edition) -> Iterator[Problem]:
+    """Each class of the generated package has a name of its own."""
+    seen: dict[str, Place] = {}
+    for name, place in _classes(edition):
+        if name in RESERVED_CLASSES:
+            yield _reserved(name, place)
+        elif name in seen:
+            message = f"{name} is a class already, at {seen[name]}"
+            yield Problem(place, "duplicate-class", message)
+        seen.setdefault(name, place)
+
+
+def _classes(edition: Edition) -> Iterator[tuple[str, Place]]:
+    yield edition.class_name, edition.place
+    for family in edition.families:
+        yield f"{family.name.capitalize()}Commands", family.place
+    for command in edition.commands:
+        if command.text is not None:
+            yield command.text.class_name, command.text.place
+        if len([field for field in command.reply if not field.echo]) > 1:
+            yield "".join(map(str.capitalize, command.name.split("_"))) + "Reply", command.place
+    shared: set[str] = set()
+    for type in edition.types:
+        # Types may share a class; whether they may is another rule's question.
+        if isinstance(type, Enum | Value) and type.class_name not in shared:
+            shared.add(type.class_name)
+            yield type.class_name, type.place
+
+
+RULES = (reserved, classes_apart)
