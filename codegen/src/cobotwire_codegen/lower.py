@@ -147,6 +147,7 @@ def _command(family: str, command: Command) -> dict[str, Any]:
             "prefixes": list(text.prefixes),
             "fields": [name for name, _ in text.fields],
             "silence_ms": text.silence_ms,
+            "suffix": text.suffix,
         },
         "notes": list(notes(command)),
         "ack": command.ack,
