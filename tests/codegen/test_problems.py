@@ -80,13 +80,13 @@ def test_the_checker_tells_all_at_once_in_three_formats(tmp_path: Path, form: st
         assert (problems[0]["file"], problems[0]["line"], problems[0]["column"]) == (
             "lamp.yaml",
             23,
-            35,
+            34,
         )
     elif form == "github":
-        line = f"::error file=lamp.yaml,line=23,col=35,title=bad-range::{first}"
+        line = f"::error file=lamp.yaml,line=23,col=34,title=bad-range::{first}"
         assert line in result.stdout
     else:
-        assert f"lamp.yaml:23:35: bad-range: {first}" in result.stderr
+        assert f"lamp.yaml:23:34: bad-range: {first}" in result.stderr
 
 
 def test_a_folder_without_an_edition_is_a_problem(tmp_path: Path) -> None:

@@ -70,6 +70,8 @@ def every_form_shown(edition: Edition) -> Iterator[Problem]:
 
 def printed_explained(edition: Edition) -> Iterator[Problem]:
     """A printed frame that is not read as it stands has an erratum, or is the same frame."""
+    if edition.base:
+        return  # the document's examples, and its errata, are the base's
     explained = {erratum.example for erratum in edition.errata}
     for vector in edition.vectors:
         if vector.example is None:

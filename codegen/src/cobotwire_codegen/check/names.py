@@ -10,6 +10,8 @@ from cobotwire_codegen.errors import Place, Problem
 from cobotwire_codegen.model import Edition, Enum, Value
 
 _LOWER = re.compile(r"[a-z][a-z0-9_]*\Z")
+# A method may keep the maker's capitals: set_HTS_gripper_torque.
+_METHOD = re.compile(r"[a-z][A-Za-z0-9_]*\Z")
 _UPPER = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _CLASS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
@@ -29,7 +31,7 @@ def _named(edition: Edition) -> Iterator[tuple[str, Place, re.Pattern[str], str]
     for family in edition.families:
         yield family.name, family.place, _LOWER, "motion"
     for command in edition.commands:
-        yield command.name, command.place, _LOWER, "get_angles"
+        yield command.name, command.place, _METHOD, "get_angles"
         for field in command.fields:
             yield field.name, field.place, _LOWER, "speed"
         if command.text is not None:

@@ -48,3 +48,19 @@ def lines(spans: Lines) -> str:
     text = ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
     one = len(spans) == 1 and spans[0][0] == spans[0][1]
     return f"line {text}" if one else f"lines {text}"
+
+
+UNITS = {
+    "degree": "degrees",
+    "degree_celsius": "degrees Celsius",
+    "millimetre": "millimetres",
+    "milliampere": "milliamperes",
+    "step_per_second": "steps per second",
+    "tick": "ticks",
+    "volt": "volts",
+}
+
+
+def units(unit: str) -> str:
+    """A unit as it stands behind a number of any size."""
+    return UNITS.get(unit, unit)

@@ -18,7 +18,12 @@ from .enums import (
     TravelDirection,
 )
 from .table import TABLE
-from .values import Angles, Coords, Encoders, WifiAccount
+from .values import (
+    Angles,
+    Coords,
+    Encoders,
+    WifiAccount,
+)
 
 CLIENT = MyCobot
 
