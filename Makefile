@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUST_SOURCES := $(shell find rust -name '*.rs' -not -path '*/target/*') $(shell find rust -name Cargo.toml) Cargo.toml
 EXAMPLES ?= 100
 
-.PHONY: help demo test lint python-test rust-test gen clean
+.PHONY: help demo test lint python-test rust-test gen bench clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -32,6 +32,9 @@ python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs
 
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
+
+bench: .venv/.tools .venv/.native ## how fast, beside the limits
+	$(BIN)/python bench/generator.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target

@@ -1,0 +1,58 @@
+"""How long the generator takes: each row is a whole process, cold, as a person starts it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+TURNS = 5
+
+
+def main() -> None:
+    """Measure, and print seconds beside the limits."""
+    with tempfile.TemporaryDirectory() as folder:
+        big = Path(folder) / "big.yaml"
+        big.write_text(_big())
+        rows = [
+            ("generate all editions (--check)", ["--root", str(ROOT), "--check"], 3.0),
+            ("check a spec of 400 commands", ["check", str(big)], 5.0),
+        ]
+        for what, words, limit in rows:
+            median = sorted(_seconds(words) for _ in range(TURNS))[TURNS // 2]
+            verdict = "within" if median <= limit else "OVER"
+            print(f"{what:34} {median:6.2f} s   {verdict} {limit:.0f} s")
+
+
+def _seconds(words: list[str]) -> float:
+    started = time.perf_counter()
+    command = [sys.executable, "-m", "cobotwire_codegen", *words]
+    subprocess.run(command, check=True, capture_output=True)  # noqa: S603  (our own program)
+    return time.perf_counter() - started
+
+
+def _big() -> str:
+    """A protocol of 400 commands; ids are used again with other lengths."""
+    head = (ROOT / "tests/codegen/lamp.yaml").read_text().partition("commands:\n")[0]
+    commands, vectors = [], []
+    for index in range(400):
+        id, count = index % 250, index // 250 + 1
+        fields = "".join(f"      - {{name: f{n}, is: channel}}\n" for n in range(count))
+        commands.append(
+            f"  call{index}:\n    id: {id}\n    title: Call\n    doc: Calls.\n"
+            f"    safety: setting\n    request:\n{fields}"
+        )
+        values = ", ".join(f"f{n}: 1" for n in range(count))
+        frame = f"FE FE {2 + count:02X} {id:02X} {'01 ' * count}FA"
+        vectors.append(
+            f"  - {{name: v{index}, command: call{index}, direction: request, "
+            f"frame: {frame}, values: {{{values}}}}}\n"
+        )
+    return f"{head}commands:\n{''.join(commands)}\nvectors:\n{''.join(vectors)}"
+
+
+if __name__ == "__main__":
+    main()

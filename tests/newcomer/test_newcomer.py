@@ -1,0 +1,189 @@
+"""A newcomer's path: two wheels, a fresh environment without Rust, a protocol of one's own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import vectors
+
+PROTOCOL = """\
+edition: heater
+class: Heater
+title: A heater
+doc: A heater with two plates.
+joints: 0
+frame:
+  frame:
+    header: FE FE
+    check: crc16-modbus
+    length_counts: [command, data, check]
+    maximum_data: 8
+    doc: The maker's second frame variant.
+  link: {baudrate: 115200, deadline_ms: 200}
+types:
+  wire:
+    byte: {bytes: 1, doc: A byte.}
+    word: {bytes: 2, signed_at: 32767, doc: A signed word.}
+  quantities:
+    plate: {wire: byte, range: [1, 2], doc: The plate.}
+    warmth: {wire: word, scale: 1/10, unit: degree_celsius, range: [0, 250], doc: The warmth.}
+  flags:
+    flag: {wire: byte, doc: Yes or no.}
+commands:
+  set_warmth:
+    id: 0x10
+    title: Set the warmth
+    doc: Sets the warmth of a plate.
+    safety: setting
+    request: [{name: plate, is: plate}, {name: warmth, is: warmth}]
+  get_warmth:
+    id: 0x11
+    title: Read the warmth
+    doc: Reads the warmth of a plate.
+    safety: query
+    request: [{name: plate, is: plate}]
+    reply: [{name: plate, is: plate, echo: required}, {name: warmth, is: warmth}]
+  is_hot:
+    id: 0x12
+    title: Ask whether a plate is hot
+    doc: Asks whether any plate is hot.
+    safety: query
+    reply: [{name: hot, is: flag}]
+"""
+
+SCRIPT = """\
+from cobotwire.sim import PtyServer, SimulatedArm
+from heater import TABLE, Heater
+
+with PtyServer(SimulatedArm(TABLE)) as server, Heater(server.url) as heater:
+    heater.set_warmth(2, 23.5)
+    print(heater.codec, heater.get_warmth(2), heater.is_hot())
+    try:
+        heater.set_warmth(3, 20)
+    except ValueError as error:
+        print(error)
+"""
+
+
+def run(*words: str | Path, **options: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [str(word) for word in words],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+        **options,  # type: ignore[call-overload]
+    )
+
+
+@pytest.fixture(scope="module")
+def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Both distributions, built as a release would build them."""
+    folder = tmp_path_factory.mktemp("wheels")
+    build = (sys.executable, "-m", "maturin", "build", "--release", "--quiet", "--out", folder)
+    run(*build, cwd=vectors.ROOT)
+    pip = (sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", folder)
+    run(*pip, vectors.ROOT / "codegen")
+    return sorted(folder.glob("*.whl"))
+
+
+@pytest.fixture(scope="module")
+def fresh(tmp_path_factory: pytest.TempPathFactory, wheels: list[Path]) -> Path:
+    """The programs of a fresh environment with the two wheels and nothing else of ours."""
+    folder = tmp_path_factory.mktemp("fresh") / "venv"
+    run(sys.executable, "-m", "venv", folder)
+    [native] = [wheel for wheel in wheels if wheel.name.startswith("cobotwire-")]
+    others = [wheel for wheel in wheels if wheel != native]
+    run(folder / "bin" / "python", "-m", "pip", "install", "--quiet", f"{native}[cli]", *others)
+    return folder / "bin"
+
+
+@pytest.fixture
+def environment(fresh: Path) -> dict[str, str]:
+    """No Rust on the path, and nothing of this repository."""
+    kept = {name: value for name, value in os.environ.items() if name in ("HOME", "LANG")}
+    return {**kept, "PATH": f"{fresh}:/usr/bin:/bin"}
+
+
+def test_from_one_yaml_file_to_a_talking_simulator(
+    tmp_path: Path, fresh: Path, environment: dict[str, str]
+) -> None:
+    (tmp_path / "heater.yaml").write_text(PROTOCOL + _vectors())
+    build = run(
+        "cobotwire-gen", "build", "heater.yaml", "--out", "heater", cwd=tmp_path, env=environment
+    )
+    assert "heater (3 commands)" in build.stdout
+    (tmp_path / "try_it.py").write_text(SCRIPT)
+    tried = run(fresh / "python", "try_it.py", cwd=tmp_path, env=environment)
+    assert tried.stdout.splitlines() == [
+        "native 0.0 False",
+        "plate is 3; allowed: a whole number 1..2",
+    ]
+    listed = run("cobotwire", "--edition", "heater", "commands", cwd=tmp_path, env=environment)
+    assert "0x11  get_warmth" in listed.stdout
+    decoded = run(
+        *("cobotwire", "--edition", "./heater", "decode", _frame(0x11, "02")),
+        cwd=tmp_path,
+        env=environment,
+    )
+    assert "request: get_warmth(plate=2)" in decoded.stdout
+    with pytest.raises(FileNotFoundError):
+        run("cargo", "--version", env={**environment, "PATH": str(fresh)})
+
+
+def test_a_template_of_ones_own_takes_the_place_of_ours(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    (tmp_path / "heater.yaml").write_text(PROTOCOL + _vectors())
+    own = tmp_path / "templates" / "python"
+    own.mkdir(parents=True)
+    template = '"""{{ edition.types | select("enum") | list | length }} enums of our own."""\n'
+    (own / "enums.py.j2").write_text(template)
+    words = ("build", "heater.yaml", "--out", "heater", "--templates", "templates")
+    run("cobotwire-gen", *words, cwd=tmp_path, env=environment)
+    assert (tmp_path / "heater" / "enums.py").read_text() == '"""0 enums of our own."""\n'
+
+
+def test_a_folder_with_other_files_is_left_alone(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    (tmp_path / "heater.yaml").write_text(PROTOCOL + _vectors())
+    (tmp_path / "heater").mkdir()
+    (tmp_path / "heater" / "thesis.py").write_text("# years of work\n")
+    words = ("build", "heater.yaml", "--out", "heater")
+    with pytest.raises(subprocess.CalledProcessError) as caught:
+        run("cobotwire-gen", *words, cwd=tmp_path, env=environment)
+    assert "not generated, and in the way" in caught.value.stderr
+    assert (tmp_path / "heater" / "thesis.py").read_text() == "# years of work\n"
+
+
+def _frame(command: int, data: str) -> str:
+    """A frame with its CRC, computed here once more so that nothing of ours vouches for it."""
+    body = bytes.fromhex(f"FEFE{3 + len(data) // 2:02X}{command:02X}{data}")
+    crc = 0xFFFF
+    for byte in body:
+        crc ^= byte
+        for _ in range(8):
+            crc = (crc >> 1) ^ 0xA001 if crc & 1 else crc >> 1
+    return (body + crc.to_bytes(2, "big")).hex(" ").upper()
+
+
+def _vectors() -> str:
+    rows = [
+        ("set", "set_warmth", "request", _frame(0x10, "0200EB"), "{plate: 2, warmth: 23.5}"),
+        ("ask", "get_warmth", "request", _frame(0x11, "02"), "{plate: 2}"),
+        ("told", "get_warmth", "reply", _frame(0x11, "0200EB"), "{plate: 2, warmth: 23.5}"),
+        ("hot?", "is_hot", "request", _frame(0x12, ""), "{}"),
+        ("hot", "is_hot", "reply", _frame(0x12, "01"), "{hot: true}"),
+    ]
+    lines = [
+        f'  - {{name: "{name}", command: {command}, direction: {way}, '
+        f"frame: {frame}, values: {values}}}\n"
+        for name, command, way, frame, values in rows
+    ]
+    return "vectors:\n" + "".join(lines)
