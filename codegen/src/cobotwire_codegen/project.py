@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
+from cobotwire_codegen.author.schema import schema_json
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target
@@ -38,7 +39,7 @@ def edition_files(root: Path) -> list[Path]:
 
 
 def targets(root: Path, found: list[Edition]) -> list[Target]:
-    """The generated folders with what belongs into them."""
+    """What is generated, and where it belongs."""
     package = root / "python" / "cobotwire" / "editions"
     reference = root / "docs" / "reference"
     data: Files = {}
@@ -48,4 +49,11 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
         made.append(Target(reference / edition.name, render_reference(edition)))
         data.update(render_vectors(edition))
     made.append(Target(root / "rust" / "core" / "tests" / "data", data))
+    made.append(schema_target(root, found))
     return made
+
+
+def schema_target(root: Path, found: list[Edition]) -> Target:
+    """The schema for editors, beside the files that it speaks of."""
+    files = {PurePosixPath("schema.json"): schema_json(found)}
+    return Target(root / "spec", files, alone=False)

@@ -8,7 +8,9 @@ from cobotwire_codegen.cli.build import build
 from cobotwire_codegen.cli.check import check
 from cobotwire_codegen.cli.explain import explain
 from cobotwire_codegen.cli.generate import generate
+from cobotwire_codegen.cli.init import init
 from cobotwire_codegen.cli.model import model
+from cobotwire_codegen.cli.schema import schema
 from cobotwire_codegen.cli.shared import root_option
 
 _EPILOG = (
@@ -36,5 +38,5 @@ def main(ctx: click.Context, check_only: bool, root: str) -> None:
         ctx.invoke(generate, check_only=check_only, root=root)
 
 
-for verb in (build, check, model, explain):
+for verb in (build, check, model, explain, schema, init):
     main.add_command(verb)

@@ -1,4 +1,4 @@
-"""Codes of changes files: what a delta does to its base."""
+"""Codes of changes: what a delta does to its base, and waivers of differences."""
 
 from __future__ import annotations
 
@@ -36,5 +36,13 @@ EXPLANATIONS = (
         "Name the vector by its `name`, or as example-N.",
         "- withdraw: [light]",
         "- withdraw: [light-request]",
+    ),
+    Explanation(
+        "unknown-rule",
+        "A waiver names a rule of `cobotwire-gen diff` that does not exist.",
+        "It would waive nothing, and what it was meant for would stop the build.",
+        "Correct the spelling; the difference that is to be waived tells its rule.",
+        "- {rule: command-remove, where: read_angle, reason: Nobody calls it.}",
+        "- {rule: command-removed, where: read_angle, reason: Nobody calls it.}",
     ),
 )

@@ -143,4 +143,20 @@ EXPLANATIONS = (
         "- {name: class, is: joint}",
         "- {name: joint, is: joint}",
     ),
+    Explanation(
+        "bad-character",
+        "A text holds a character that cannot be printed.",
+        "Texts become documentation and code; what nobody sees there nobody can check.",
+        "Delete the character; it often comes from copying out of a PDF.",
+        'title: "A lamp\\u200b on two joints"',
+        "title: A lamp on two joints",
+    ),
+    Explanation(
+        "reserved-name",
+        "A name has a meaning of its own in the generated code.",
+        "A command called close, say, would hide the client's own method.",
+        "Choose another name.",
+        "- {name: self, is: flag}",
+        "- {name: done, is: flag}",
+    ),
 )

@@ -54,4 +54,12 @@ EXPLANATIONS = (
         "evidence: []",
         "evidence: [{source: the lamp, says: silence}]",
     ),
+    Explanation(
+        "duplicate-vector",
+        "Two vectors have the same name.",
+        "A test that fails names its vector; a delta withdraws one by its name.",
+        "Rename one, or give one example another number.",
+        "- name: read-request\n  command: read_angle\n  direction: reply",
+        "- name: read-reply\n  command: read_angle\n  direction: reply",
+    ),
 )

@@ -125,4 +125,21 @@ EXPLANATIONS = (
         "class: Axis\ndoc: Where the lamp is.",
         "class: Pose\ndoc: Where the lamp is.",
     ),
+    Explanation(
+        "duplicate-class",
+        "Two classes of the generated package have the same name.",
+        "The second would hide the first. Families and replies of several fields become classes "
+        "as well, such as MotionCommands and GetStateReply.",
+        "Give one of them another name.",
+        "class: Lamp\ndoc: Where the lamp is.",
+        "class: Pose\ndoc: Where the lamp is.",
+    ),
+    Explanation(
+        "inexact-scale",
+        "A quantity has steps that a double cannot hold exactly.",
+        "Both codecs compute with doubles; values would come back changed.",
+        "Take a coarser scale.",
+        "scale: 1/100000000000000000",
+        "scale: 1/100",
+    ),
 )

@@ -1,0 +1,29 @@
+"""A first protocol: a commented file that passes the checker as it is."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from cobotwire_codegen.author.schema import schema_json
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check
+
+
+def first_protocol(name: str, schema: str) -> tuple[str, str]:
+    """The texts of a protocol's file and of its schema; ``schema`` is the schema's file name.
+
+    Raises:
+        SpecError: the name is none that an edition can have.
+    """
+    text = (files("cobotwire_codegen.author") / "protocol.yaml").read_text(encoding="utf-8")
+    class_name = "".join(map(str.capitalize, name.split("_")))
+    for word, said in (("SCHEMA", schema), ("CLASS", class_name), ("NAME", name)):
+        text = text.replace(word, said)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"{name}.yaml"
+        path.write_text(text, encoding="utf-8")
+        edition = build_edition(path, path.parent)
+    check(edition)
+    return text, schema_json([edition])

@@ -1,0 +1,38 @@
+"""``cobotwire-gen init``: a protocol of one's own, to start from."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from cobotwire_codegen.author.start import first_protocol
+from cobotwire_codegen.cli.shared import problems_told
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*\Z")
+
+
+@click.command()
+@click.argument("name")
+@click.option("--out", type=click.Path(dir_okay=False), help="The file; left out: NAME.yaml.")
+def init(name: str, out: str | None) -> None:
+    """Start a protocol called NAME: one commented YAML file, and its schema for editors beside it.
+
+    The file passes `check` and `build` as it is. Nothing is overwritten.
+    """
+    if not _NAME.match(name):
+        raise click.UsageError(f"{name} cannot be a package's name; write it like my_device")
+    path = Path(out or f"{name}.yaml")
+    schema = path.with_suffix(".schema.json")
+    there = [str(file) for file in (path, schema) if file.exists()]
+    if there:
+        raise click.UsageError(f"{' and '.join(there)} stands there already; choose another --out")
+    if not path.parent.is_dir():
+        raise click.UsageError(f"there is no folder {path.parent}")
+    with problems_told():
+        texts = first_protocol(name, schema.name)
+    for file, text in zip((path, schema), texts):
+        file.write_text(text, encoding="utf-8")
+        click.echo(f"wrote {file}")
+    click.echo(f"Next: cobotwire-gen build {path} --out {name}")
