@@ -6,6 +6,7 @@ import click
 
 from cobotwire_codegen.cli.build import build
 from cobotwire_codegen.cli.check import check
+from cobotwire_codegen.cli.diff import diff
 from cobotwire_codegen.cli.explain import explain
 from cobotwire_codegen.cli.generate import generate
 from cobotwire_codegen.cli.init import init
@@ -38,5 +39,5 @@ def main(ctx: click.Context, check_only: bool, root: str) -> None:
         ctx.invoke(generate, check_only=check_only, root=root)
 
 
-for verb in (build, check, model, explain, schema, init):
+for verb in (build, check, model, explain, schema, init, diff):
     main.add_command(verb)

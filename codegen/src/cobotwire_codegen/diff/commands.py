@@ -1,0 +1,100 @@
+"""Commands: which came, went or got another name, and what changed in those that stayed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from cobotwire_codegen.diff import prose, words
+from cobotwire_codegen.diff.api import result_changes, signature_changes
+from cobotwire_codegen.diff.finding import Finding, finding
+from cobotwire_codegen.diff.forms import message_changes
+from cobotwire_codegen.diff.match import Matched, match
+from cobotwire_codegen.diff.texts import text_changes
+from cobotwire_codegen.diff.types import Known, layout
+from cobotwire_codegen.model import Command, Edition
+
+
+def matched_commands(old: Edition, new: Edition) -> Matched[Command]:
+    """By name; what is left over by id and layout."""
+    return match(old.commands, new.commands, lambda command: command.name).further(_message)
+
+
+def _message(command: Command) -> tuple[Any, ...]:
+    """What the line sees of a command."""
+    layouts = tuple(
+        tuple(tuple(word for field in form for word in layout(field.type)) for form in forms)
+        for forms in (command.requests, command.replies)
+    )
+    return command.id, layouts, words.template(command.text), words.template(command.request_text)
+
+
+def command_changes(old: Edition, new: Edition, known: Known) -> Iterator[Finding]:
+    """All commands."""
+    matched = matched_commands(old, new)
+    for command in matched.gone:
+        same = [other.name for other in new.commands if _message(other) == _message(command)]
+        rule = "alias-removed" if same else "command-removed"
+        yield finding(rule, f"commands/{command.name}", command.name, same[0] if same else "")
+    for command in matched.came:
+        yield finding("command-added", f"commands/{command.name}", "", command.name)
+    # A deadline that is left out is the link's, which is told once.
+    links = old.frame.deadline_ms, new.frame.deadline_ms
+    for before, after in matched.pairs:
+        where = f"commands/{after.name}"
+        if before.name != after.name:
+            yield finding("command-renamed", where, before.name, after.name)
+        deadlines = before.deadline_ms, after.deadline_ms
+        if before.deadline_ms != after.deadline_ms and deadlines != links:
+            yield finding("deadline-changed", where, *deadlines)
+        yield from _command(where, before, after)
+        yield from _messages(where, before, after, known)
+    yield from _shared_ids(matched)
+
+
+def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
+    """All but the messages."""
+    if old.id != new.id:
+        yield finding("id-changed", where, f"{old.id:#04x}", f"{new.id:#04x}")
+    if old.safety != new.safety:
+        yield finding("safety-changed", where, old.safety, new.safety)
+    if old.ack != new.ack:
+        yield finding("ack-changed", where, words.yes(old.ack), words.yes(new.ack))
+    if old.alias != new.alias:
+        shown = [f"that of {side.alias}" if side.alias else "its own" for side in (old, new)]
+        yield finding("alias-changed", where, *shown)
+    yield from prose.doc(f"{where}/title", old.title, new.title)
+    yield from prose.doc(where, old.doc, new.doc)
+    yield from prose.source(where, old.source, new.source)
+    yield from prose.notes(where, old.notes, new.notes)
+    yield from prose.disputes(where, old.disputed, new.disputed)
+    yield from prose.history(where, old.changes, new.changes)
+
+
+def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[Finding]:
+    found = list(message_changes(f"{where}/request", old, new, "request", known))
+    yield from found
+    # Each is told once, as the more severe or the more exact of the two.
+    moved = any(one.rule == "request-layout-changed" for one in found)
+    kinds = {one.where for one in found if one.rule == "type-kind-changed"}
+    for one in signature_changes(where, old, new, known):
+        told = (one.rule == "argument-order-changed" and moved) or (
+            one.rule == "argument-type-changed" and one.where in kinds
+        )
+        if not told:
+            yield one
+    yield from message_changes(f"{where}/reply", old, new, "reply", known)
+    yield from result_changes(where, old, new, known)
+    yield from text_changes(f"{where}/reply_text", "result", old.text, new.text)
+    texts = old.request_text, new.request_text
+    yield from text_changes(f"{where}/request_text", "argument", *texts)
+
+
+def _shared_ids(matched: Matched[Command]) -> Iterator[Finding]:
+    """Of the commands that share an id, the first one lends a frame its name."""
+    stayed = [j for _, j in matched.places]
+    for id in dict.fromkeys(command.id for _, command in matched.pairs):
+        before = [j for j in stayed if matched.new[j].id == id]
+        if before != sorted(before):
+            shown = [[matched.new[j].name for j in side] for side in (before, sorted(before))]
+            yield finding("shared-id-order-changed", f"ids/{id:#04x}", *map(words.names, shown))

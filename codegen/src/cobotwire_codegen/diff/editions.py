@@ -1,0 +1,68 @@
+"""Two editions, and two collections of them, compared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from cobotwire_codegen.diff import prose
+from cobotwire_codegen.diff.commands import command_changes
+from cobotwire_codegen.diff.families import family_changes
+from cobotwire_codegen.diff.finding import Finding, finding
+from cobotwire_codegen.diff.frame import frame_changes
+from cobotwire_codegen.diff.named import named_types
+from cobotwire_codegen.diff.rules import LEVELS
+from cobotwire_codegen.model import Edition
+
+_SEVERITY = {level: index for index, level in enumerate(LEVELS)}
+
+
+def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
+    """What changed from one edition to another, the most severe first; each said once.
+
+    Places in files are no part of it. Nothing is found just where the two say the same.
+    """
+    known, named = named_types(old, new)
+    found = [
+        *_edition(old, new),
+        *frame_changes(old.frame, new.frame),
+        *named,
+        *command_changes(old, new, known),
+        *family_changes(old, new),
+        *prose.errata(old, new),
+        *prose.vectors(old, new),
+        *prose.history("changes", old.changes, new.changes),
+    ]
+    return _sorted(replace(one, where=f"{new.name}/{one.where}") for one in dict.fromkeys(found))
+
+
+def diff_all(old: Mapping[str, Edition], new: Mapping[str, Edition]) -> tuple[Finding, ...]:
+    """Editions of the same name compared; one that comes or goes is a finding itself."""
+    found = [finding("edition-removed", name, name) for name in old if name not in new]
+    found += [finding("edition-added", name, "", name) for name in new if name not in old]
+    for name in old:
+        if name in new:
+            found.extend(diff(old[name], new[name]))
+    return _sorted(iter(found))
+
+
+def _sorted(found: Iterator[Finding]) -> tuple[Finding, ...]:
+    # Stable: inside a level, the order of the model.
+    return tuple(sorted(found, key=lambda one: _SEVERITY[one.level]))
+
+
+def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
+    """What an edition says of itself."""
+    facts = (
+        ("edition-renamed", "edition", old.name, new.name),
+        ("class-renamed", "edition", old.class_name, new.class_name),
+        ("firmware-changed", "edition", old.firmware, new.firmware),
+        ("base-changed", "edition", old.base, new.base),
+        ("joints-changed", "edition", old.joints, new.joints),
+    )
+    for rule, where, before, after in facts:
+        if before != after:
+            yield finding(rule, where, before, after)
+    yield from prose.doc("edition/title", old.title, new.title)
+    yield from prose.doc("edition", old.doc, new.doc)
+    yield from prose.doc("edition/document", old.document, new.document)

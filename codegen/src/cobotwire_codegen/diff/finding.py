@@ -1,0 +1,64 @@
+"""One thing that differs between two editions, as data; and the version bump that follows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from cobotwire_codegen.diff.rules import RULES, Level
+
+Bump = Literal["major", "minor", "patch", "none"]
+
+BREAKING: tuple[Level, ...] = ("wire", "api")
+_BUMPS: dict[Level, Bump] = {
+    "wire": "major",
+    "api": "major",
+    "behaviour": "minor",
+    "addition": "minor",
+    "docs": "patch",
+}
+_ORDER: tuple[Bump, ...] = ("none", "patch", "minor", "major")
+# SemVer 2.0.0, item 4, promises nothing for 0.x. By custom, which Cargo's resolver turned into a
+# rule, a breaking change raises the minor number there, and all else the patch.
+_BEFORE_1_0: dict[Bump, Bump] = {
+    "major": "minor",
+    "minor": "patch",
+    "patch": "patch",
+    "none": "none",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One difference. ``where`` is a path into the model; ``old`` and ``new`` are shown words."""
+
+    rule: str
+    level: Level
+    where: str
+    old: str
+    new: str
+    message: str
+
+
+def finding(rule: str, where: str, old: object = "", new: object = "") -> Finding:
+    """A finding of a rule; its level and its message come from the table of rules."""
+    entry = RULES[rule]
+    before, after = str(old), str(new)
+    message = entry.message.format(old=before or "nothing", new=after or "nothing")
+    return Finding(rule, entry.level, where, before, after, message)
+
+
+def breaking(findings: Iterable[Finding]) -> bool:
+    """Whether an old peer, or an old caller, is left behind."""
+    return any(found.level in BREAKING for found in findings)
+
+
+def bump(findings: Iterable[Finding]) -> Bump:
+    """The part of a version, from 1.0 on, that must go up."""
+    return max((_BUMPS[found.level] for found in findings), key=_ORDER.index, default="none")
+
+
+def bump_before_1_0(findings: Iterable[Finding]) -> Bump:
+    """The part of a version 0.x that goes up, by custom."""
+    return _BEFORE_1_0[bump(findings)]

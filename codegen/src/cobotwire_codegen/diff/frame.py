@@ -1,0 +1,42 @@
+"""The frame and the link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire_codegen.diff import prose, words
+from cobotwire_codegen.diff.finding import Finding, finding
+from cobotwire_codegen.diff.match import match
+from cobotwire_codegen.model import Frame, Member
+
+
+def frame_changes(old: Frame, new: Frame) -> Iterator[Finding]:
+    """Everything that is said of the frame and the link."""
+    numbers = ("maximum-data", old.maximum_data, new.maximum_data)
+    rates = ("baudrate", old.baudrate, new.baudrate)
+    deadlines = ("deadline", old.deadline_ms, new.deadline_ms)
+    checks = ("check", old.check, new.check)
+    footers = ("footer", words.hexed(old.footer), words.hexed(new.footer))
+    headers = ("header", words.hexed(old.header), words.hexed(new.header))
+    for what, before, after in (headers, checks, footers, numbers, rates, deadlines):
+        if before != after:
+            yield finding(f"{what}-changed", "frame", before, after)
+    yield from _addresses(old.addresses, new.addresses)
+    yield from prose.doc("frame", old.doc, new.doc)
+
+
+def _addresses(old: tuple[Member, ...], new: tuple[Member, ...]) -> Iterator[Finding]:
+    where = "frame/addresses"
+    matched = match(old, new, lambda member: member.value)
+    # With none, frames have no address byte; a client sends the first.
+    moved = [j for _, j in matched.places] != list(range(len(matched.places)))
+    if matched.gone or moved or (new and not old):
+        shown = [words.names(map(words.member, side)) or "none" for side in (old, new)]
+        yield finding("addresses-changed", where, *shown)
+        return
+    for member in matched.came:
+        yield finding("address-added", f"{where}/{member.name}", "", words.member(member))
+    for before, after in matched.pairs:
+        if before.name != after.name:
+            yield finding("address-renamed", f"{where}/{after.name}", before.name, after.name)
+        yield from prose.doc(f"{where}/{after.name}", before.doc, after.doc)

@@ -1,0 +1,117 @@
+"""OLD and NEW: an edition file, a folder with spec/, or a revision of the repository here."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import tarfile
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.errors import SpecError
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.project import edition_files
+
+SECONDS = 60
+
+
+class SourceError(ValueError):
+    """What was named is neither a file nor a folder with a spec nor a revision with one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Editions by name; ``one`` where a single file was named."""
+
+    shown: str
+    editions: dict[str, Edition]
+    one: bool
+
+
+def read(given: str) -> Source:
+    """Read what a person named: a path where there is one, else a revision.
+
+    The editions are built, not checked: what was once published can be compared even where the
+    rules became stricter since.
+
+    Raises:
+        SourceError: there is no such thing.
+        SpecError: it cannot be built.
+    """
+    path = Path(given)
+    if path.is_file():
+        edition = build_edition(path, Path.cwd())
+        return Source(given, {edition.name: edition}, one=True)
+    if path.is_dir():
+        if not (path / "spec" / "editions").is_dir():
+            raise SourceError(f"the folder {given} holds no spec/editions")
+        return Source(given, _editions(path, Path.cwd()), one=False)
+    with _checked_out(given) as folder, _places_in(given):
+        return Source(given, _editions(folder, folder), one=False)
+
+
+def paired(old: Source, new: Source) -> tuple[dict[str, Edition], dict[str, Edition]]:
+    """The editions to compare: beside a single file stands the edition of the same name.
+
+    Raises:
+        SourceError: there is none.
+    """
+    if old.one == new.one:
+        return old.editions, new.editions
+    single, many = (old, new) if old.one else (new, old)
+    [name] = single.editions
+    if name not in many.editions:
+        raise SourceError(f"there is no edition {name} in {many.shown}")
+    found = {name: many.editions[name]}
+    return (old.editions, found) if old.one else (found, new.editions)
+
+
+def _editions(folder: Path, root: Path) -> dict[str, Edition]:
+    found = [build_edition(path, root) for path in edition_files(folder)]
+    return {edition.name: edition for edition in found}
+
+
+@contextmanager
+def _checked_out(revision: str) -> Iterator[Path]:
+    """The spec of a revision, in a folder that lives as long as it is read."""
+    missing = f"{revision} is no file, no folder and no git revision"
+    # The commit's own number goes on: whatever the revision was called, it is no option now.
+    words = ("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
+    commit = _git(*words, failed=missing).decode().strip()
+    tar = _git("archive", commit, "spec", failed=f"the revision {revision} holds no spec/ here")
+    with tempfile.TemporaryDirectory(prefix="cobotwire-diff-") as folder:
+        with tarfile.open(fileobj=io.BytesIO(tar)) as archive:
+            archive.extractall(folder, filter="data")
+        yield Path(folder)
+
+
+def _git(*words: str, failed: str) -> bytes:
+    command = ["git", *words]
+    try:
+        # No shell; the words are ours, but for a revision that cannot be an option.
+        done = subprocess.run(command, capture_output=True, check=False, timeout=SECONDS)  # noqa: S603
+    except FileNotFoundError:
+        raise SourceError(f"{failed}: git is not installed") from None
+    except subprocess.TimeoutExpired:
+        raise SourceError(f"{failed}: git took longer than {SECONDS} s") from None
+    if done.returncode != 0:
+        said = done.stderr.decode(errors="replace").strip().partition("\n")[0]
+        raise SourceError(f"{failed} ({said})" if said else failed)
+    return done.stdout
+
+
+@contextmanager
+def _places_in(revision: str) -> Iterator[None]:
+    """Say of every problem in which revision it stands, as git itself would."""
+    try:
+        yield
+    except SpecError as error:
+        raise SpecError(
+            replace(problem, place=replace(place, file=f"{revision}:{place.file}"))
+            for problem in error.problems
+            for place in (problem.place,)
+        ) from error

@@ -1,0 +1,148 @@
+"""Types of the wire and of values, each compared with its former self."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.diff import prose, quantities, words
+from cobotwire_codegen.diff.finding import Finding, finding
+from cobotwire_codegen.diff.match import bare, match, order, renamed
+from cobotwire_codegen.model import Enum, Member, Quantity, Type, Value, Wire
+
+
+@dataclass
+class Known:
+    """What named types say of themselves; their users do not repeat it.
+
+    ``pairs`` are the old and new names of one type; ``classes`` the classes that were renamed;
+    ``enums`` the old and new members of one enum.
+    """
+
+    said: set[Finding] = field(default_factory=set)
+    pairs: set[tuple[str, str]] = field(default_factory=set)
+    classes: dict[str, str] = field(default_factory=dict)
+    enums: set[tuple[frozenset[Any], frozenset[Any]]] = field(default_factory=set)
+
+    def tells(self, old: Sequence[Member], new: Sequence[Member]) -> bool:
+        """Whether an enum has just these members, and tells how they changed."""
+        return (frozenset(map(bare, old)), frozenset(map(bare, new))) in self.enums
+
+    def unsaid(
+        self,
+        old: Type | Wire,
+        new: Type | Wire,
+        section: str,
+        where: str,
+        compare: Callable[[str], Iterable[Finding]],
+    ) -> Iterator[Finding]:
+        """What a user of a type has to say: what the type's own entry does not."""
+        same = (old.name, new.name) in self.pairs
+        if not same:
+            yield finding("type-replaced", where, old.name, new.name)
+        for general, here in zip(compare(f"{section}/{new.name}"), compare(where)):
+            # The words of another type are no change of words.
+            if general not in self.said if same else here.level != "docs":
+                yield here
+
+
+def wire_changes(where: str, old: Wire, new: Wire) -> Iterator[Finding]:
+    """How a whole number stands on the wire."""
+    if old.width != new.width:
+        yield finding("width-changed", where, old.width, new.width)
+    if old.order != new.order and max(old.width, new.width) > 1:
+        yield finding("byte-order-changed", where, old.order, new.order)
+    elif old.order != new.order:
+        # A single byte has no order: what is said of it is read by people alone.
+        yield from prose.doc(where, f"{old.order} end first", f"{new.order} end first")
+    unsigned = old.signed_at == old.top and new.signed_at == new.top
+    if old.signed_at != new.signed_at and not unsigned:
+        yield finding("sign-rule-changed", where, words.sign(old), words.sign(new))
+    yield from prose.doc(where, old.doc, new.doc)
+    yield from prose.source(where, old.source, new.source)
+    yield from prose.disputes(where, old.disputed, new.disputed)
+
+
+def type_changes(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:
+    """A type, whatever its kind."""
+    if isinstance(old, Value) and isinstance(new, Value):
+        yield from _value(where, old, new, known)
+    elif isinstance(old, Value) or isinstance(new, Value) or type(old) is not type(new):
+        yield from _kind(where, old, new)
+    else:
+        yield from known.unsaid(
+            old.wire, new.wire, "wire", where, lambda at: wire_changes(at, old.wire, new.wire)
+        )
+    if isinstance(old, Quantity) and isinstance(new, Quantity):
+        yield from quantities.changes(where, old, new)
+    if isinstance(old, Enum) and isinstance(new, Enum):
+        yield from _enum(where, old, new)
+    yield from prose.doc(where, old.doc, new.doc)
+
+
+def layout(type: Type) -> list[tuple[int, str, int]]:
+    """The words of a type on the line."""
+    return [(n["width"], n["order"], n["signed_at"]) for n in lower.numbers(type)]
+
+
+def shape(found: Type) -> tuple[Any, ...]:
+    """A type without names and words."""
+    return type(found), lower.numbers(found), lower.choices(found)
+
+
+def _kind(where: str, old: Type, new: Type) -> Iterator[Finding]:
+    kinds = [type(found).__name__.lower() for found in (old, new)]
+    yield finding("type-kind-changed", where, *kinds)
+    if layout(old) != layout(new):
+        sizes = ["+".join(str(word[0]) for word in layout(found)) for found in (old, new)]
+        yield finding("type-layout-changed", where, *(f"{size} byte(s)" for size in sizes))
+
+
+def _enum(where: str, old: Enum, new: Enum) -> Iterator[Finding]:
+    yield from _class(where, old.class_name, new.class_name)
+    yield from members(where, old.members, new.members)
+    yield from prose.source(where, old.source, new.source)
+
+
+def _class(where: str, old: str, new: str) -> Iterator[Finding]:
+    if old != new:
+        yield finding("class-renamed", where, old, new)
+
+
+def members(where: str, old: Sequence[Member], new: Sequence[Member]) -> Iterator[Finding]:
+    """The members of an enum: by name, and what is left over by number."""
+    matched = match(old, new, lambda member: member.name).further(lambda member: member.value)
+    for member in matched.gone:
+        yield finding("enum-member-removed", f"{where}/{member.name}", words.member(member))
+    for member in matched.came:
+        yield finding("enum-member-added", f"{where}/{member.name}", "", words.member(member))
+    for before, after in matched.pairs:
+        at = f"{where}/{after.name}"
+        if before.name != after.name:
+            yield finding("enum-member-renamed", at, before.name, after.name)
+        if before.value != after.value:
+            shown = words.member(before), words.member(after)
+            yield finding("enum-member-renumbered", at, *shown)
+        yield from prose.doc(at, before.doc, after.doc)
+    yield from order(where, matched, lambda member: member.name)
+
+
+def _value(where: str, old: Value, new: Value, known: Known) -> Iterator[Finding]:
+    yield from _class(where, old.class_name, new.class_name)
+    names = [[name for name, _ in side.items] for side in (old, new)]
+    changed = renamed(*names)
+    if changed is None:
+        yield finding("items-changed", where, *map(words.names, names))
+    for before, after in (changed or {}).items():
+        yield finding("item-renamed", f"{where}/{after}", before, after)
+    parts = dict(new.items)
+    for name, item in old.items:
+        after = (changed or {}).get(name, name)
+        if after in parts:
+            yield from _item(f"{where}/{after}", item, parts[after], known)
+
+
+def _item(where: str, old: Quantity, new: Quantity, known: Known) -> Iterator[Finding]:
+    yield from known.unsaid(old, new, "types", where, lambda at: type_changes(at, old, new, known))

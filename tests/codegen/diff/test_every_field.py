@@ -1,0 +1,156 @@
+"""Nothing that the model can say may change unseen: every field, and any of them by chance."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import vectors
+from cobotwire_codegen import model
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.diff import diff
+from cobotwire_codegen.errors import Place
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.publish import model_json
+
+HERE = Path(__file__).parent
+PLACE = Place("test", 1, 1)
+RECORDS = [
+    item
+    for item in vars(model).values()
+    if isinstance(item, type) and is_dataclass(item) and item.__module__ == model.__name__
+]
+FIELDS = [
+    (record, field.name) for record in RECORDS for field in fields(record) if field.name != "place"
+]
+# Words from closed lists stay inside them.
+OTHER = {"big": "little", "little": "big", "request": "reply", "reply": "request"}
+OTHER |= {"": "required", "required": "optional", "optional": ""}
+WIRE = model.Wire(PLACE, "byte", 1, "big", 255, "", (), ())
+ARGUMENT = model.Field(
+    PLACE, "new", model.Flag(PLACE, "flag", WIRE, ""), "", "", False, None, "", ()
+)
+# What stands where there was nothing, by the name of the field.
+NEW: dict[str, Any] = {
+    "text": model.Text(PLACE, "Said", ("a ",), (("b", "B."),), "", 5),
+    "request_text": model.Text(PLACE, "", ("a ",), (("b", "B."),), "", 0),
+    "range": (Fraction(1), Fraction(2)),
+    "requests": ((ARGUMENT,),),
+    "replies": ((ARGUMENT,),),
+    "changes": (model.Change(PLACE, "It changed.", "So.", ()),),
+    "disputed": (model.Dispute(PLACE, "It does.", "So.", "low", ()),),
+    "errata": (model.Erratum(PLACE, (), "text", (), None, "a", "b", "c"),),
+    "addresses": (model.Member(PLACE, "ALL", 0, ""),),
+    "refused": ("bad-length", 2),
+    "source": ((1, 2),),
+    "lines": ((1, 2),),
+    "values": (("new", 1),),
+    "commands": ("get_pose",),
+    "notes": ("New.",),
+    "choices": (3,),
+    "printed": b"\xfe",
+    "frame": b"\xfe",
+    "const": 1,
+    "example": 3,
+    "line": 3,
+}
+
+
+@lru_cache
+def small(file: str) -> Edition:
+    return build_edition(HERE / f"{file}.yaml", HERE)
+
+
+@lru_cache
+def spots(file: str) -> tuple[tuple[type, str, tuple[str | int, ...]], ...]:
+    """Every field of every record of a small spec: the record, the field, the way there."""
+    return tuple(_spots(small(file), ()))
+
+
+def _spots(value: Any, path: tuple[str | int, ...]) -> Iterator[Any]:
+    if isinstance(value, tuple):
+        for index, item in enumerate(value):
+            yield from _spots(item, (*path, index))
+    elif type(value) in RECORDS:
+        for field in fields(value):
+            part = getattr(value, field.name)
+            # A selector without cases, or cases without a selector, is no model.
+            if field.name != "place" and not (field.name in ("by", "cases") and not part):
+                yield type(value), field.name, (*path, field.name)
+                yield from _spots(part, (*path, field.name))
+
+
+def changed(value: Any, path: tuple[str | int, ...]) -> Any:
+    """The model with another value at a spot."""
+    step, rest = path[0], path[1:]
+    if isinstance(step, int):
+        return (*value[:step], changed(value[step], rest), *value[step + 1 :])
+    part = getattr(value, step)
+    return replace(value, **{step: changed(part, rest) if rest else other(part, step)})
+
+
+def other(value: Any, field: str) -> Any:
+    """Another value of the same kind."""
+    if value is None or value in ((), ((),)):
+        return NEW[field]
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int | Fraction):
+        return value + 1
+    if isinstance(value, str):
+        return OTHER[value] if field in ("order", "direction", "echo") else value + "x"
+    if isinstance(value, bytes):
+        return value + b"\x01"
+    if isinstance(value, tuple):
+        return (other(value[0], field), *value[1:])
+    first = next(part.name for part in fields(value) if part.name != "place")
+    return replace(value, **{first: other(getattr(value, first), first)})
+
+
+def said(edition: Edition) -> Any:
+    """All that an edition says, without its places; not by the code under test."""
+
+    def stripped(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: stripped(part) for key, part in value.items() if key != "place"}
+        return [stripped(part) for part in value] if isinstance(value, list) else value
+
+    return stripped(json.loads(model_json(edition)))
+
+
+@pytest.mark.parametrize(("record", "field"), FIELDS, ids=[f"{r.__name__}.{f}" for r, f in FIELDS])
+def test_a_change_of_any_field_is_found(record: type, field: str) -> None:
+    met = 0
+    for file in ("base", "delta"):
+        for owner, name, path in spots(file):
+            if (owner, name) == (record, field):
+                met += 1
+                new = changed(small(file), path)
+                assert diff(small(file), new), path
+                assert diff(new, small(file)), path
+    assert met, "the small spec must have one of everything"
+
+
+@given(st.lists(st.integers(0, 10_000), min_size=1, max_size=4))
+def test_something_is_found_just_where_something_differs(chosen: list[int]) -> None:
+    old = new = small("base")
+    for number in chosen:
+        _, _, path = spots("base")[number % len(spots("base"))]
+        try:
+            new = changed(new, path)
+        except (IndexError, KeyError, AttributeError):
+            continue  # an earlier change took what stood there
+    assert bool(diff(old, new)) == (said(old) != said(new))
+
+
+def test_an_edition_does_not_differ_from_itself() -> None:
+    assert diff(vectors.edition(), vectors.edition()) == ()

@@ -1,0 +1,69 @@
+"""Every rule has a fixture: two small specs, and all that is said of what lies between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from ruamel.yaml import YAML
+
+from cobotwire_codegen.diff import LEVELS, RULES, diff, diff_all
+from cobotwire_codegen.model import Edition
+
+Build = Callable[..., Edition]
+FOLDER = Path(__file__).parent / "rules"
+FIXTURES: dict[str, list[dict[str, Any]]] = {
+    level: YAML(typ="safe").load(FOLDER / f"{level}.yaml") for level in LEVELS
+}
+ALL = [(level, fixture) for level in LEVELS for fixture in FIXTURES[level]]
+# What only whole folders show; the test below has them.
+FOLDERS = {"edition-added", "edition-removed"}
+
+
+def _swaps(fixture: dict[str, Any], side: str) -> list[tuple[str, str]]:
+    return [(swap["take"], swap["put"]) for swap in fixture.get(side, [])]
+
+
+@pytest.mark.parametrize(("level", "fixture"), ALL, ids=[f["rule"] for _, f in ALL])
+def test_a_rule_says_just_this(level: str, fixture: dict[str, Any], build: Build) -> None:
+    old, new = (
+        build(_swaps(fixture, side), fixture.get("file", "base")) for side in ("before", "after")
+    )
+    found = diff(old, new)
+    assert [f"{one.rule}: {one.where}: {one.message}" for one in found] == fixture["says"]
+    assert level in [one.level for one in found if one.rule == fixture["rule"]]
+
+
+def test_every_rule_has_its_fixture() -> None:
+    assert FOLDERS | {fixture["rule"] for _, fixture in ALL} == set(RULES)
+    for level, fixture in ALL:
+        assert RULES[fixture["rule"]].level == level
+
+
+def test_editions_that_come_and_go(build: Build) -> None:
+    edition = build()
+    [gone] = diff_all({"small": edition}, {})
+    [came] = diff_all({}, {"small": edition})
+    assert (gone.rule, gone.level, gone.message) == (
+        "edition-removed",
+        "api",
+        "the edition small went",
+    )
+    assert (came.rule, came.level, came.where) == ("edition-added", "addition", "small")
+
+
+def test_what_the_link_says_is_said_once(build: Build) -> None:
+    found = diff(build(), build([("deadline_ms: 500", "deadline_ms: 900")]))
+    assert [one.where for one in found] == ["small/frame"]
+
+
+def test_what_a_type_says_is_not_said_of_its_users(build: Build) -> None:
+    """But what a user narrows for itself is."""
+    narrowed = ("{name: angle, is: angle}", "{name: angle, is: angle, range: [-90, 90]}")
+    found = diff(build(), build([("range: [-180, 180]", "range: [-120, 120]"), narrowed]))
+    assert [one.where for one in found] == [
+        "small/types/angle",
+        "small/commands/send_angle/request/angle",
+    ]

@@ -1,0 +1,115 @@
+"""OLD and NEW as people name them: files, folders, revisions of real repositories."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from cobotwire_codegen.diff import diff_all
+from cobotwire_codegen.diff.sources import SourceError, paired, read
+from cobotwire_codegen.errors import SpecError
+
+BASE = (Path(__file__).parent / "base.yaml").read_text()
+
+
+def git(folder: Path, *words: str) -> None:
+    who = ("-c", "user.name=test", "-c", "user.email=test@example.org")
+    subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True)
+
+
+def put(folder: Path, text: str, name: str = "small") -> Path:
+    path = folder / "spec" / "editions" / f"{name}.yaml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return path
+
+
+@pytest.fixture
+def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A repository with two revisions of a spec, v1 and v2, as the current folder."""
+    folder = tmp_path / "repository"
+    folder.mkdir()
+    git(folder, "init", "--initial-branch=main")
+    for tag, number in (("v1", "0x22"), ("v2", "0x23")):
+        put(folder, BASE.replace("0x22", number))
+        git(folder, "add", ".")
+        git(folder, "commit", "-m", tag)
+        git(folder, "tag", "-a", tag, "-m", tag)
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def rules(old: str, new: str) -> list[str]:
+    return [one.rule for one in diff_all(*paired(read(old), read(new)))]
+
+
+def test_revisions_of_the_repository_here(repository: Path) -> None:
+    assert rules("v1", "v2") == ["id-changed"]
+    assert rules("v2", "HEAD") == []
+    assert rules("HEAD~1", "main") == ["id-changed"]
+
+
+def test_a_revision_against_what_is_not_committed(repository: Path) -> None:
+    path = put(repository, BASE.replace("joints: 2", "joints: 3"))
+    assert rules("v1", ".") == ["joints-changed"]
+    assert rules("v1", str(path)) == ["joints-changed"]
+    assert rules(str(path), "v1") == ["joints-changed"]
+
+
+def test_editions_of_folders_that_come_and_go(repository: Path) -> None:
+    put(repository, BASE.replace("edition: small", "edition: other"), "other")
+    assert rules("v2", ".") == ["edition-added"]
+    assert rules(".", "v2") == ["edition-removed"]
+
+
+def test_from_a_folder_inside_the_repository(
+    repository: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inside = repository / "inside"
+    put(inside, BASE)
+    git(repository, "add", ".")
+    git(repository, "commit", "-m", "inside")
+    monkeypatch.chdir(inside)
+    assert rules("HEAD", ".") == []
+    with pytest.raises(SourceError, match=r"the revision v1 holds no spec/ here"):
+        read("v1")
+
+
+@pytest.mark.parametrize("word", ["v3", "--help", "-v", "v1..v2", "nowhere/spec.yaml", ""])
+def test_what_is_nothing_is_refused(repository: Path, word: str) -> None:
+    with pytest.raises(SourceError, match="is no file, no folder and no git revision"):
+        read(word) if word else read("\t")
+
+
+def test_a_folder_without_a_spec_is_refused(repository: Path) -> None:
+    (repository / "empty").mkdir()
+    with pytest.raises(SourceError, match="the folder empty holds no spec/editions"):
+        read("empty")
+
+
+def test_a_file_without_its_match_is_refused(repository: Path) -> None:
+    path = put(repository, BASE.replace("edition: small", "edition: other"), "other")
+    with pytest.raises(SourceError, match="there is no edition other in v1"):
+        paired(read(str(path)), read("v1"))
+
+
+def test_no_repository_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SourceError, match="no git revision"):
+        read("HEAD")
+
+
+def test_no_git_is_told(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(repository))
+    with pytest.raises(SourceError, match="git is not installed"):
+        read("v1")
+
+
+def test_a_bad_spec_is_told_with_its_revision(repository: Path) -> None:
+    put(repository, BASE.replace("safety: motion", "safety: moton"))
+    git(repository, "commit", "-am", "bad")
+    with pytest.raises(SpecError, match=r"HEAD:spec/editions/small\.yaml:80:17: unknown-word: "):
+        read("HEAD")
