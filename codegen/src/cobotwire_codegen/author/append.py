@@ -1,0 +1,106 @@
+"""Entries added to YAML files as text, so that comments and layout stay as they are.
+
+No YAML writer is used: a place is found through ``load``, and lines are put there.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check
+from cobotwire_codegen.errors import Problem, SpecError
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load, parse
+from cobotwire_codegen.model import Edition
+
+_LISTED = ("frame", "types", "commands", "vectors", "errata", "changes")
+
+
+def appended(text: str, name: str, key: str, entry: list[str], blank: bool) -> str:
+    """A file's text with an entry at the end of what stands under a key of the whole file.
+
+    Raises:
+        SpecError: it stands there on one line, in brackets, or is no list or mapping.
+    """
+    root = parse(text, name)
+    held = root.entries.get(key) if isinstance(root, Mapping) else None
+    lines = text.splitlines()
+    if held is None or not isinstance(root, Mapping):
+        new = [f"{key}:", *(f"  {line}".rstrip() for line in entry)]
+        return "\n".join([*_without_end(lines), "", *new]) + "\n"
+    if isinstance(held, Scalar) or held.place.line == root.keys[key].line:
+        message = f"{key} stands on one line here; write it line by line, so that it can grow"
+        raise SpecError([Problem(held.place, "wrong-kind", message)])
+    margin = " " * (held.place.column - 1)
+    end = _end(lines, root, key)
+    new = [f"{margin}{line}".rstrip() for line in entry]
+    before, after = _without_end(lines[:end]), lines[end:]
+    return "\n".join([*before, *([""] if blank else []), *new, *_gap(after), *after]) + "\n"
+
+
+def _end(lines: list[str], root: Mapping, key: str) -> int:
+    """The line, from 0, at which what stands under a key has ended."""
+    here = root.keys[key].line
+    later = [place.line for place in root.keys.values() if place.line > here]
+    if not later:
+        return len(lines)
+    end = min(later) - 1
+    # What stands right above the next key speaks of it.
+    while lines[end - 1].startswith("#"):
+        end -= 1
+    return end
+
+
+def _without_end(lines: list[str]) -> list[str]:
+    while lines and not lines[-1].strip():
+        lines = lines[:-1]
+    return lines
+
+
+def _gap(after: list[str]) -> list[str]:
+    return [""] if after else []
+
+
+def files_of(path: Path) -> Iterator[Path]:
+    """An edition's file and every file that it is read from."""
+    yield path
+    root = load(path)
+    entries = root.entries if isinstance(root, Mapping) else {}
+    base = entries.get("base")
+    if isinstance(base, Scalar):
+        yield from files_of(path.parent / str(base.value))
+    for key in _LISTED:
+        for name in _names(entries.get(key)):
+            yield path.parent / name
+
+
+def _names(node: Node | None) -> Iterator[str]:
+    for item in node.items if isinstance(node, Sequence) else (node,):
+        if isinstance(item, Scalar) and isinstance(item.value, str):
+            yield item.value
+
+
+def checked_with(path: Path, changed: dict[Path, str]) -> Edition:
+    """The edition as it would be with some files changed; nothing on disk is touched.
+
+    Raises:
+        SpecError: with every problem that it would have; places are those of the changed files.
+    """
+    files = {file.resolve() for file in files_of(path)}
+    texts = {file.resolve(): text for file, text in changed.items()}
+    here = Path.cwd().resolve()
+    top = Path(os.path.commonpath([here, *files]))
+    with TemporaryDirectory() as folder:
+        # A copy of the files, laid out as they are, so that they find each other.
+        for file in files:
+            copy = Path(folder) / file.relative_to(top)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_text(texts.get(file) or file.read_text(encoding="utf-8"), encoding="utf-8")
+        root = Path(folder) / here.relative_to(top)
+        root.mkdir(parents=True, exist_ok=True)
+        edition = build_edition(Path(folder) / path.resolve().relative_to(top), root)
+    check(edition)
+    return edition

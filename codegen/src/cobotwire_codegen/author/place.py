@@ -1,0 +1,38 @@
+"""Where a new command and its vectors belong in the files of an edition."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
+
+
+def families(edition: Path) -> dict[str, Path]:
+    """The edition's own commands files by family; in a one-file protocol, one without a name."""
+    commands = _under(edition, "commands")
+    if isinstance(commands, Mapping):
+        return {"": edition}
+    found = {}
+    for path in _files(edition, commands):
+        family = _under(path, "family")
+        if isinstance(family, Scalar):
+            found[str(family.value)] = path
+    return found
+
+
+def vectors_file(edition: Path) -> Path:
+    """The file that new vectors go to: missing.yaml, else the last one, else the edition's own."""
+    paths = _files(edition, _under(edition, "vectors"))
+    named = [path for path in paths if path.name == "missing.yaml"]
+    return [edition, *paths, *named][-1]
+
+
+def _files(edition: Path, node: Node | None) -> list[Path]:
+    items = node.items if isinstance(node, Sequence) else (node,)
+    names = (item.value for item in items if isinstance(item, Scalar))
+    return [edition.parent / name for name in names if isinstance(name, str)]
+
+
+def _under(path: Path, key: str) -> Node | None:
+    root = load(path)
+    return root.entries.get(key) if isinstance(root, Mapping) else None

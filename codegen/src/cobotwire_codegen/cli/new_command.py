@@ -1,0 +1,191 @@
+"""``cobotwire-gen new-command``: a command and its first vectors, added to the spec."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import click
+
+from cobotwire_codegen.author.append import appended, checked_with
+from cobotwire_codegen.author.draft import (
+    Direction,
+    Draft,
+    command_lines,
+    drafted,
+    read,
+    smallest,
+    vector_lines,
+)
+from cobotwire_codegen.author.place import families, vectors_file
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.cli.explain import DEFAULT_EDITION
+from cobotwire_codegen.cli.shared import edition_path, problems_told
+from cobotwire_codegen.errors import nearest
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, parse
+from cobotwire_codegen.model import SAFETY, Command, Edition
+from cobotwire_codegen.wire import build_frame
+
+_NEEDED = {
+    "name": "The method's name",
+    "id": "The id, such as 0x7E",
+    "title": "A heading",
+    "doc": "What it does, in a sentence",
+    "safety": f"Its safety class ({', '.join(SAFETY)})",
+}
+
+
+@click.command("new-command")
+@click.option("--edition", "file", default=DEFAULT_EDITION, show_default=True)
+@click.option("--family", help="The family; needed where an edition has several files.")
+@click.option("--name", help="The method's name.")
+@click.option("--id", help="The id, such as 0x7E.")
+@click.option("--title", help="A heading.")
+@click.option("--doc", help="What it does, in a sentence.")
+@click.option("--safety", help=f"One of: {', '.join(SAFETY)}.")
+@click.option("--request", help="Its fields, as NAME:TYPE,NAME:TYPE.")
+@click.option("--reply", help="The same of the reply; NAME:TYPE:echo repeats the request's field.")
+@click.option("--vector", help="A request that was seen, in hex.")
+@click.option("--reply-vector", help="A reply that was seen, in hex.")
+@click.option("--values", help="Values for the request's vector, as 'NAME: VALUE, NAME: VALUE'.")
+@click.option("--reply-values", help="The same for the reply's.")
+@click.option("--source", default="", help="Lines of the document, such as 20-39.")
+@click.option("--dry-run", is_flag=True, help="Print the YAML and write nothing.")
+def new_command(file: str, dry_run: bool, **given: str | None) -> None:
+    """Add a command to an edition, with a vector for each of its messages.
+
+    What is missing is asked for on a terminal. The vectors hold the frames given, or those of the
+    values given, or those of the smallest legal values. The result is checked before anything is
+    written; if it is not right, the files stay as they are.
+    """
+    path = edition_path(file)
+    with problems_told():
+        homes = families(path)
+        _complete(given, homes)
+        draft = _draft(given)
+        edition = build_edition(path, Path.cwd())
+        home = homes[given["family"] or ""]
+        vectors = _vectors(edition, draft, given)
+        target = vectors_file(path)
+        changed = {home: home.read_text(encoding="utf-8")}
+        changed[home] = appended(changed[home], str(home), "commands", command_lines(draft), True)
+        for lines in vectors:
+            text = changed.get(target) or target.read_text(encoding="utf-8")
+            changed[target] = appended(text, str(target), "vectors", lines, False)
+        checked_with(path, changed)
+    if dry_run:
+        _show(home, command_lines(draft))
+        _show(target, [line for lines in vectors for line in lines])
+        return
+    for place, text in changed.items():
+        place.write_text(text, encoding="utf-8")
+        click.echo(f"wrote {place}")
+
+
+def _show(path: Path, lines: list[str]) -> None:
+    click.echo(f"# {path}")
+    for line in lines:
+        click.echo(f"  {line}")
+
+
+def _complete(given: dict[str, str | None], homes: dict[str, Path]) -> None:
+    """Ask for what is missing, or refuse."""
+    needed = dict(_NEEDED)
+    if list(homes) == [""]:
+        given["family"] = ""
+    else:
+        needed = {"family": f"The family ({', '.join(homes)})", **needed}
+    missing = [word for word in needed if given[word] is None]
+    if missing and not sys.stdin.isatty():
+        raise click.UsageError(f"missing: {', '.join(f'--{word}' for word in missing)}")
+    for word in missing:
+        given[word] = click.prompt(needed[word])
+    if missing:
+        for word in ("request", "reply"):
+            if given[word] is None:
+                given[word] = click.prompt(f"Fields of the {word}, NAME:TYPE,...", default="")
+    family = given["family"] or ""
+    if family not in homes:
+        raise click.UsageError(f"there is no family {family}{nearest(family, homes)}")
+    if given["safety"] not in SAFETY:
+        safety = given["safety"] or ""
+        raise click.UsageError(f"--safety cannot be {safety}{nearest(safety, SAFETY)}")
+
+
+def _draft(given: dict[str, str | None]) -> Draft:
+    words = {word: given[word] or "" for word in given}
+    try:
+        id = int(words["id"], 0)
+    except ValueError:
+        raise click.UsageError(f"--id must be a number such as 0x7E, not {words['id']}") from None
+    return Draft(
+        words["name"],
+        id,
+        words["title"],
+        words["doc"],
+        words["safety"],
+        words["source"],
+        _fields("request", words["request"]),
+        _fields("reply", words["reply"]),
+    )
+
+
+def _fields(flag: str, text: str) -> tuple[tuple[str, str, bool], ...]:
+    found = []
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        name, _, rest = part.partition(":")
+        type, _, echo = rest.partition(":")
+        if not name or not type or echo not in ("", "echo") or (echo and flag == "request"):
+            raise click.UsageError(f"--{flag} is NAME:TYPE,NAME:TYPE; {part} is not")
+        found.append((name, type, bool(echo)))
+    return tuple(found)
+
+
+def _vectors(edition: Edition, draft: Draft, given: dict[str, str | None]) -> list[list[str]]:
+    try:
+        command = drafted(draft, edition)
+    except ValueError as error:
+        hint = nearest(str(error), (type.name for type in edition.types))
+        raise click.UsageError(f"there is no type {error}{hint}") from None
+    made = [_vector(edition, draft, command, "request", given["vector"], given["values"])]
+    if draft.reply:
+        seen, values = given["reply_vector"], given["reply_values"]
+        made.append(_vector(edition, draft, command, "reply", seen, values))
+    return made
+
+
+def _vector(
+    edition: Edition,
+    draft: Draft,
+    command: Command,
+    direction: Direction,
+    seen: str | None,
+    said: str | None,
+) -> list[str]:
+    """The lines of a message's vector: the frame that was seen, or one of the values."""
+    try:
+        if seen is not None:
+            frame = bytes.fromhex(seen)
+            values = read(edition, command, direction, frame)
+        else:
+            [form] = command.forms(direction)
+            values = {field.name: smallest(field.type) for field in form}
+            values.update(_values(said) if said else {})
+            frame = build_frame(edition.frame, command, direction, values)
+    except ValueError as error:
+        raise click.UsageError(f"the {direction}'s vector: {error}") from None
+    return vector_lines(draft, direction, frame, values, seen is not None)
+
+
+def _values(text: str) -> dict[str, object]:
+    node = parse(f"{{{text}}}", "--values")
+    entries = node.entries if isinstance(node, Mapping) else {}
+    return {name: _plain(value) for name, value in entries.items()}
+
+
+def _plain(node: Node) -> object:
+    if isinstance(node, Sequence):
+        return tuple(_plain(item) for item in node.items)
+    value = node.value if isinstance(node, Scalar) else None
+    return int(value) if isinstance(value, Fraction) and value.denominator == 1 else value

@@ -1,0 +1,131 @@
+"""A new command lands in the right files, checked, and leaves all else as it was."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+import vectors
+from cobotwire_codegen.build import build_edition
+from codegen.author import samples
+
+WORDS = ["--name", "dim", "--id", "0x70", "--title", "Dim: a little", "--doc", "Dims the lamp."]
+SETTING = [*WORDS, "--safety", "setting"]
+
+
+def _new(folder: Path, edition: str, *words: str) -> tuple[int, str]:
+    result = samples.run(folder, "new-command", "--edition", edition, *words)
+    return result.returncode, result.stdout + result.stderr
+
+
+def _texts(folder: Path) -> dict[str, str]:
+    return {path.name: path.read_text() for path in folder.rglob("*.yaml")}
+
+
+def _kept(before: dict[str, str], after: dict[str, str]) -> None:
+    """Every line that was there is still there, in its order."""
+    for name, text in before.items():
+        rest = iter(after[name].splitlines())
+        assert all(line in rest for line in text.splitlines()), name
+
+
+def test_a_one_file_protocol_grows_in_the_middle(tmp_path: Path) -> None:
+    folder = samples.copied(tmp_path)
+    before = _texts(folder)
+    code, said = _new(folder, "lamp.yaml", *SETTING, "--request", "joint:joint,angle:angle")
+    assert code == 0, said
+    assert samples.problems(folder / "lamp.yaml") == []
+    _kept(before, _texts(folder))
+    edition = build_edition(folder / "lamp.yaml", folder)
+    assert edition.commands[-1].title == "Dim: a little"
+    assert edition.vectors[-1].frame == bytes.fromhex("FE FE 05 70 01 BF 8C FA")
+
+
+def test_a_protocol_of_init_grows(tmp_path: Path) -> None:
+    samples.run(tmp_path, "init", "oven")
+    words = ["--request", "mode:mode", "--reply", "taken:flag"]
+    assert _new(tmp_path, "oven.yaml", *SETTING, *words)[0] == 0
+    assert samples.run(tmp_path, "check", "oven.yaml").returncode == 0
+
+
+def test_a_project_grows_in_the_files_of_the_family_and_of_what_is_missing(tmp_path: Path) -> None:
+    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
+    before = {path: path.read_text() for path in (tmp_path / "spec").rglob("*.yaml")}
+    words = [
+        "--family",
+        "gripper",
+        "--name",
+        "get_load",
+        "--id",
+        "0x7E",
+        "--title",
+        "Read the load",
+    ]
+    query = ["--doc", "Reads it. " * 12, "--safety", "query", "--source", "12-13"]
+    fields = ["--request", "joint:joint", "--reply", "joint:joint:echo,load:angle"]
+    seen = ["--vector", "FE FE 03 7E 02 FA", "--reply-values", "joint: 2, load: -1.5"]
+    result = samples.run(tmp_path, "new-command", *words, *query, *fields, *seen)
+    assert result.returncode == 0, result.stderr
+    changed = [path.name for path, text in before.items() if path.read_text() != text]
+    assert sorted(changed) == ["gripper.yaml", "missing.yaml"]
+    for path, text in before.items():
+        assert path.read_text().startswith(text.rstrip())
+    added = (tmp_path / "spec/vectors/missing.yaml").read_text()
+    assert "frame: FE FE 03 7E 02 FA\n    values: {joint: 2}\n" in added
+    assert "frame: FE FE 05 7E 02 FF 6A FA\n    values: {joint: 2, load: -1.5}\n" in added
+    assert samples.run(tmp_path, "check").returncode == 0
+
+
+WRONG = {
+    "an id in use": (["--id", "0x21", "--request", "joint:joint,lit:flag"], "ambiguous-layout"),
+    "a name in use": (["--name", "move"], "duplicate-"),
+    "a keyword": (["--name", "class"], "bad-name"),
+    "a query without a reply": (["--safety", "query"], "mute-query"),
+    "an unknown type": (["--request", "joint:jiont"], "did you mean joint?"),
+    "an unknown class": (["--safety", "seting"], "did you mean setting?"),
+    "no field": (["--request", "joint"], "joint is not"),
+    "another frame": (["--vector", "FE FE 02 71 FA"], "is not the request"),
+    "no hex": (["--vector", "FE F"], "vector"),
+    "a value outside": (["--request", "j:joint", "--values", "j: 9"], "outside 1..2"),
+    "another field": (["--request", "j:joint", "--values", "k: 1"], "vector"),
+    "no number": (["--id", "seven"], "0x7E"),
+}
+
+
+@pytest.mark.parametrize(("words", "said"), WRONG.values(), ids=WRONG.keys())
+def test_what_is_not_right_is_told_and_nothing_is_written(
+    tmp_path: Path, words: list[str], said: str
+) -> None:
+    folder = samples.copied(tmp_path)
+    before = _texts(folder)
+    code, told = _new(folder, "lamp.yaml", *SETTING, *words)
+    assert code == 2
+    assert said in told
+    assert _texts(folder) == before
+
+
+def test_without_a_terminal_what_is_missing_is_named(tmp_path: Path) -> None:
+    folder = samples.copied(tmp_path)
+    code, said = _new(folder, "bus.yaml", "--name", "dim")
+    assert code == 2
+    assert "missing: --family, --id, --title, --doc, --safety" in said
+
+
+def test_a_dry_run_prints_and_writes_nothing(tmp_path: Path) -> None:
+    folder = samples.copied(tmp_path)
+    before = _texts(folder)
+    code, said = _new(folder, "lamp.yaml", *SETTING, "--dry-run")
+    assert code == 0
+    assert "  dim:\n    id: 0x70\n" in said
+    assert "    frame: FE FE 02 70 FA\n" in said
+    assert _texts(folder) == before
+
+
+def test_a_frame_with_an_address_and_a_sum(tmp_path: Path) -> None:
+    folder = samples.copied(tmp_path)
+    query = [*WORDS, "--safety", "query", "--family", "all", "--reply", "lit:flag"]
+    code, said = _new(folder, "bus.yaml", *query, "--reply-vector", "FE FE 01 03 70 01 71")
+    assert code == 0, said
+    assert "values: {lit: true}" in (folder / "bus_vectors.yaml").read_text()
