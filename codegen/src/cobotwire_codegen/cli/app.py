@@ -12,6 +12,7 @@ from cobotwire_codegen.cli.generate import generate
 from cobotwire_codegen.cli.init import init
 from cobotwire_codegen.cli.model import model
 from cobotwire_codegen.cli.new_command import new_command
+from cobotwire_codegen.cli.reconcile import reconcile
 from cobotwire_codegen.cli.schema import schema
 from cobotwire_codegen.cli.shared import root_option
 
@@ -40,5 +41,5 @@ def main(ctx: click.Context, check_only: bool, root: str) -> None:
         ctx.invoke(generate, check_only=check_only, root=root)
 
 
-for verb in (build, check, model, explain, schema, init, diff, new_command):
+for verb in (build, check, model, explain, schema, init, diff, new_command, reconcile):
     main.add_command(verb)

@@ -1,0 +1,92 @@
+"""Cuts frames out of a line by the law of framing, knowing the frame but not the commands.
+
+As docs/framing.md has it for unknown firmware: any id, any LEN up to the frame's longest; a
+candidate is refuted by the first byte that refutes it and the scan goes on one byte behind its
+start; a valid frame is consumed whole. In two things it differs, for unknown lengths are what is
+looked for: an id that the edition knows is taken with other lengths too; and an unknown frame gives
+way to one that the edition knows inside it, or noise would pass for news.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from cobotwire_codegen.lower import maximum_length
+from cobotwire_codegen.model import Edition, Frame
+from cobotwire_codegen.wire import _check as check_bytes
+from cobotwire_codegen.wire import size
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """A frame on the line; ``offset`` counts bytes of the capture."""
+
+    offset: int
+    id: int
+    data: bytes
+    frame: bytes
+
+
+def known_layouts(edition: Edition, direction: str) -> set[tuple[int, int]]:
+    """The ids with the data lengths that the edition has; of both directions by default."""
+    directions = ("request", "reply") if direction == "both" else (direction,)
+    return {
+        (command.id, sum(size(field.type) for field in form))
+        for command in edition.commands
+        for way, forms in (("request", command.requests), ("reply", command.replies))
+        if way in directions
+        for form in forms
+    }
+
+
+def scan(edition: Edition, line: bytes, known: set[tuple[int, int]]) -> Iterator[Seen]:
+    """The frames of a line, in order."""
+    start = 0
+    while start < len(line):
+        start = line.find(edition.frame.header, start)
+        if start < 0:
+            return
+        seen = _frame_at(edition, line, start)
+        if seen is None or _hides(edition, line, seen, known):
+            start += 1
+            continue
+        yield seen
+        start += len(seen.frame)
+
+
+def _frame_at(edition: Edition, line: bytes, start: int) -> Seen | None:
+    """The frame that stands at a place, or None."""
+    frame = edition.frame
+    at = start + len(frame.header)
+    if frame.addresses:
+        legal = {member.value for member in frame.addresses}
+        if at >= len(line) or line[at] not in legal:
+            return None
+        at += 1
+    if at >= len(line) or not 1 + frame.check_size <= line[at] <= maximum_length(edition):
+        return None
+    end = at + 1 + line[at]
+    whole = line[start:end]
+    if end > len(line) or not _checks(frame, whole):
+        return None
+    data = whole[at - start + 2 : len(whole) - frame.check_size]
+    return Seen(start, line[at + 1], data, whole)
+
+
+def _checks(frame: Frame, whole: bytes) -> bool:
+    body, check = whole[: -frame.check_size], whole[-frame.check_size :]
+    start = len(frame.header) + bool(frame.addresses) + 1
+    return check_bytes(frame, body, len(body) - start - 1) == check
+
+
+def _hides(edition: Edition, line: bytes, seen: Seen, known: set[tuple[int, int]]) -> bool:
+    """Whether an unknown candidate would swallow the start of a frame that the edition knows."""
+    if (seen.id, len(seen.data)) in known:
+        return False
+    end = seen.offset + len(seen.frame)
+    for start in range(seen.offset + 1, end):
+        inner = _frame_at(edition, line, start)
+        if inner is not None and (inner.id, len(inner.data)) in known:
+            return True
+    return False

@@ -1,0 +1,51 @@
+"""``cobotwire-gen reconcile``: what a line carries that the edition lacks."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import BinaryIO
+
+import click
+
+from cobotwire_codegen.author.reconcile import capture_bytes, draft_lines, plain
+from cobotwire_codegen.author.reconcile import reconcile as reconciled
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.cli.explain import DEFAULT_EDITION
+from cobotwire_codegen.cli.shared import edition_path, problems_told
+
+
+@click.command()
+@click.argument("capture", type=click.File("rb"))
+@click.option("--edition", "file", default=DEFAULT_EDITION, show_default=True)
+@click.option(
+    "--direction",
+    type=click.Choice(("request", "reply", "both")),
+    default="both",
+    show_default=True,
+    help="Who was heard: the client's requests, the arm's replies, or both on one line.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def reconcile(capture: BinaryIO, file: str, direction: str, as_json: bool) -> None:
+    """Find the ids and lengths in CAPTURE that the edition lacks, with a draft entry for each.
+
+    CAPTURE holds the raw bytes or hex text; - is standard input. The drafts are guesses from what
+    the bytes look like. Exit code 1 if there was anything unknown, 0 if not.
+    """
+    try:
+        line = capture_bytes(capture.read())
+    except ValueError as error:
+        raise click.UsageError(f"the capture is hex text, but not of pairs: {error}") from None
+    with problems_told():
+        edition = build_edition(edition_path(file), Path.cwd())
+    count, found = reconciled(edition, line, direction)
+    drafts = [list(draft_lines(edition, news, direction)) for news in found]
+    if as_json:
+        unknown = [plain(news, draft) for news, draft in zip(found, drafts)]
+        click.echo(json.dumps({"bytes": len(line), "frames": count, "unknown": unknown}, indent=1))
+    else:
+        for draft in drafts:
+            click.echo("\n".join(draft) + "\n")
+        click.echo(f"{len(line)} bytes, {count} frame(s), {len(found)} unknown layout(s)", err=True)
+    sys.exit(1 if found else 0)

@@ -1,0 +1,124 @@
+"""What a line carries that the edition lacks is found, and nothing else is."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import vectors
+from cobotwire_codegen.author.guess import guess
+from cobotwire_codegen.author.reconcile import capture_bytes, reconcile
+from cobotwire_codegen.author.scan import known_layouts, scan
+from cobotwire_codegen.build import build_edition
+from codegen.author import samples
+
+EDITION = build_edition(vectors.ROOT / "spec/editions/mycobot.yaml", vectors.ROOT)
+KNOWN = known_layouts(EDITION, "both")
+FRAMES = [vector.frame for vector in EDITION.vectors if vector.frame is not None]
+
+
+def _frame(id: int, data: bytes) -> bytes:
+    return bytes([0xFE, 0xFE, len(data) + 2, id, *data, 0xFA])
+
+
+def test_every_frame_of_the_vectors_is_known() -> None:
+    line = b"".join(FRAMES)
+    assert [seen.frame for seen in scan(EDITION, line, KNOWN)] == FRAMES
+    assert reconcile(EDITION, line, "both") == (len(FRAMES), [])
+
+
+@given(data=st.binary(max_size=16), count=st.integers(1, 5))
+def test_an_unknown_id_is_found_between_known_frames(data: bytes, count: int) -> None:
+    unknown = _frame(0xEE, data)
+    line = b"".join([FRAMES[3] + unknown] * count)
+    found = reconcile(EDITION, line, "both")[1]
+    inside = any(seen.offset for seen in scan(EDITION, unknown, KNOWN))
+    assert inside or [(n.id, n.data_bytes, len(n.frames)) for n in found] == [
+        (0xEE, len(data), count)
+    ]
+
+
+@given(line=st.binary(max_size=200), more=st.lists(st.sampled_from(FRAMES), max_size=5))
+def test_the_frames_of_a_line_do_not_overlap_and_are_frames(line: bytes, more: list[bytes]) -> None:
+    end = 0
+    whole = line + b"".join(more)
+    for seen in scan(EDITION, whole, KNOWN):
+        assert seen.offset >= end
+        end = seen.offset + len(seen.frame)
+        assert whole[seen.offset : end] == seen.frame == _frame(seen.id, seen.data)
+
+
+def test_noise_and_what_was_cut_off_are_passed_over() -> None:
+    line = b"\x00\xfe" + FRAMES[0] + b"\xfe\xfe\x0f" + FRAMES[1] + FRAMES[2][:-1]
+    assert [seen.frame for seen in scan(EDITION, line, KNOWN)] == FRAMES[:2]
+
+
+def test_a_known_id_with_another_length_is_news() -> None:
+    [news] = reconcile(EDITION, _frame(0x20, b"\x01"), "both")[1]
+    assert news.why == "get_angles has no such length"
+
+
+def test_the_direction_decides_what_is_known() -> None:
+    reply = next(v.frame for v in EDITION.vectors if v.command == "get_angles" and v.values)
+    assert reply is not None
+    assert reconcile(EDITION, reply, "reply")[1] == []
+    assert len(reconcile(EDITION, reply, "request")[1]) == 1
+
+
+def _payloads() -> list[bytes]:
+    random.seed(1)
+    made = []
+    for i in range(40):
+        word = int(9000 * math.sin(i / 15)) & 0xFFFF
+        wild = random.choice((3, 60, 200))
+        made.append(bytes([i, i % 2, *word.to_bytes(2, "big"), 7, i * i % 3, wild, *b"v1.2 x86"]))
+    return made
+
+
+def test_the_bytes_suggest_what_they_are() -> None:
+    found = [(item.first, item.kind) for item in guess(_payloads())]
+    kinds = ["counter", "flag", "word", "constant", "enum", "byte", "text"]
+    assert found == list(zip((0, 1, 2, 4, 5, 6, 7), kinds))
+
+
+def test_one_frame_alone_suggests_little() -> None:
+    assert {item.kind for item in guess([b"\x01\x02"])} == {"constant"}
+    assert guess([b""]) == []
+
+
+def test_the_drafts_are_printed_and_told_by_the_exit_code() -> None:
+    line = b"".join(_frame(0xEE, payload) for payload in _payloads()).hex(" ")
+    result = samples.run(vectors.ROOT, "reconcile", "-", given=line)
+    assert result.returncode == 1
+    assert "# GUESSED from 40 frame(s); the id is unknown." in result.stdout
+    assert "{name: word_2, is: angle}  # guess: a big-endian word" in result.stdout
+    assert "40 frame(s), 1 unknown layout(s)" in result.stderr
+    known = samples.run(vectors.ROOT, "reconcile", "-", given=b"".join(FRAMES))
+    assert (known.returncode, known.stdout) == (0, "")
+
+
+def test_the_drafts_are_data_too() -> None:
+    line = _frame(0xEE, b"\x01\x00")
+    result = samples.run(vectors.ROOT, "reconcile", "-", "--json", given=line)
+    told = json.loads(result.stdout)
+    assert told["bytes"] == told["unknown"][0]["count"] + 6
+    assert told["unknown"][0]["examples"] == ["FE FE 04 EE 01 00 FA"]
+
+
+def test_an_address_and_a_sum_are_cut_too() -> None:
+    line = bytes.fromhex("FE FE 01 03 70 01 71  FE FE 01 03 70 01 72  FE FE 09 03 70 01 71")
+    result = samples.run(samples.FOLDER, "reconcile", "-", "--edition", "bus.yaml", given=line)
+    assert "21 bytes, 1 frame(s), 1 unknown layout(s)" in result.stderr
+
+
+def test_a_capture_is_raw_or_hex() -> None:
+    assert capture_bytes(b"fe FE\n0x02, 0x10 fa") == bytes.fromhex("FE FE 02 10 FA")
+    assert capture_bytes(FRAMES[0]) == FRAMES[0]
+    with pytest.raises(ValueError, match="hex"):
+        capture_bytes(b"FE F")
+    assert samples.run(vectors.ROOT, "reconcile", "-", given="FE F").returncode == 2
