@@ -76,7 +76,7 @@ def _payloads() -> list[bytes]:
     for i in range(40):
         word = int(9000 * math.sin(i / 15)) & 0xFFFF
         wild = random.choice((3, 60, 200))
-        made.append(bytes([i, i % 2, *word.to_bytes(2, "big"), 7, i * i % 3, wild, *b"v1.2 x86"]))
+        made.append(bytes([i, i % 2, *word.to_bytes(2, "big"), 7, i * i % 5, wild, *b"mk2 fw1"]))
     return made
 
 
