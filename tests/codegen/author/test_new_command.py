@@ -81,6 +81,7 @@ def test_a_project_grows_in_the_files_of_the_family_and_of_what_is_missing(tmp_p
 WRONG = {
     "an id in use": (["--id", "0x21", "--request", "joint:joint,lit:flag"], "ambiguous-layout"),
     "a name in use": (["--name", "move"], "duplicate-"),
+    "no name": (["--name", "x # y"], "a method's name"),
     "a keyword": (["--name", "class"], "bad-name"),
     "a query without a reply": (["--safety", "query"], "mute-query"),
     "an unknown type": (["--request", "joint:jiont"], "did you mean joint?"),
@@ -129,3 +130,21 @@ def test_a_frame_with_an_address_and_a_sum(tmp_path: Path) -> None:
     code, said = _new(folder, "bus.yaml", *query, "--reply-vector", "FE FE 01 03 70 01 71")
     assert code == 0, said
     assert "values: {lit: true}" in (folder / "bus_vectors.yaml").read_text()
+
+
+def test_an_edition_that_acknowledges_gets_vectors_of_that_too(tmp_path: Path) -> None:
+    folder = samples.copied(tmp_path)
+    words = ["--family", "all", "--request", "lit:flag", "--vector", "FE FE 01 03 70 01 71"]
+    code, said = _new(folder, "bus.yaml", *SETTING, *words)
+    assert code == 0, said
+    edition = build_edition(folder / "bus.yaml", folder)
+    added = [vector.name for vector in edition.vectors[-3:]]
+    assert added == ["dim-request", "dim-reply", "dim-reply-2"]
+
+
+def test_a_delta_grows_in_its_own_files(tmp_path: Path) -> None:
+    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
+    edition = "spec/editions/mycobot280.yaml"
+    code, said = _new(tmp_path, edition, *SETTING, "--id", "0xEE", "--family", "gripper")
+    assert code == 0, said
+    assert samples.run(tmp_path, "check", edition).returncode == 0

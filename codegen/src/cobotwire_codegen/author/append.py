@@ -11,7 +11,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load, parse
 from cobotwire_codegen.model import Edition
@@ -83,7 +82,7 @@ def _names(node: Node | None) -> Iterator[str]:
             yield item.value
 
 
-def checked_with(path: Path, changed: dict[Path, str]) -> Edition:
+def built_with(path: Path, changed: dict[Path, str]) -> Edition:
     """The edition as it would be with some files changed; nothing on disk is touched.
 
     Raises:
@@ -101,6 +100,4 @@ def checked_with(path: Path, changed: dict[Path, str]) -> Edition:
             copy.write_text(texts.get(file) or file.read_text(encoding="utf-8"), encoding="utf-8")
         root = Path(folder) / here.relative_to(top)
         root.mkdir(parents=True, exist_ok=True)
-        edition = build_edition(Path(folder) / path.resolve().relative_to(top), root)
-    check(edition)
-    return edition
+        return build_edition(Path(folder) / path.resolve().relative_to(top), root)

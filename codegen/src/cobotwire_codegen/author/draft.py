@@ -9,8 +9,7 @@ from fractions import Fraction
 from textwrap import wrap
 from typing import Literal
 
-from cobotwire_codegen.errors import Place
-from cobotwire_codegen.model import Command, Edition, Enum, Field, Flag, Type, Value
+from cobotwire_codegen.model import Command, Edition, Enum, Flag, Type, Value
 from cobotwire_codegen.render.words import decimal
 from cobotwire_codegen.wire import build_frame, size
 
@@ -18,7 +17,6 @@ Direction = Literal["request", "reply"]
 _PLAIN = re.compile(r"[A-Za-z][\w ,.;()'/+=-]*\Z")
 # Words that YAML takes for something else.
 _NO_TEXT = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"}
-_PLACE = Place("the new command", 1, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +50,16 @@ def command_lines(draft: Draft) -> list[str]:
 
 
 def vector_lines(
-    draft: Draft, direction: Direction, frame: bytes, values: dict[str, object], seen: bool
+    draft: Draft,
+    direction: Direction,
+    which: int,
+    frame: bytes,
+    values: dict[str, object],
+    seen: bool,
 ) -> list[str]:
-    """An entry of the vectors file."""
+    """An entry of the vectors file; ``which`` counts the forms of the message from 0."""
     lines = [
-        f"- name: {draft.name.replace('_', '-')}-{direction}",
+        f"- name: {draft.name.replace('_', '-')}-{direction}{f'-{which + 1}' if which else ''}",
         f"  command: {draft.name}",
         f"  direction: {direction}",
     ]
@@ -69,30 +72,6 @@ def vector_lines(
     if not seen:
         lines.append("  why: Computed from the layout; a frame that was seen on a line is better.")
     return lines
-
-
-def drafted(draft: Draft, edition: Edition) -> Command:
-    """The command as the model will have it, to build its frames with.
-
-    Raises:
-        ValueError: a field's type does not exist.
-    """
-    types = {type.name: type for type in edition.types}
-    forms = []
-    for fields in (draft.request, draft.reply):
-        missing = next((type for _, type, _ in fields if type not in types), None)
-        if missing is not None:
-            raise ValueError(missing)
-        forms.append(
-            tuple(
-                Field(_PLACE, name, types[type], "", "", False, None, "", ())
-                for name, type, _ in fields
-            )
-        )
-    return Command(
-        _PLACE, draft.id, draft.name, draft.title, draft.doc, draft.safety, (), 0,
-        (forms[0],), (forms[1],) if draft.reply else (), False, "", None, None, (), (), (),
-    )  # fmt: skip
 
 
 def smallest(type: Type) -> object:
@@ -109,12 +88,12 @@ def smallest(type: Type) -> object:
 def read(
     edition: Edition, command: Command, direction: Direction, frame: bytes
 ) -> dict[str, object]:
-    """The values that a frame carries, which must be the message's only form.
+    """The values that a frame carries, which must have the message's full form.
 
     Raises:
         ValueError: the frame is not that message.
     """
-    [form] = command.forms(direction)
+    form = command.forms(direction)[0]
     widths = [size(field.type) for field in form]
     start = len(frame) - edition.frame.check_size - sum(widths)
     values: dict[str, object] = {}

@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 
 import click
 
-from cobotwire_codegen.author.append import appended, checked_with
+from cobotwire_codegen.author.append import appended, built_with
 from cobotwire_codegen.author.draft import (
     Direction,
     Draft,
     command_lines,
-    drafted,
     read,
     smallest,
     vector_lines,
 )
 from cobotwire_codegen.author.place import families, vectors_file
-from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.explain import DEFAULT_EDITION
 from cobotwire_codegen.cli.shared import edition_path, problems_told
 from cobotwire_codegen.errors import nearest
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, parse
-from cobotwire_codegen.model import SAFETY, Command, Edition
+from cobotwire_codegen.model import SAFETY, Command, Edition, Form
 from cobotwire_codegen.wire import build_frame
 
 _NEEDED = {
@@ -64,16 +64,14 @@ def new_command(file: str, dry_run: bool, **given: str | None) -> None:
         homes = families(path)
         _complete(given, homes)
         draft = _draft(given)
-        edition = build_edition(path, Path.cwd())
-        home = homes[given["family"] or ""]
-        vectors = _vectors(edition, draft, given)
-        target = vectors_file(path)
-        changed = {home: home.read_text(encoding="utf-8")}
-        changed[home] = appended(changed[home], str(home), "commands", command_lines(draft), True)
+        home, target = homes[given["family"] or ""], vectors_file(path)
+        text = home.read_text(encoding="utf-8")
+        changed = {home: appended(text, str(home), "commands", command_lines(draft), True)}
+        vectors = list(_vectors(built_with(path, changed), draft, given))
         for lines in vectors:
             text = changed.get(target) or target.read_text(encoding="utf-8")
             changed[target] = appended(text, str(target), "vectors", lines, False)
-        checked_with(path, changed)
+        check_edition(built_with(path, changed))
     if dry_run:
         _show(home, command_lines(draft))
         _show(target, [line for lines in vectors for line in lines])
@@ -119,6 +117,8 @@ def _draft(given: dict[str, str | None]) -> Draft:
         id = int(words["id"], 0)
     except ValueError:
         raise click.UsageError(f"--id must be a number such as 0x7E, not {words['id']}") from None
+    if not words["name"].isidentifier():
+        raise click.UsageError(f"--name must be a method's name, not {words['name']!r}")
     return Draft(
         words["name"],
         id,
@@ -142,40 +142,39 @@ def _fields(flag: str, text: str) -> tuple[tuple[str, str, bool], ...]:
     return tuple(found)
 
 
-def _vectors(edition: Edition, draft: Draft, given: dict[str, str | None]) -> list[list[str]]:
-    try:
-        command = drafted(draft, edition)
-    except ValueError as error:
-        hint = nearest(str(error), (type.name for type in edition.types))
-        raise click.UsageError(f"there is no type {error}{hint}") from None
-    made = [_vector(edition, draft, command, "request", given["vector"], given["values"])]
-    if draft.reply:
-        seen, values = given["reply_vector"], given["reply_values"]
-        made.append(_vector(edition, draft, command, "reply", seen, values))
-    return made
+def _vectors(edition: Edition, draft: Draft, given: dict[str, str | None]) -> Iterator[list[str]]:
+    """The lines of a vector for each form of each message, acknowledgements among them."""
+    command = next(command for command in edition.commands if command.name == draft.name)
+    flags: tuple[tuple[Direction, str, str], ...] = (
+        ("request", "vector", "values"),
+        ("reply", "reply_vector", "reply_values"),
+    )
+    for direction, seen, said in flags:
+        for which, form in enumerate(command.forms(direction)):
+            try:
+                # What was given is the full form.
+                frame = bytes.fromhex(given[seen] or "") if not which else b""
+                values = _values_of(edition, command, direction, form, frame, given[said])
+                built = build_frame(edition.frame, command, direction, values)
+            except ValueError as error:
+                raise click.UsageError(f"the {direction}'s vector: {error}") from None
+            yield vector_lines(draft, direction, which, built, values, bool(frame))
 
 
-def _vector(
+def _values_of(
     edition: Edition,
-    draft: Draft,
     command: Command,
     direction: Direction,
-    seen: str | None,
+    form: Form,
+    frame: bytes,
     said: str | None,
-) -> list[str]:
-    """The lines of a message's vector: the frame that was seen, or one of the values."""
-    try:
-        if seen is not None:
-            frame = bytes.fromhex(seen)
-            values = read(edition, command, direction, frame)
-        else:
-            [form] = command.forms(direction)
-            values = {field.name: smallest(field.type) for field in form}
-            values.update(_values(said) if said else {})
-            frame = build_frame(edition.frame, command, direction, values)
-    except ValueError as error:
-        raise click.UsageError(f"the {direction}'s vector: {error}") from None
-    return vector_lines(draft, direction, frame, values, seen is not None)
+) -> dict[str, object]:
+    """What a vector shows: the frame that was seen, or the values that were said, or small ones."""
+    if frame:
+        return read(edition, command, direction, frame)
+    values = {field.name: smallest(field.type) for field in form}
+    values.update(_values(said) if said and form == command.forms(direction)[0] else {})
+    return values
 
 
 def _values(text: str) -> dict[str, object]:
