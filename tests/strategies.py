@@ -1,36 +1,52 @@
-"""Every Hypothesis strategy, made from the edition's own table."""
+"""Every Hypothesis strategy, made from an edition's own table; left out: from ``mycobot``'s."""
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from hypothesis import strategies as st
 
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.table import Case, Command, Direction, Field, Layout, Number
+from cobotwire.editions.mycobot280 import TABLE as TABLE_280
+from cobotwire.table import Case, Command, Direction, Field, Layout, Number, Table
 
-HEADER = TABLE.frame.header
+TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
 
 
 class Form(NamedTuple):
-    """One form of one message."""
+    """One form of one message; ``number`` tells it from the command's others."""
 
     command: Command
     direction: Direction
     layout: Layout
+    number: int
 
 
-FORMS = [
-    Form(command, direction, layout)
-    for command in TABLE.commands
-    for direction in ("request", "reply")
-    for layout in command.layouts(direction)
-]
+def forms_of(table: Table) -> list[Form]:
+    """Every form of every message of an edition."""
+    return [
+        Form(command, direction, layout, index)
+        for command in table.commands
+        for direction in ("request", "reply")
+        for index, layout in enumerate(command.layouts(direction))
+    ]
 
 
-def forms() -> st.SearchStrategy[Form]:
+FORMS = forms_of(TABLE)
+
+
+@lru_cache
+def codec_of(edition: str, name: codecs.CodecName) -> Codec:
+    """One codec of an edition, made once."""
+    return codecs.load(TABLES[edition], name)
+
+
+def forms(table: Table = TABLE) -> st.SearchStrategy[Form]:
     """Any form of any message of the edition."""
-    return st.sampled_from(FORMS)
+    return st.sampled_from(FORMS if table is TABLE else forms_of(table))
 
 
 def _whole(field: Field, number: Number) -> st.SearchStrategy[int]:
@@ -68,11 +84,9 @@ def legal_values(draw: st.DrawFn, layout: Layout) -> tuple[Any, ...]:
     return tuple(values)
 
 
-@st.composite
-def messages(draw: st.DrawFn) -> tuple[Form, tuple[Any, ...]]:
+def messages(table: Table = TABLE) -> st.SearchStrategy[tuple[Form, tuple[Any, ...]]]:
     """Any legal message: its form and its values."""
-    form = draw(forms())
-    return form, draw(legal_values(form.layout))
+    return forms(table).flatmap(lambda form: st.tuples(st.just(form), legal_values(form.layout)))
 
 
 def odd_values() -> st.SearchStrategy[Any]:
@@ -95,34 +109,37 @@ def odd_values() -> st.SearchStrategy[Any]:
 
 
 @st.composite
-def any_arguments(draw: st.DrawFn) -> tuple[str, Direction, tuple[Any, ...]]:
+def any_arguments(draw: st.DrawFn, table: Table = TABLE) -> tuple[str, Direction, tuple[Any, ...]]:
     """A message with values of which some, or all, or none, are allowed."""
-    form, values = draw(messages())
+    form, values = draw(messages(table))
     spoilt = [draw(odd_values()) if draw(st.integers(0, 3)) == 0 else value for value in values]
     if draw(st.integers(0, 9)) == 0:
         spoilt.append(draw(odd_values()))
     return form.command.name, form.direction, tuple(spoilt)
 
 
-def near_frames() -> st.SearchStrategy[bytes]:
+def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """What looks like a frame for some bytes, and is none or is one by chance."""
-    lengths = st.integers(0, 20)
-    ids = st.sampled_from([command.id for command in TABLE.commands]) | st.integers(0, 255)
+    longest = table.frame.maximum_length
+    lengths = st.integers(0, longest + 4)
+    ids = st.sampled_from([command.id for command in table.commands]) | st.integers(0, 255)
     return st.builds(
-        lambda length, id, rest: HEADER + bytes([length, id]) + rest,
+        lambda length, id, rest: table.frame.header + bytes([length, id]) + rest,
         lengths,
         ids,
-        st.binary(max_size=18),
+        st.binary(max_size=longest + 2),
     )
 
 
-@st.composite
-def real_frames(draw: st.DrawFn) -> bytes:
+def real_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """A legal frame, built by the reference codec."""
-    from cobotwire.codec.reference import ReferenceCodec
+    codec = codec_of(table.edition, "reference")
+    return messages(table).map(lambda message: frame_of(codec, *message))
 
-    form, values = draw(messages())
-    return ReferenceCodec(TABLE).encode(form.command.name, form.direction, values)
+
+def frame_of(codec: Codec, form: Form, values: tuple[Any, ...]) -> bytes:
+    """The frame of a message, in just that form."""
+    return codec.encode(form.command.name, form.direction, values, form=form.number)
 
 
 def line_noise() -> st.SearchStrategy[bytes]:
@@ -146,9 +163,9 @@ def line_noise() -> st.SearchStrategy[bytes]:
     )
 
 
-def streams() -> st.SearchStrategy[bytes]:
+def streams(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """What may stand on a line: frames, near frames and noise in any order."""
-    pieces = st.one_of(real_frames(), near_frames(), line_noise())
+    pieces = st.one_of(real_frames(table), near_frames(table), line_noise())
     return st.lists(pieces, max_size=8).map(b"".join)
 
 

@@ -14,22 +14,31 @@ ROOT = Path(__file__).parent.parent
 
 
 @lru_cache(maxsize=1)
-def edition() -> Edition:
-    """The edition ``mycobot``, checked."""
-    return next(edition for edition in editions(ROOT) if edition.name == "mycobot")
+def _editions() -> dict[str, Edition]:
+    return {edition.name: edition for edition in editions(ROOT)}
 
 
-def framed() -> list[Vector]:
+def edition(name: str = "mycobot") -> Edition:
+    """An edition, checked; left out: ``mycobot``."""
+    return _editions()[name]
+
+
+def every() -> list[tuple[str, Vector]]:
+    """The vectors of all editions, each with its edition's name."""
+    return [(name, vector) for name, found in _editions().items() for vector in found.vectors]
+
+
+def framed() -> list[tuple[str, Vector]]:
     """The vectors that are frames."""
-    return [vector for vector in edition().vectors if vector.frame is not None]
+    return [(name, vector) for name, vector in every() if vector.frame is not None]
 
 
-def refused() -> list[Vector]:
+def refused() -> list[tuple[str, Vector]]:
     """The vectors whose printed bytes are no legal frame."""
-    return [vector for vector in edition().vectors if vector.refused is not None]
+    return [(name, vector) for name, vector in every() if vector.refused is not None]
 
 
-def values(vector: Vector) -> tuple[Any, ...]:
-    """A vector's values as the codecs give them."""
-    found = (plain(edition(), vector, name, value) for name, value in vector.values)
-    return tuple(tuple(value) if isinstance(value, list) else value for value in found)
+def fields(name: str, vector: Vector) -> dict[str, Any]:
+    """A vector's values by name, as the codecs give them."""
+    found = {key: plain(edition(name), vector, key, value) for key, value in vector.values}
+    return {key: tuple(v) if isinstance(v, list) else v for key, v in found.items()}

@@ -10,16 +10,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import strategies
-from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Listening, Noise
-from cobotwire.editions.mycobot import TABLE
 from cobotwire.errors import CobotwireError, UsageError
 from cobotwire.table import Direction
+from strategies import TABLES, codec_of
 
-REFERENCE = codecs.load(TABLE, "reference")
-NATIVE = codecs.load(TABLE, "native")
 DIRECTIONS = st.sampled_from(["request", "reply"])
 LISTENING = st.sampled_from(["request", "reply", "both"])
+EACH_EDITION = pytest.mark.parametrize("edition", TABLES)
+
+
+def _both(edition: str) -> tuple[Codec, Codec]:
+    return codec_of(edition, "reference"), codec_of(edition, "native")
 
 
 def _outcome(action: Callable[[], Any]) -> Any:
@@ -31,50 +33,62 @@ def _outcome(action: Callable[[], Any]) -> Any:
         return type(error), str(error), repr(vars(error))
 
 
-def _same(action: Callable[[Codec], Any]) -> None:
-    assert _outcome(lambda: action(REFERENCE)) == _outcome(lambda: action(NATIVE))
+def _same(edition: str, action: Callable[[Codec], Any]) -> None:
+    reference, native = _both(edition)
+    assert _outcome(lambda: action(reference)) == _outcome(lambda: action(native))
 
 
-@given(strategies.messages())
-def test_a_legal_message_survives_the_round_trip(message: tuple[strategies.Form, Any]) -> None:
-    form, values = message
-    for codec in (REFERENCE, NATIVE):
-        frame = codec.encode(form.command.name, form.direction, values)
-        read = codec.decode(form.direction, frame)
+@EACH_EDITION
+@given(data=st.data())
+def test_a_legal_message_survives_the_round_trip(edition: str, data: st.DataObject) -> None:
+    form, values = data.draw(strategies.messages(TABLES[edition]))
+    for codec in _both(edition):
+        frame = strategies.frame_of(codec, form, values)
+        read = codec.decode(form.direction, frame, of=form.command.name)
         assert read.command is form.command
         assert read.layout is form.layout
         assert read.values == values
 
 
-@given(strategies.messages())
-def test_both_build_the_same_bytes(message: tuple[strategies.Form, Any]) -> None:
-    form, values = message
-    _same(lambda codec: codec.encode(form.command.name, form.direction, values))
+@EACH_EDITION
+@given(data=st.data(), chosen=st.booleans())
+def test_both_build_the_same_bytes(edition: str, data: st.DataObject, chosen: bool) -> None:
+    form, values = data.draw(strategies.messages(TABLES[edition]))
+    index = form.number if chosen else None
+    _same(
+        edition, lambda codec: codec.encode(form.command.name, form.direction, values, form=index)
+    )
 
 
-@given(strategies.any_arguments())
+@EACH_EDITION
+@given(data=st.data())
 def test_both_refuse_the_same_arguments_in_the_same_words(
-    arguments: tuple[str, Direction, tuple[Any, ...]],
+    edition: str, data: st.DataObject
 ) -> None:
-    _same(lambda codec: codec.encode(*arguments))
+    arguments = data.draw(strategies.any_arguments(TABLES[edition]))
+    _same(edition, lambda codec: codec.encode(*arguments))
 
 
-@given(DIRECTIONS, st.one_of(strategies.real_frames(), strategies.near_frames(), st.binary()))
+@EACH_EDITION
+@given(DIRECTIONS, st.data())
 def test_both_read_the_same_frame_or_refuse_it_at_the_same_byte(
-    direction: Direction, data: bytes
+    edition: str, direction: Direction, data: st.DataObject
 ) -> None:
-    _same(lambda codec: codec.decode(direction, data))
+    table = TABLES[edition]
+    pieces = st.one_of(strategies.real_frames(table), strategies.near_frames(table), st.binary())
+    piece = data.draw(pieces)
+    of = data.draw(st.none() | st.sampled_from([command.name for command in table.commands]))
+    _same(edition, lambda codec: codec.decode(direction, piece, of=of))
 
 
+@EACH_EDITION
 @given(LISTENING, st.booleans(), st.data())
 def test_both_cut_the_same_events(
-    listening: Listening, accept_unknown: bool, data: st.DataObject
+    edition: str, listening: Listening, accept_unknown: bool, data: st.DataObject
 ) -> None:
-    chunks = data.draw(strategies.chunked(data.draw(strategies.streams())))
+    chunks = data.draw(strategies.chunked(data.draw(strategies.streams(TABLES[edition]))))
     flushes = data.draw(st.lists(st.booleans(), min_size=len(chunks), max_size=len(chunks)))
-    framers = [
-        codec.framer(listening, accept_unknown=accept_unknown) for codec in (REFERENCE, NATIVE)
-    ]
+    framers = [codec.framer(listening, accept_unknown=accept_unknown) for codec in _both(edition)]
     for chunk, flush in zip(chunks, flushes):
         # Flushing in the middle is what a driver does at a deadline.
         events = [f.feed(chunk) + (f.flush() if flush else []) for f in framers]
@@ -83,15 +97,16 @@ def test_both_cut_the_same_events(
     assert framers[0].flush() == framers[1].flush()
 
 
-def test_unhandled_kinds_of_input_are_the_same_error() -> None:
-    for name in ("send_angels", "", "SEND_ANGLES"):
-        _same(lambda codec, name=name: codec.encode(name, "request", ()))  # type: ignore[misc]
+@EACH_EDITION
+@pytest.mark.parametrize("name", ["send_angels", "", "SEND_ANGLES"])
+def test_a_name_of_no_command_is_the_same_error(edition: str, name: str) -> None:
+    _same(edition, lambda codec: codec.encode(name, "request", ()))
 
 
 def test_feeding_takes_any_bytes_like() -> None:
     frame = bytes.fromhex("FEFE0220FA")
     for kind in (bytes, bytearray, memoryview):
-        for codec in (REFERENCE, NATIVE):
+        for codec in _both("mycobot"):
             [event] = codec.framer("request").feed(kind(frame))
             assert not isinstance(event, Noise)
             assert event.data == frame

@@ -8,10 +8,11 @@ from typing import Any
 
 from cobotwire.codec.interface import Noise
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.session import Asked
+from cobotwire.session import Asked, Told
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim import PtyServer, SimulatedArm
 from cobotwire.sim.state import ArmState
+from cobotwire.table import Table
 
 
 class Bench:
@@ -23,11 +24,12 @@ class Bench:
 
     peer: Any
 
-    def __init__(self) -> None:
+    def __init__(self, table: Table) -> None:
         self.now = 0.0
         self.heard: list[str] = []
         self.refused: list[bytes] = []
-        self.arm = SimulatedArm(TABLE, clock=lambda: self.now, watch=self._watch)
+        self.told: list[tuple[str, dict[str, str]]] = []
+        self.arm = SimulatedArm(table, clock=lambda: self.now, watch=self._watch)
 
     @property
     def state(self) -> ArmState:
@@ -46,11 +48,12 @@ class Bench:
 
     def start_over(self) -> None:
         """A new arm, powered: to have pymycobot power it would take 1.5 s in every test."""
-        self.arm.state = ArmState(TABLE.joints)
+        self.arm.state = ArmState(self.arm.table.joints)
         self.state.powered = True
-        self.state.enabled = [True] * TABLE.joints
+        self.state.enabled = [True] * self.arm.table.joints
         self.heard.clear()
         self.refused.clear()
+        self.told.clear()
 
     def settle(self) -> None:
         """Wait until the arm has handled all that was sent: requests are handled in order."""
@@ -64,14 +67,16 @@ class Bench:
     def _watch(self, event: DeviceEvent, answer: bytes) -> None:
         if isinstance(event, Asked):
             self.heard.append(event.message.command.name)
+        elif isinstance(event, Told):
+            self.told.append((event.command.name, event.fields))
         else:
             self.refused.append(event.data if isinstance(event, Noise) else event.frame.data)
 
 
 @contextmanager
-def driven_by(kind: type[Any]) -> Iterator[Bench]:
+def driven_by(kind: type[Any], table: Table = TABLE) -> Iterator[Bench]:
     """Open a port with one of pymycobot's classes; two of them sleep 1.5 s over it."""
-    bench = Bench()
+    bench = Bench(table)
     with PtyServer(bench.arm) as server:
         bench.peer = kind(server.url)
         try:

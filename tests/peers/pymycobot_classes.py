@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import Any, NoReturn
 
 from cobotwire.codec import CodecName
+from cobotwire.driver import Driver
 from cobotwire.editions.mycobot import MyCobot as OurMyCobot
 
 with warnings.catch_warnings():
@@ -21,7 +22,7 @@ with warnings.catch_warnings():
     from pymycobot.error import MyCobot280DataException, MyCobotDataException
 
 __all__ = ["CLASSES", "REFUSALS", "MyCobot", "MyCobot280", "MyPalletizer260"]
-__all__ += ["our_client", "without_port", "written"]
+__all__ += ["our_client", "peer_on", "without_port", "written"]
 
 CLASSES: dict[str, type[Any]] = {
     "MyCobot": MyCobot,
@@ -30,8 +31,8 @@ CLASSES: dict[str, type[Any]] = {
 }
 
 # What it raises before it writes: on purpose, of an argument that its limits rule out; and by
-# accident, of a number that does not fit where it shall go.
-REFUSALS = (MyCobotDataException, MyCobot280DataException, struct.error, TypeError)
+# accident, of a number that does not fit where it shall go (pyserial raises the last one).
+REFUSALS = (MyCobotDataException, MyCobot280DataException, struct.error, TypeError, ValueError)
 
 
 class Written(Exception):
@@ -70,8 +71,7 @@ class RecordingLink:
         """There is nothing to give back."""
 
 
-@lru_cache
-def without_port(name: str) -> Any:
+def peer_on(name: str, port: Any) -> Any:
     """One of its classes as its constructor makes it, but for the port and 1.5 s of sleep."""
     kind = CLASSES[name]
     peer = object.__new__(kind)
@@ -80,14 +80,22 @@ def without_port(name: str) -> Any:
     peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
     peer.lock = threading.Lock()
     peer.thread_lock = True
-    peer._serial_port = RecordingPort()
+    peer._serial_port = port
     return peer
 
 
 @lru_cache
-def our_client(codec: CodecName) -> OurMyCobot:
-    """Our generated client on a link that only records."""
-    return OurMyCobot(RecordingLink(), codec=codec)
+def without_port(name: str) -> Any:
+    """One of its classes on a port that only records."""
+    return peer_on(name, RecordingPort())
+
+
+def our_client(codec: CodecName, kind: type[Driver] = OurMyCobot) -> Driver:
+    """A generated client of ours on a link that only records.
+
+    A new one each time: after a question was given up, a client holds the next one like it back.
+    """
+    return kind(RecordingLink(), codec=codec)
 
 
 def written(who: Any, method: str, arguments: Sequence[Any]) -> bytes:

@@ -1,8 +1,13 @@
-"""What a difference between pymycobot's requests and ours is, and how one is written down."""
+"""What a difference between pymycobot's requests and ours is, how one is written down and read."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
+
+from cobotwire.codec.interface import Codec
+from cobotwire.driver import Driver
+from cobotwire.errors import ProtocolError, UsageError
+from pymycobot_classes import REFUSALS, without_port, written
 
 Arguments = tuple[Any, ...]
 
@@ -65,3 +70,29 @@ def other_form(
 ) -> Row:
     """pymycobot is called otherwise, and its frame has a LEN that this edition does not know."""
     return Row(peers, command, topic, Difference(ours, method, theirs, "bad-length", ruling))
+
+
+def said_by_us(client: Driver, command: str, difference: Difference) -> bytes | str:
+    """What our client writes."""
+    try:
+        return written(client, command, difference.ours)
+    except UsageError:
+        return NOT_SENT
+
+
+def said_by(peer: str, difference: Difference) -> bytes | str:
+    """What one of pymycobot's classes writes."""
+    try:
+        return written(without_port(peer), difference.method, difference.theirs)
+    except REFUSALS:
+        return NOT_SENT
+
+
+def read_by(codec: Codec, request: bytes | str) -> Arguments | str:
+    """What an arm of the codec's edition makes of a request."""
+    if isinstance(request, str):
+        return request
+    try:
+        return codec.decode("request", request).values
+    except ProtocolError as error:
+        return error.reason

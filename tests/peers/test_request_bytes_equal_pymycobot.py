@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from cobotwire.codec import CodecName
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.errors import ProtocolError, UsageError
-from pymycobot_classes import CLASSES, REFUSALS, our_client, without_port, written
-from pymycobot_difference import NOT_SENT, Difference
+from pymycobot_classes import CLASSES, our_client, without_port, written
+from pymycobot_difference import read_by, said_by, said_by_us
 from pymycobot_differences import DIFFERENCES, never_equal
 from pymycobot_requests import REQUESTS, can_say, requests_of
 from pymycobot_strategies import BY_NAME
@@ -36,9 +35,10 @@ SCALED = [(command, peer) for command, peer in EQUAL if command in BY_NAME]
 
 @pytest.mark.parametrize(("command", "peer"), EQUAL)
 def test_a_request_is_the_same_bytes_as_pymycobots(command: str, peer: str, codec: Codec) -> None:
-    ours, theirs = our_client(codec.name), without_port(peer)
+    theirs = without_port(peer)
     for arguments in requests_of(command, peer):
-        assert written(ours, command, arguments) == written(theirs, command, arguments)
+        ours = written(our_client(codec.name), command, arguments)
+        assert ours == written(theirs, command, arguments)
 
 
 @pytest.mark.parametrize("key", DIFFERENCES, ids=" - ".join)
@@ -47,9 +47,9 @@ def test_a_listed_difference_is_one_and_becomes_what_the_list_says(
 ) -> None:
     command, peer, _ = key
     difference = DIFFERENCES[key]
-    theirs = _theirs(peer, difference)
-    assert _ours(codec, command, difference) != theirs
-    assert _read(codec, theirs) == difference.becomes
+    theirs = said_by(peer, difference)
+    assert said_by_us(our_client(codec.name), command, difference) != theirs
+    assert read_by(codec, theirs) == difference.becomes
     assert difference.ruling
 
 
@@ -125,30 +125,6 @@ def pty_ends() -> Iterator[tuple[int, str]]:
     yield master, os.ttyname(slave)
     os.close(master)
     os.close(slave)
-
-
-def _ours(codec: Codec, command: str, difference: Difference) -> bytes | str:
-    try:
-        return written(our_client(codec.name), command, difference.ours)
-    except UsageError:
-        return NOT_SENT
-
-
-def _theirs(peer: str, difference: Difference) -> bytes | str:
-    try:
-        return written(without_port(peer), difference.method, difference.theirs)
-    except REFUSALS:
-        return NOT_SENT
-
-
-def _read(codec: Codec, request: bytes | str) -> tuple[Any, ...] | str:
-    """What an arm of this edition makes of a request."""
-    if isinstance(request, str):
-        return request
-    try:
-        return codec.decode("request", request).values
-    except ProtocolError as error:
-        return error.reason
 
 
 def _tenth(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
