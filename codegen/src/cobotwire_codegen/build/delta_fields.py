@@ -6,7 +6,13 @@ from cobotwire_codegen.build.parts import find
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
 from cobotwire_codegen.reader import Reader
 
-_VERBS = ("add", "remove", "rename", "change")
+# What may be done to a field, and the keys that go with it.
+_VERBS: dict[str, tuple[str, ...]] = {
+    "add": ("after",),
+    "remove": (),
+    "rename": ("to",),
+    "change": ("set", "unset"),
+}
 
 
 def set_keys(node: Mapping, reader: Reader, what: str) -> tuple[Mapping, list[str]]:
@@ -40,7 +46,7 @@ def change_fields(command: Mapping, key: str, operations: list[Node], outer: Rea
 def _change_field(fields: list[Node], operation: Node, key: str, outer: Reader) -> str:
     reader = Reader(operation, f"a change of the {key}", outer.problems)
     verbs = [verb for verb in _VERBS if reader.node(verb) is not None]
-    for key in ("after", "to", "set", "unset"):
+    for key in (key for verb in verbs for key in _VERBS[verb]):
         reader.node(key)
     words = ""
     if len(verbs) != 1:

@@ -70,13 +70,13 @@ def _read(node: Node, key: str, outer: Reader, types: Types) -> tuple[Field, Rea
         if where is not None:
             type = types.find(reader.text("is"), where.place)
     narrowed = reader.range("range")
-    if narrowed is not None and isinstance(type, Quantity):
+    if narrowed is not None and not by and isinstance(type, Quantity):
         lowest, highest = (bound * type.scale for bound in type.bounds)
         if narrowed[0] < lowest or narrowed[1] > highest or type.choices:
             message = f"the range of {reader.what} is not inside that of its type {type.name}"
             reader.problem("bad-range", message)
         type = replace(type, range=narrowed)
-    elif narrowed is not None:
+    if narrowed is not None and (by or not isinstance(type, Quantity)):
         reader.problem("bad-range", f"{reader.what} is no quantity: it takes no range")
     field = Field(
         place=node.place,

@@ -41,5 +41,5 @@ def main(ctx: click.Context, check_only: bool, root: str) -> None:
         ctx.invoke(generate, check_only=check_only, root=root)
 
 
-for verb in (build, check, model, explain, schema, init, diff, new_command, reconcile):
+for verb in (build, check, model, explain, init, schema, diff, new_command, reconcile):
     main.add_command(verb)

@@ -38,9 +38,7 @@ def problems_told(form: str = "text") -> Iterator[None]:
     except SpecError as error:
         tell(error.problems, form)
         if form == "text":
-            click.echo(
-                f"{len(error.problems)} problem(s) in the spec; nothing was written", err=True
-            )
+            click.echo(f"{len(error.problems)} problem(s) in the spec", err=True)
         sys.exit(2)
 
 
