@@ -184,3 +184,35 @@ def test_half_a_request_is_given_up_when_the_line_is_idle(bench: Bench) -> None:
     assert bench.arm.flush() == b""
     assert bench.arm.pending == 0
     assert bench.ask("is_power_on") == 1
+
+
+def test_power_off_breaks_the_connection_to_the_atom_and_power_on_restores_it(
+    bench: Bench,
+) -> None:
+    assert bench.ask("is_controller_connected") == 1
+    bench.tell("power_off")
+    assert bench.ask("is_controller_connected") == 0
+    bench.tell("power_on")
+    assert bench.ask("is_controller_connected") == 1
+
+
+def test_the_gripper_does_not_move_without_power(bench: Bench) -> None:
+    bench.tell("set_gripper_value", 60, 10)
+    bench.now += 2.0
+    bench.tell("power_off")
+    bench.now += 9.0
+    assert bench.ask("is_gripper_moving") == 0
+    assert bench.ask("get_gripper_value") == 30, "it stands where the power left it"
+    bench.tell("set_gripper_state", 0, 100)
+    assert bench.ask("is_gripper_moving") == 0
+    bench.tell("power_on")
+    bench.tell("set_gripper_state", 0, 100)
+    assert bench.ask("is_gripper_moving") == 1
+
+
+def test_in_position_allows_millimetres_and_degrees_each_their_own(bench: Bench) -> None:
+    there = list(bench.ask("get_coords"))
+    for index, off, reached in [(0, 4.9, 1), (2, 5.2, 0), (3, 0.09, 1), (5, 0.2, 0), (5, 4.0, 0)]:
+        target = [*there]
+        target[index] += off
+        assert bench.ask("is_in_position", target, TargetKind.COORDS) == reached

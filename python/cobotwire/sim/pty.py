@@ -6,6 +6,7 @@ import os
 import select
 import threading
 import tty
+from collections import deque
 from types import TracebackType
 from typing import Self
 
@@ -13,6 +14,9 @@ from cobotwire.sim.arm import SimulatedArm
 
 # A request that stands still this long is given up, so that the next one is not taken for its rest.
 IDLE_SECONDS = 0.2
+# Bytes of answers that wait for a client to read; beyond that the oldest answers are lost, as a
+# serial line without flow control loses them.
+UNREAD_LIMIT = 4096
 
 
 class PtyServer:
@@ -25,6 +29,9 @@ class PtyServer:
         # Raw, or the terminal would echo the requests and eat some of their bytes. The slave stays
         # open here, so that a client may come and go.
         tty.setraw(self._slave)
+        # A client that does not read must not keep the arm from hearing, nor from ending.
+        os.set_blocking(self._master, False)
+        self._unread: deque[bytes] = deque()
         self.url = os.ttyname(self._slave)
         self._thread = threading.Thread(target=self.serve, name="cobotwire-sim", daemon=True)
 
@@ -46,12 +53,31 @@ class PtyServer:
         """Answer until :meth:`stop` is called."""
         while True:
             wait = IDLE_SECONDS if self.arm.pending else None
-            ready, _, _ = select.select([self._master, self._stop], [], [], wait)
+            writing = [self._master] if self._unread else []
+            ready, writable, _ = select.select([self._master, self._stop], writing, [], wait)
             if self._stop in ready:
                 return
-            answer = self.arm.receive(os.read(self._master, 4096)) if ready else self.arm.flush()
-            while answer:
-                answer = answer[os.write(self._master, answer) :]
+            if self._master in ready:
+                self._answer(self.arm.receive(os.read(self._master, 4096)))
+            elif not writable:
+                self._answer(self.arm.flush())
+            if self._unread:
+                self._write()
+
+    def _answer(self, data: bytes) -> None:
+        if data:
+            self._unread.append(data)
+        while len(self._unread) > 1 and sum(map(len, self._unread)) > UNREAD_LIMIT:
+            self._unread.popleft()
+
+    def _write(self) -> None:
+        data = self._unread.popleft()
+        try:
+            rest = data[os.write(self._master, data) :]
+        except BlockingIOError:
+            rest = data
+        if rest:
+            self._unread.appendleft(rest)
 
     def stop(self) -> None:
         """End :meth:`serve`; may be called from another thread or a signal handler."""

@@ -13,8 +13,10 @@ OPENING_A_SECOND = 1.5
 TICKS_A_TURN = 4096
 ZERO_TICK = 2048
 ENCODER_SIGNS = (-1, -1, 1, -1, -1, -1)
-IN_POSITION_DEGREES = 0.1
-IN_POSITION_MILLIMETRES = 5.0
+# How far from a target still counts as there: 0.1 for whatever is in degrees, 5 for millimetres.
+# The notes give both for "in position"; 5 degrees at the end would be far off.
+IN_POSITION_ANGLES = (0.1,) * 6
+IN_POSITION_COORDS = (5.0, 5.0, 5.0, 0.1, 0.1, 0.1)
 RESTING_COORDS = (44.4, -60.8, 411.7, -91.14, -1.72, -86.71)
 
 # The document's chart of servo registers with their initial values (lines 1280-1291).
@@ -27,6 +29,7 @@ class ArmState:
 
     joints: int
     powered: bool = False
+    connected: bool = True
     free: bool = False
     stopped: bool = False
     paused: bool = False

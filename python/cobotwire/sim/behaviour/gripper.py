@@ -22,8 +22,8 @@ def set_gripper_state(arm: ArmState, now: float, state: int, speed: int) -> None
 
 @does("set_gripper_value")
 def set_gripper_value(arm: ArmState, now: float, value: int, speed: int) -> None:
-    """Open the gripper so far."""
-    if speed > 0:
+    """Open the gripper so far. Like the joints it does not move without power."""
+    if arm.powered and speed > 0:
         arm.gripper.go((float(value),), OPENING_A_SECOND * speed, now)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cobotwire.sim.behaviour.registry import does
-from cobotwire.sim.state import IN_POSITION_DEGREES, IN_POSITION_MILLIMETRES, ArmState
+from cobotwire.sim.state import IN_POSITION_ANGLES, IN_POSITION_COORDS, ArmState
 
 
 @does("set_fresh_mode")
@@ -91,10 +91,11 @@ def is_in_position(
     arm: ArmState, now: float, target: tuple[float, ...], kind: int
 ) -> dict[str, Any]:
     """Whether the joints, or the end, stand at a target."""
-    axes, tolerance = (
-        (arm.pose, IN_POSITION_MILLIMETRES) if kind == 1 else (arm.angles, IN_POSITION_DEGREES)
+    axes, tolerances = (
+        (arm.pose, IN_POSITION_COORDS) if kind == 1 else (arm.angles, IN_POSITION_ANGLES)
     )
-    return {"reached": all(abs(a - b) <= tolerance for a, b in zip(axes.position(now), target))}
+    ways = (abs(a - b) for a, b in zip(axes.position(now), target))
+    return {"reached": all(way <= most for way, most in zip(ways, tolerances))}
 
 
 @does("is_moving")

@@ -10,16 +10,18 @@ from cobotwire.sim.state import ArmState
 
 @does("power_on")
 def power_on(arm: ArmState, now: float) -> None:
-    """Power and hold every joint where it stands."""
+    """Power and hold every joint where it stands; connect the Atom."""
+    arm.connected = True
     arm.powered, arm.free, arm.stopped = True, False, False
     arm.enabled = [True] * arm.joints
 
 
 @does("power_off")
 def power_off(arm: ArmState, now: float) -> None:
-    """End every motion and let go."""
+    """End every motion, let go, and break the connection to the Atom."""
     arm.halt(now)
-    arm.powered = False
+    arm.gripper.halt(now)
+    arm.powered, arm.connected = False, False
     arm.enabled = [False] * arm.joints
 
 
@@ -38,8 +40,8 @@ def release_all_servos(arm: ArmState, now: float) -> None:
 
 @does("is_controller_connected")
 def is_controller_connected(arm: ArmState, now: float) -> dict[str, Any]:
-    """Whether the Atom is there: a simulated one always is."""
-    return {"connected": True}
+    """Whether the Atom is there: until power_off, and again from power_on."""
+    return {"connected": arm.connected}
 
 
 @does("set_free_mode")
