@@ -156,6 +156,29 @@ def test_decode_refuses_what_is_no_hex() -> None:
     assert run("decode", "hello").returncode == 2
 
 
+def test_the_examples_in_the_help_of_call_keep_their_lines() -> None:
+    lines = [line.strip() for line in run("call", "--help").stdout.splitlines()]
+    assert "cobotwire call get_angles --port /dev/ttyACM0" in lines
+    assert "cobotwire call set_reference_frame WORLD --port /dev/ttyACM0" in lines
+    assert "\\b" not in "".join(lines)
+
+
+def test_what_the_spec_says_is_no_markup() -> None:
+    script = (
+        "import dataclasses, cobotwire.editions.mycobot as e\n"
+        "word = 'the [bold]first[/] of :warning: [/nothing]'\n"
+        "stop = dataclasses.replace(e.TABLE.command('stop'), title=word, doc=word, notes=(word,))\n"
+        "e.TABLE = dataclasses.replace(e.TABLE, commands=(stop,))\n"
+        "from cobotwire.cli import main; main()"
+    )
+    for words in (["commands"], ["commands", "stop"]):
+        result = subprocess.run(
+            [sys.executable, "-c", script, *words], capture_output=True, text=True, check=False
+        )
+        assert result.returncode == 0, result.stderr
+        assert "the [bold]first[/] of :warning: [/nothing]" in result.stdout
+
+
 def test_commands_lists_all_of_them() -> None:
     result = run("commands")
     assert len(result.stdout.splitlines()) == len(TABLE.commands) + 1

@@ -30,7 +30,7 @@ def call(
     timeout: float | None,
     as_json: bool,
 ) -> None:
-    r"""Call one command: NAME with its ARGS in order, or as name=value.
+    """Call one command: NAME with its ARGS in order, or as name=value.
 
     Lists are separated by commas; enum members go by name or number:
 
@@ -38,7 +38,7 @@ def call(
       cobotwire call get_angles --port /dev/ttyACM0
       cobotwire call send_angles 0,0,0,0,0,0 speed=30 --port /dev/ttyACM0
       cobotwire call set_reference_frame WORLD --port /dev/ttyACM0
-    """
+    """  # noqa: D301  (\b is the control character by which click keeps the lines)
     package = editions.load(edition)
     command = package.TABLE.command(name)
     arguments = parse(command, values)

@@ -37,9 +37,12 @@ def _list(chosen: tuple[Command, ...]) -> None:
 
 
 def _console() -> Console:
-    # Not a terminal: no colour, and lines as long as they come, for grep and the like.
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=200)
+    # What the spec says is shown as it stands: a [word] or :word: in it is no markup of rich's.
+    console = Console(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal:
+        # No colour then, and lines as long as they come, for grep and the like.
+        console.width = 200
+    return console
 
 
 def _reference(frame: FrameFormat, command: Command) -> None:
@@ -55,7 +58,7 @@ def _reference(frame: FrameFormat, command: Command) -> None:
     if command.text is not None:
         pairs = zip(command.text.prefixes, command.text.fields)
         console.print("\nreply, outside any frame", style="bold")
-        console.print("".join(f"{prefix}<{field}>" for prefix, field in pairs), markup=False)
+        console.print("".join(f"{prefix}<{field}>" for prefix, field in pairs))
     elif not command.reply:
         console.print("\nreply: none")
 

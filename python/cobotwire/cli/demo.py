@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import click
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
 from cobotwire import codec as codecs
@@ -40,7 +41,9 @@ def demo(codec: codecs.CodecName | None) -> None:
                 console.print(f"  moving: {due:.0%}")
                 due = next(quarters, 2.0)
 
-        result = run(lambda line: console.print(f"- {line}", soft_wrap=True), progress, codec)
+        result = run(
+            lambda line: console.print(f"- {line}", soft_wrap=True, markup=False), progress, codec
+        )
     _show_traffic(console, result.traffic)
     _show_checks(console, result)
     sys.exit(0 if result.passed else 1)
@@ -59,7 +62,7 @@ def _show_traffic(console: Console, traffic: tuple[Traffic, ...]) -> None:
             console.print(f"          ... {hidden} more like these")
             hidden = 0
         data = f"{line.data.hex(' ').upper()}  {line.meaning}"
-        console.print(f"{line.time - start:7.3f} {line.arrow} {data}", soft_wrap=True)
+        console.print(f"{line.time - start:7.3f} {line.arrow} {data}", soft_wrap=True, markup=False)
 
 
 class _Line(NamedTuple):
@@ -101,8 +104,7 @@ def _show_checks(console: Console, result: Result) -> None:
     for check in result.checks:
         style, verdict = ("green", "right") if check.passed else ("red", "WRONG")
         expected = "" if check.passed else f", expected {check.right}"
-        console.print(
-            f"  [{style}]{verdict}[/{style}]  {check.what}: {check.got}{expected}", soft_wrap=True
-        )
+        said = escape(f"{check.what}: {check.got}{expected}")
+        console.print(f"  [{style}]{verdict}[/{style}]  {said}", soft_wrap=True)
     right = sum(check.passed for check in result.checks)
     console.print(f"{right} of {len(result.checks)} answers right", style="bold")
