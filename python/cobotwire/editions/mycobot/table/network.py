@@ -17,7 +17,7 @@ COMMANDS = (
         safety="query",
         deadline_ms=500,
         request=(Layout(()),),
-        text=TextReply(("ssid: ", " password: "), ("ssid", "password"), 50),
+        text=TextReply(("ssid: ", " password: "), ("ssid", "password"), 200),
         notes=(
             "The answer is plain text outside any frame; both parts may contain spaces.",
             "The password goes over the line in clear text, and so into every capture of it.",
