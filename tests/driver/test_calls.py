@@ -7,6 +7,7 @@ import time
 
 import pytest
 
+import vectors
 from cobotwire import MyCobot
 from cobotwire.driver import Traffic
 from cobotwire.editions.mycobot import (
@@ -41,6 +42,19 @@ def test_a_session_as_the_readme_shows_it(arm: MyCobot) -> None:
     _wait(lambda: arm.is_in_position([10, -20, 30.5, 0, 0.29, -5], TargetKind.ANGLES))
     _wait(lambda: not arm.is_moving())
     assert arm.get_angles() == Angles(10.0, -20.0, 30.5, 0.0, 0.29, -5.0)
+
+
+@pytest.mark.parametrize("limit", [165.0, 10.0], ids=["it gets there", "it stops short"])
+def test_the_example_of_the_readme_runs_and_ends(
+    server: PtyServer, simulated: SimulatedArm, limit: float, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # A target beyond a limit is refused without a word: the arm never gets there.
+    simulated.state.maximum[2] = limit
+    text = (vectors.ROOT / "README.md").read_text()
+    example = text.split("```python\n")[1].split("```")[0]
+    assert "/dev/ttyACM0" in example
+    exec(compile(example.replace("/dev/ttyACM0", server.url), "README.md", "exec"), {})
+    assert "Coords(x=" in capsys.readouterr().out
 
 
 def test_values_come_back_as_named_tuples_and_enums(arm: MyCobot) -> None:

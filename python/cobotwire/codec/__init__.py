@@ -46,8 +46,18 @@ def native_available() -> bool:
 
 
 def load(table: Table, name: CodecName | None = None) -> Codec:
-    """A codec for an edition: the one named, else the one in use."""
-    if (name or chosen()) == "reference":
+    """A codec for an edition: the one named, else the one in use.
+
+    Raises:
+        UsageError: there is no codec of that name, or the native one has no binary here.
+    """
+    if name is None:
+        name = chosen()
+    elif name not in ("reference", "native"):
+        raise UsageError("codec", name, "native or reference, or None")
+    elif name == "native" and not native_available():
+        raise UsageError("codec", name, "reference: this installation has no binary")
+    if name == "reference":
         from cobotwire.codec.reference import ReferenceCodec
 
         return ReferenceCodec(table)
