@@ -5,10 +5,8 @@ from __future__ import annotations
 import json
 import os
 import pty
-import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 
 import pytest
 
@@ -192,32 +190,6 @@ def test_commands_tells_all_about_one() -> None:
     assert "Disputed" in result.stdout
     assert "<ssid>" in run("commands", "get_ssid_pwd").stdout
     assert json.loads(run("commands", "stop", "--json").stdout)[0]["id"] == 0x29
-
-
-@pytest.fixture
-def sim() -> Iterator[subprocess.Popen[str]]:
-    process = subprocess.Popen(
-        [*COMMAND, "sim"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
-
-
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_sim_serves_a_port_shows_the_frames_and_ends_cleanly(
-    sim: subprocess.Popen[str], how: signal.Signals
-) -> None:
-    assert sim.stdout is not None
-    url = sim.stdout.readline().strip()
-    assert url.startswith("/dev/")
-    assert run("call", "is_power_on", "--port", url).stdout == "False\n"
-    line = sim.stdout.readline()
-    assert line == "heard   FE FE 02 12 FA   is_power_on()   answered FE FE 03 12 00 FA\n"
-    sim.send_signal(how)
-    assert sim.wait(timeout=10) == 0
 
 
 def test_an_unknown_edition_is_named() -> None:

@@ -31,6 +31,21 @@ def sim(request: pytest.FixtureRequest) -> Iterator[subprocess.Popen[str]]:
         process.communicate()
 
 
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_sim_serves_a_port_shows_the_frames_and_ends_cleanly(
+    sim: subprocess.Popen[str], how: signal.Signals
+) -> None:
+    assert sim.stdout is not None
+    url = sim.stdout.readline().strip()
+    assert url.startswith("/dev/")
+    with MyCobot(url) as arm:
+        assert arm.is_power_on() is False
+    line = sim.stdout.readline()
+    assert line == "heard   FE FE 02 12 FA   is_power_on()   answered FE FE 03 12 00 FA\n"
+    sim.send_signal(how)
+    assert sim.wait(timeout=10) == 0
+
+
 def test_it_goes_on_when_nobody_reads_its_output_any_more(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None
     assert sim.stderr is not None
