@@ -1,0 +1,146 @@
+"""How MyCobot280 reads the replies of its edition where it reads them otherwise than we do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from cobotwire.codec import CodecName
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.editions.mycobot280 import MyCobot280 as OurMyCobot280
+from cobotwire.table import Command
+from pymycobot_280_requests import REQUESTS
+from pymycobot_classes import peer_on
+from pymycobot_difference import M280
+
+
+class AnsweringPort:
+    """What pymycobot uses of ``serial.Serial``; every request is answered by the same bytes."""
+
+    def __init__(self, answer: bytes) -> None:
+        self._answer = answer
+        self._waiting = b""
+        self.asked = 0
+
+    def isOpen(self) -> bool:
+        return True
+
+    def reset_input_buffer(self) -> None:
+        self._waiting = b""
+
+    def write(self, data: Any) -> None:
+        self.asked += 1
+        self._waiting += self._answer
+
+    def inWaiting(self) -> int:
+        return len(self._waiting)
+
+    def read(self, size: int = 1) -> bytes:
+        data, self._waiting = self._waiting[:size], self._waiting[size:]
+        return data
+
+
+class AnsweringLink:
+    """The same for our driver: a :class:`cobotwire.transport.Transport`."""
+
+    url = "answering"
+
+    def __init__(self, answer: bytes) -> None:
+        self._answer = answer
+        self._waiting = b""
+
+    def write(self, data: bytes) -> None:
+        self._waiting += self._answer
+
+    def read(self, timeout: float) -> bytes:
+        data, self._waiting = self._waiting, b""
+        return data
+
+    def close(self) -> None:
+        """There is nothing to give back."""
+
+
+def question(command: Command, echoed: dict[str, Any]) -> tuple[Any, ...]:
+    """Arguments to ask with, such that the reply echoes them."""
+    arguments = list(REQUESTS[command.name][0])
+    for index, field in enumerate(command.request[0].fields):
+        if field.name in echoed:
+            arguments[index] = echoed[field.name]
+    return tuple(arguments)
+
+
+def heard_by_us(codec: CodecName, command: str, arguments: Iterable[Any], frame: bytes) -> Any:
+    """What our client gives for a reply, as plain lists and numbers."""
+    with OurMyCobot280(AnsweringLink(frame), codec=codec, timeout=0.05) as client:
+        return plain(getattr(client, command)(*arguments))
+
+
+def heard_by_pymycobot(command: str, arguments: Iterable[Any], frame: bytes) -> Any:
+    """What pymycobot's own, unmodified reading gives for it."""
+    return getattr(peer_on(M280, AnsweringPort(frame)), command)(*arguments)
+
+
+def plain(value: Any) -> Any:
+    """A value of ours without names."""
+    if isinstance(value, tuple):
+        return [plain(item) for item in value]
+    return int(value) if isinstance(value, int) else value
+
+
+def bits(byte: int) -> Any:
+    """0, or the numbers of the bits that are set."""
+    return [bit for bit in range(8) if byte >> bit & 1] or 0
+
+
+def _error_class(byte: int) -> int:
+    for known, codes in ((1, range(16, 23)), (2, range(23, 29)), (3, range(32, 112))):
+        if byte in codes:
+            return known
+    return byte
+
+
+def _errors(ours: list[int]) -> list[Any]:
+    if len(ours) == 7:
+        return [bits(_error_class(byte)) for byte in ours]
+    data = bytes(ours)
+    return [int.from_bytes(data[at : at + 2], "big", signed=True) for at in (0, 2, 4)]
+
+
+def _points(ours: list[int]) -> Any:
+    return [ours[::2], ours[1::2]] if any(ours) else -1
+
+
+# The ruling, and what pymycobot gives where we give ``ours``.
+OtherWords = tuple[str, Callable[[Any], Any]]
+
+DIFFERENCES: dict[str, OtherWords] = {
+    "get_radians": (
+        "0x20: the float nearest to the angle; pymycobot rounds it to thousandths",
+        lambda ours: [round(math.degrees(value) * (math.pi / 180), 3) for value in ours],
+    ),
+    "get_angles_coords": (
+        "0xD5: angles and coordinates, each by name; pymycobot gives one list of twelve",
+        lambda ours: ours[0] + ours[1],
+    ),
+    "get_servo_status": (
+        "0xE4: the byte as it comes; pymycobot gives lists of bit numbers, and prints them",
+        lambda ours: [bits(byte) for byte in ours],
+    ),
+    "read_next_error": (
+        "0x15: 7 or 6 bytes, as they come, never words; pymycobot sorts 7 bytes into classes and "
+        "gives their bit numbers, and takes 6 bytes for three words",
+        _errors,
+    ),
+    "drag_get_record_data": (
+        "0xF3: the words in their order, zeros too; pymycobot gives two lists, and -1 for zeros",
+        _points,
+    ),
+}
+
+# The rulings on replies that pymycobot cannot read at all, or takes for something else.
+ONE_BYTE = "0x62 0xA1: older firmware leaves the pin out; pymycobot skips a byte in any case"
+OF_ANOTHER = "a reply is matched by what it echoes; pymycobot takes that of any joint or pin"
+
+ACKS = [command for command in TABLE.commands if command.ack]
+REPLIES = [command for command in TABLE.commands if command.reply and not command.ack]

@@ -1,0 +1,126 @@
+"""Argument sets for every call of the 280: the same numbers go into our method and pymycobot's.
+
+Most are corners of the edition's own table: the lowest and the highest of every field, for each
+value of the field that decides how another reads. The rest are chosen by hand.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.table import Field, Layout
+from pymycobot_requests import REQUESTS as OLDER
+
+Arguments = tuple[Any, ...]
+
+_ANGLES = [[0] * 6, [-168, -140, -150, -150, -155, -180], [168, 140, 150, 150, 160, 180]]
+_COORDS = [
+    [0] * 6,
+    [-281.4, -281.4, -70, -180, -180, -180],
+    [281.4, 281.4, 412.6, 180, 180, 180],
+    # Header and footer inside the data: FE FE and 00 FA.
+    [-25.8, 25.0, -0.1, -2.58, 2.5, 0.1],
+]
+_WORDS = [[-327.68, 327.67, -2.58, 2.5, 0.01, -0.01]]
+
+# Beside the corners, or in the place of those that pymycobot refuses.
+_BY_HAND: dict[str, list[Arguments]] = {
+    "send_angle": [(1, 1.5, 20), (2, -2.58, 1), (3, -0.1, 100)],
+    "send_angles": [([1.5, -20.25, 30, -45.75, 120, -179.99], 50)],
+    "send_radians": [([0, math.pi / 4, -math.pi / 4, math.pi / 2, -math.pi / 2, math.pi], 50)],
+    "send_coord": [(1, 160.3, 1), (2, -25.8, 50), (3, -0.1, 100), (6, -2.58, 50)],
+    "send_coords": [(coords, 50) for coords in _COORDS] + [(coords, 1, 1) for coords in _COORDS],
+    "is_in_position": [(r, 0) for r in _ANGLES] + [(r, 1) for r in _COORDS],
+    "jog_increment": [(1, -2.58, 50), (2, 0.1, 50)],
+    "jog_increment_angle": [(1, -2.58, 50), (2, -280, 50), (2, 280, 50), (5, 315, 1)],
+    "jog_increment_coord": [(1, -25.8, 50), (3, 0.1, 50), (4, -2.58, 50)],
+    "set_servo_data": [(1, 24, 250), (7, 24, 254, 1), (7, 5, 4096, 0)],
+    "set_encoders_drag": [([0, 4096, 254, 250, 65, 1024], [0, 6000, 254, 250, 65, 1024])],
+    "set_tool_reference": [(coords,) for coords in _COORDS],
+    "set_world_reference": [(coords,) for coords in _COORDS],
+    "set_server_port": [(1,), (9000,), (32767,)],
+    "set_color": [(255, 254, 250), (1, 2, 3)],
+    "angles_to_coords": [(row,) for row in _WORDS],
+    "solve_inv_kinematics": [(row, angles) for row in _COORDS for angles in _ANGLES],
+    "set_ssid_pwd": [("MyCobotWiFi2.4G", "mycobot123"), ("my home net", "two words"), ("", "")],
+}
+# Its corners are beyond what pymycobot lets pass; the differences say where that ends.
+_NO_CORNERS = {"is_in_position", "set_tool_reference", "set_world_reference", "set_server_port"}
+_NO_CORNERS |= {"jog_increment_angle"}
+# What is called as in the older edition, and within the limits of this one.
+_AS_BEFORE = {"send_angles", "jog_angle", "jog_coord", "jog_increment", "set_tool_reference"}
+_AS_BEFORE |= {"set_world_reference", "set_servo_data", "get_servo_data", "set_pin_mode"}
+
+
+def as_called(name: str, layout: Layout, values: Arguments) -> Arguments:
+    """Values of the wire as a caller gives them: lists and whole numbers, and radians."""
+    given = [
+        [_plain(v) for v in value] if field.many else _plain(value)
+        for field, value in zip(layout.fields, values)
+        if field.cases[0].numbers[0].maximum > 0  # else it is constant, and no argument
+    ]
+    if name == "send_radians":
+        given[0] = [math.radians(degrees) for degrees in values[0]]
+    return tuple(given)
+
+
+def _plain(value: float) -> float:
+    # pymycobot takes no bool for a 0 or 1, and no 90.0 as a limit.
+    return int(value) if value == int(value) else value
+
+
+def _corners(layout: Layout) -> Iterator[tuple[Any, ...]]:
+    deciding = {field.selector for field in layout.fields} - {-1}
+    picks = {w for field in layout.fields for case in field.cases for w in case.when}
+    chosen: list[int | None] = [*sorted(picks)]
+    for pick in chosen or [None]:
+        for high in (False, True):
+            yield tuple(
+                pick if index in deciding else end(field, high, pick)
+                for index, field in enumerate(layout.fields)
+            )
+
+
+def end(field: Field, high: bool, pick: int | None = None) -> Any:
+    """The lowest or the highest value of a field, in the case that ``pick`` decides."""
+    case = next(case for case in field.cases if not case.when or pick in case.when)
+    steps = [number.maximum if high else number.minimum for number in case.numbers]
+    if field.choices:
+        steps = [field.choices[-1 if high else 0]]
+    numbers = zip(steps, case.numbers)
+    scaled = [step * n.multiply / n.divide if n.scaled else step for step, n in numbers]
+    return tuple(scaled) if field.many else scaled[0]
+
+
+def _requests(name: str) -> list[Arguments]:
+    found = [] if name in _NO_CORNERS else [
+        as_called(name, layout, values)
+        for layout in TABLE.command(name).request for values in _corners(layout)
+    ]  # fmt: skip
+    if name == "set_ssid_pwd":
+        found = []
+    return found + (OLDER[name] if name in _AS_BEFORE else []) + _BY_HAND.get(name, [])
+
+
+REQUESTS: dict[str, list[Arguments]] = {
+    command.name: _requests(command.name) for command in TABLE.commands
+}
+
+# What pymycobot fills in itself, and what it makes of several calls: its method and arguments, and
+# ours. Where it sends more than one request, the first.
+SAME_WISHES: list[tuple[str, Arguments, str, Arguments]] = [
+    ("is_in_position", (_ANGLES[1],), "is_in_position", (_ANGLES[1], 0)),
+    ("set_color", (), "set_color", (0, 0, 0)),
+    ("go_home", (), "send_angles", ([0] * 6, 10)),
+    ("gripper_stop", (), "set_gripper_value", (0, 0, 1, 1)),
+    ("is_torque_gripper", (), "get_servo_data", (7, 1)),
+    ("sync_send_angles", (_ANGLES[2], 50), "send_angles", (_ANGLES[2], 50)),
+    ("sync_send_coords", (_COORDS[3], 50), "send_coords", (_COORDS[3], 50, 0)),
+    ("sync_send_coords", (_COORDS[3], 50, 1), "send_coords", (_COORDS[3], 50, 1)),
+]
+# Public names of the class that say nothing to the arm.
+SILENT = {"check_python_version", "close", "crc_check", "crc_robot_class", "open", "wait"}
+SILENT |= {"gpio_init", "gpio_output"}  # these drive pins of the Raspberry Pi
