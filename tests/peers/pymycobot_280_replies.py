@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire.codec import CodecName
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.editions.mycobot280 import MyCobot280 as OurMyCobot280
+from cobotwire.errors import ReplyTimeout
 from cobotwire.table import Command
 from pymycobot_280_requests import REQUESTS
 from pymycobot_classes import peer_on
@@ -138,9 +140,65 @@ DIFFERENCES: dict[str, OtherWords] = {
     ),
 }
 
-# The rulings on replies that pymycobot cannot read at all, or takes for something else.
-ONE_BYTE = "0x62 0xA1: older firmware leaves the pin out; pymycobot skips a byte in any case"
-OF_ANOTHER = "a reply is matched by what it echoes; pymycobot takes that of any joint or pin"
+
+class OtherReading(NamedTuple):
+    """A reply that the two sides take for different things; an exception's type is what is raised.
+
+    What our client gives; for a setter, which does not wait, the fields that our codec reads.
+    """
+
+    call: str
+    arguments: tuple[Any, ...]
+    reply: bytes
+    ours: Any
+    theirs: Any
+    ruling: str
+
+
+_ONE_BYTE = "0x62 0xA1: older firmware leaves the pin out; pymycobot skips a byte in any case"
+_OF_ANOTHER = "a reply is matched by what it echoes; pymycobot takes that of any joint or pin"
+_BARE = "an acknowledgement may be a bare frame; pymycobot takes a frame without data for none"
+_ANY = "0xA0: the word as it came; pymycobot says 1 whatever it is"
+_SPACES = "0xB1: both parts may contain spaces; pymycobot takes the first and the last word"
+_LINE_END = "0xB1: the text ends with silence, and a line end is none of it"
+_PRINTED = b"ssid: my home password: two words"
+
+
+def _frame(text: str) -> bytes:
+    return bytes.fromhex(text)
+
+
+OTHER_READINGS = [
+    OtherReading("get_digital_input", (23,), _frame("FEFE036201FA"), 1, struct.error, _ONE_BYTE),
+    OtherReading("get_basic_input", (5,), _frame("FEFE03A101FA"), 1, struct.error, _ONE_BYTE),
+    *(
+        OtherReading(call, (asked,), _frame(reply), ReplyTimeout, theirs, _OF_ANOTHER)
+        for call, asked, reply, theirs in [
+            ("get_joint_min_angle", 1, "FE FE 05 4A 02 06 0E FA", 155.0),
+            ("get_joint_max_angle", 1, "FE FE 05 4B 02 06 0E FA", 155.0),
+            ("is_servo_enable", 1, "FE FE 04 50 02 01 FA", 1),
+            ("get_digital_input", 23, "FE FE 04 62 21 01 FA", 1),
+            ("get_basic_input", 5, "FE FE 04 A1 02 01 FA", 1),
+        ]
+    ),
+    OtherReading("set_basic_output", (5, 1), _frame("FEFE03A000FA"), {"done": 0}, 1, _ANY),
+    *(
+        OtherReading(
+            command.name,
+            REQUESTS[command.name][0],
+            bytes([0xFE, 0xFE, 2, command.id, 0xFA]),
+            {},
+            -1,
+            _BARE,
+        )
+        for command in TABLE.commands
+        if command.ack
+    ),
+    OtherReading("get_ssid_pwd", (), _PRINTED, ["my home", "two words"], ("my", "words"), _SPACES),
+    OtherReading(
+        "get_ssid_pwd", (), b"ssid: a password: b\r\n", ["a", "b"], ("a", "b\r\n"), _LINE_END
+    ),
+]
 
 ACKS = [command for command in TABLE.commands if command.ack]
 REPLIES = [command for command in TABLE.commands if command.reply and not command.ack]
