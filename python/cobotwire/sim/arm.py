@@ -13,6 +13,9 @@ from cobotwire.sim.behaviour import BEHAVIOUR
 from cobotwire.sim.state import ArmState
 from cobotwire.table import Command, Field, Table
 
+# A joint's limit lies inside half a turn; what is wider is only what the wire can say.
+HALF_TURN = 180.0
+
 Clock = Callable[[], float]
 Watch = Callable[[DeviceEvent, bytes], None]
 
@@ -40,6 +43,8 @@ class SimulatedArm:
         """
         self.table = table
         self.state = ArmState(table.joints)
+        for joint, (lowest, highest) in enumerate(_joint_limits(table)):
+            self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
         self._clock = clock
         self._watch = watch
         self._acks = acks
@@ -81,6 +86,16 @@ class SimulatedArm:
     def _do(self, command: Command, given: Mapping[str, Any]) -> dict[str, Any]:
         handler = BEHAVIOUR.get(command.name)
         return (handler(self.state, self._clock(), **given) if handler else None) or {}
+
+
+def _joint_limits(table: Table) -> list[tuple[float, float]]:
+    """The limits that the edition gives each joint; none where it gives only the wire's own."""
+    for command in table.commands:
+        if command.name == "send_angles":
+            numbers = command.request[0].fields[0].cases[0].numbers
+            limits = [(n.minimum / n.divide, n.maximum / n.divide) for n in numbers]
+            return limits if all(high <= HALF_TURN for _, high in limits) else []
+    return []
 
 
 def _complete(command: Command, given: dict[str, Any], result: dict[str, Any]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from cobotwire.sim.axes import Axes
+from cobotwire.sim.settings import Settings
 
 # shared facts of the 280: see the protocol notes on kinematics
 DEGREES_A_SECOND = 1.5
@@ -48,6 +49,7 @@ class ArmState:
     basic_pins: dict[int, bool] = field(default_factory=dict)
     gripper: Axes = field(default_factory=lambda: Axes((0.0,)))
     pose: Axes = field(default_factory=lambda: Axes(RESTING_COORDS))
+    settings: Settings = field(default_factory=Settings)
     angles: Axes = field(init=False)
     enabled: list[bool] = field(init=False)
     minimum: list[float] = field(init=False)
@@ -59,7 +61,8 @@ class ArmState:
         self.enabled = [False] * self.joints
         self.minimum = [-165.0] * self.joints
         self.maximum = [165.0] * self.joints
-        self.registers = [dict(SERVO_REGISTERS) for _ in range(self.joints)]
+        # One servo more than joints: newer firmware counts the gripper's as the last.
+        self.registers = [dict(SERVO_REGISTERS) for _ in range(self.joints + 1)]
 
     def can_move(self) -> bool:
         """Whether a motion command is obeyed: powered, held, and not stopped."""
@@ -86,7 +89,9 @@ class ArmState:
         self.pose.halt(now)
 
     def encoder(self, joint: int, now: float) -> int:
-        """The servo position of a joint, counted from 0."""
+        """The servo position of a joint, counted from 0; the gripper's, behind the last joint."""
+        if joint >= self.joints:
+            return ZERO_TICK + round(self.gripper.position(now)[0])
         return angle_to_tick(joint, self.angles.position(now)[joint])
 
 

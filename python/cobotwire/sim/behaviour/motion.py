@@ -50,7 +50,7 @@ def send_coord(arm: ArmState, now: float, axis: int, coord: float, speed: int) -
 
 @does("send_coords")
 def send_coords(
-    arm: ArmState, now: float, coords: tuple[float, ...], speed: int, mode: int
+    arm: ArmState, now: float, coords: tuple[float, ...], speed: int, mode: int = 0
 ) -> None:
     """Move the end."""
     arm.go_to_coords(coords, speed, now)

@@ -32,7 +32,7 @@ def is_power_on(arm: ArmState, now: float) -> dict[str, Any]:
 
 
 @does("release_all_servos")
-def release_all_servos(arm: ArmState, now: float) -> None:
+def release_all_servos(arm: ArmState, now: float, undamped: int = 0) -> None:
     """Let go of every joint."""
     arm.halt(now)
     arm.enabled = [False] * arm.joints

@@ -10,9 +10,13 @@ from cobotwire.sim.state import ArmState, tick_to_angle
 
 
 @does("set_encoder")
-def set_encoder(arm: ArmState, now: float, joint: int, encoder: int) -> None:
-    """Move one servo, at the speed that is set."""
-    send_angle(arm, now, joint, tick_to_angle(joint - 1, encoder), arm.speed)
+def set_encoder(
+    arm: ArmState, now: float, joint: int, encoder: int, speed: int | None = None
+) -> None:
+    """Move one servo, at its speed or the one that is set."""
+    if joint <= arm.joints:
+        chosen = arm.speed if speed is None else speed
+        send_angle(arm, now, joint, tick_to_angle(joint - 1, encoder), chosen)
 
 
 @does("get_encoder")
@@ -71,20 +75,28 @@ def is_all_servo_enable(arm: ArmState, now: float) -> dict[str, Any]:
 
 
 @does("set_servo_data")
-def set_servo_data(arm: ArmState, now: float, joint: int, register: int, value: int) -> None:
+def set_servo_data(
+    arm: ArmState, now: float, joint: int, register: int, value: int, mode: int = 0
+) -> None:
     """Write a servo register."""
     arm.registers[joint - 1][register] = value
 
 
 @does("get_servo_data")
-def get_servo_data(arm: ArmState, now: float, joint: int, register: int) -> dict[str, Any]:
-    """Read a servo register."""
-    return {"value": arm.registers[joint - 1].get(register, 0)}
+def get_servo_data(
+    arm: ArmState, now: float, joint: int, register: int, mode: int = 0
+) -> dict[str, Any]:
+    """Read a servo register: its low byte, or with mode 1 all of it."""
+    value = arm.registers[joint - 1].get(register, 0)
+    return {"value": value if mode else value % 256}
 
 
 @does("set_servo_calibration")
 def set_servo_calibration(arm: ArmState, now: float, joint: int) -> None:
     """Take a joint's present position as its zero."""
+    if joint > arm.joints:
+        arm.gripper.place((0.0,), now)
+        return
     position = list(arm.angles.position(now))
     position[joint - 1] = 0.0
     arm.angles.place(position, now)
@@ -97,13 +109,15 @@ def joint_brake(arm: ArmState, now: float, joint: int) -> None:
 
 
 @does("release_servo")
-def release_servo(arm: ArmState, now: float, joint: int) -> None:
+def release_servo(arm: ArmState, now: float, joint: int, undamped: int = 0) -> None:
     """Let go of one joint."""
-    arm.angles.halt(now)
-    arm.enabled[joint - 1] = False
+    if joint <= arm.joints:
+        arm.angles.halt(now)
+        arm.enabled[joint - 1] = False
 
 
 @does("focus_servo")
 def focus_servo(arm: ArmState, now: float, joint: int) -> None:
     """Hold one joint."""
-    arm.enabled[joint - 1] = arm.powered
+    if joint <= arm.joints:
+        arm.enabled[joint - 1] = arm.powered
