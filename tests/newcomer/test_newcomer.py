@@ -70,14 +70,17 @@ with PtyServer(SimulatedArm(TABLE)) as server, Heater(server.url) as heater:
 """
 
 
-def run(*words: str | Path, **options: object) -> subprocess.CompletedProcess[str]:
+def run(
+    *words: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [str(word) for word in words],
         capture_output=True,
         text=True,
         check=True,
         timeout=300,
-        **options,  # type: ignore[call-overload]
+        cwd=cwd,
+        env=env,
     )
 
 

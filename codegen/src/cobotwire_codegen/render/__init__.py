@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 from jinja2 import (
@@ -28,6 +29,7 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
     Templates in ``templates`` take the place of those of the same name.
     """
     jinja = _environment(templates)
+    edition = replace(edition, types=_used_types(edition))
     common = {"edition": edition, "named": _named_types(edition)}
     files = {
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
@@ -64,6 +66,13 @@ def render_reference(edition: Edition, templates: Path | None = None) -> Files:
 def render_vectors(edition: Edition) -> Files:
     """The table and vectors as JSON."""
     return {PurePosixPath(f"{edition.name}.json"): vectors_json(edition)}
+
+
+def _used_types(edition: Edition) -> tuple[Type, ...]:
+    """The types that a message has: a delta may have left some of its base's without a use."""
+    fields = (field for command in edition.commands for field in command.fields)
+    used = {type.name for field in fields for _, type in lower.cases(field)}
+    return tuple(type for type in edition.types if type.name in used)
 
 
 def _named_types(edition: Edition) -> dict[Type, str]:

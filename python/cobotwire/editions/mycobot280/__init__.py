@@ -15,7 +15,6 @@ from .enums import (
     RotationDirection,
     RpyAxis,
     ServoDataMode,
-    ServoRegister,
     TargetKind,
     TravelDirection,
 )
@@ -62,7 +61,6 @@ __all__ = [
     "RpyAxis",
     "ServoDataMode",
     "ServoErrors",
-    "ServoRegister",
     "ServoSpeeds",
     "ServoStatuses",
     "ServoTemperatures",

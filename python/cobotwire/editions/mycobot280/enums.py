@@ -68,23 +68,6 @@ class TravelDirection(IntEnum):
     """The coordinate grows."""
 
 
-class ServoRegister(IntEnum):
-    """A register of a joint's servo, by its decimal address."""
-
-    LED_ALARM = 20
-    """LED alarm, 0 off, 1 on."""
-    POSITION_P = 21
-    """Position loop, proportional coefficient."""
-    POSITION_D = 22
-    """Position loop, differential coefficient."""
-    POSITION_I = 23
-    """Position loop, integral coefficient."""
-    MINIMUM_STARTING_FORCE = 24
-    """Minimum starting force, 1000 is full; two bytes wide, so this one-byte form reaches its low
-    byte only.
-    """
-
-
 class PinMode(IntEnum):
     """What a pin is used for."""
 

@@ -73,17 +73,17 @@ class Radians(NamedTuple):
     """The six joint angles in radians, base first."""
 
     j1: float
-    """A joint angle, in radians. In degrees."""
+    """A joint angle, in radians."""
     j2: float
-    """A joint angle, in radians. In degrees."""
+    """A joint angle, in radians."""
     j3: float
-    """A joint angle, in radians. In degrees."""
+    """A joint angle, in radians."""
     j4: float
-    """A joint angle, in radians. In degrees."""
+    """A joint angle, in radians."""
     j5: float
-    """A joint angle, in radians. In degrees."""
+    """A joint angle, in radians."""
     j6: float
-    """A joint angle, in radians. In degrees."""
+    """A joint angle, in radians."""
 
 
 class JointErrors(NamedTuple):
