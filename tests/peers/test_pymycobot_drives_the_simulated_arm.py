@@ -177,7 +177,7 @@ def test_it_writes_and_reads_servo_registers(bench: Bench) -> None:
     assert bench.peer.get_servo_data(2, 21) == 10
     assert bench.peer.set_servo_data(2, 21, 25) == UNANSWERED
     assert bench.peer.get_servo_data(2, 21) == 25
-    assert [registers[21] for registers in bench.state.registers] == [10, 25, 10, 10, 10, 10]
+    assert [registers[21] for registers in bench.state.registers[:6]] == [10, 25, 10, 10, 10, 10]
 
 
 def test_it_reads_the_limits_of_a_joint_as_tenths_without_converting_them(bench: Bench) -> None:
