@@ -27,7 +27,7 @@ PLACE = Place("test", 1, 1)
 RECORDS = [
     item
     for item in vars(model).values()
-    if isinstance(item, type) and is_dataclass(item) and item.__module__ == model.__name__
+    if isinstance(item, type) and is_dataclass(item) and item.__module__.startswith(model.__name__)
 ]
 FIELDS = [
     (record, field.name) for record in RECORDS for field in fields(record) if field.name != "place"

@@ -1,0 +1,91 @@
+"""An edition, whole: its frame, what is wrong in its document, its vectors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from cobotwire_codegen.errors import Place
+from cobotwire_codegen.model.commands import Command, Family
+from cobotwire_codegen.model.facts import Change, Lines
+from cobotwire_codegen.model.types import Member, Type, Wire
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """``header [address] LEN CMD DATA check``, and the link it travels on."""
+
+    place: Place
+    header: bytes
+    check: Literal["footer", "crc16-modbus", "sum"]
+    footer: bytes
+    addresses: tuple[Member, ...]
+    maximum_data: int
+    doc: str
+    baudrate: int
+    deadline_ms: int
+
+    @property
+    def check_size(self) -> int:
+        """Bytes of the check."""
+        return len(self.footer) if self.check == "footer" else 2 if self.check != "sum" else 1
+
+
+@dataclass(frozen=True, slots=True)
+class Erratum:
+    """A place where the document is wrong or contradicts itself, and how it is read."""
+
+    place: Place
+    lines: Lines
+    kind: str
+    commands: tuple[str, ...]
+    example: int | None
+    says: str
+    read: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Vector:
+    """A frame with the values that it carries. ``example`` counts the document's own, from 1."""
+
+    place: Place
+    name: str
+    example: int | None
+    line: int | None
+    command: str
+    direction: Literal["request", "reply"]
+    printed: bytes | None
+    verdict: str
+    frame: bytes | None
+    text: str | None
+    values: tuple[tuple[str, object], ...]
+    says: str
+    refused: tuple[str, int] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Edition:
+    """One edition of the protocol, whole."""
+
+    place: Place
+    name: str
+    class_name: str
+    title: str
+    doc: str
+    document: str
+    firmware: str
+    base: str
+    joints: int
+    frame: Frame
+    wires: tuple[Wire, ...]
+    types: tuple[Type, ...]
+    families: tuple[Family, ...]
+    errata: tuple[Erratum, ...]
+    vectors: tuple[Vector, ...]
+    changes: tuple[Change, ...]
+
+    @property
+    def commands(self) -> tuple[Command, ...]:
+        """All commands, family by family."""
+        return tuple(command for family in self.families for command in family.commands)
