@@ -41,8 +41,10 @@ def _big() -> str:
     for index in range(400):
         id, count = index % 250, index // 250 + 1
         fields = "".join(f"      - {{name: f{n}, is: channel}}\n" for n in range(count))
+        # Behind the 250th command the ids are used again, with more data.
+        shared = f"    shares_id: call{id}\n" if count > 1 else ""
         commands.append(
-            f"  call{index}:\n    id: {id}\n    title: Call\n    doc: Calls.\n"
+            f"  call{index}:\n    id: {id}\n{shared}    title: Call\n    doc: Calls.\n"
             f"    safety: setting\n    request:\n{fields}"
         )
         values = ", ".join(f"f{n}: 1" for n in range(count))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -17,6 +18,7 @@ from cobotwire_codegen.errors import Place, Problem, SpecError
 Plain = str | int | bool | Fraction | None
 
 _TAG = "tag:yaml.org,2002:"
+_EXPONENT = re.compile(r"[eE]([+-]?\d+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +138,7 @@ def _scalar(node: ScalarNode, place: Place, problems: list[Problem]) -> Scalar:
         return Scalar(place, None)
     if tag in ("int", "float"):
         try:
-            return Scalar(place, _whole(text) if tag == "int" else Fraction(text))
+            return Scalar(place, _whole(text) if tag == "int" else exact(text))
         except ValueError:
             shown = text if len(text) <= 40 else f"{text[:37]}..."
             message = f"{shown} is no number with an exact value"
@@ -145,6 +147,19 @@ def _scalar(node: ScalarNode, place: Place, problems: list[Problem]) -> Scalar:
     if tag != "str":
         problems.append(Problem(place, "bad-tag", f"the tag {node.tag} is not taken"))
     return Scalar(place, text)
+
+
+def exact(text: str) -> Fraction:
+    """The exact value of a number; one with an exponent beyond all use is none.
+
+    Raises:
+        ValueError: it is no number.
+    """
+    exponent = _EXPONENT.search(text)
+    # 1e99999999 would be worked out digit by digit.
+    if exponent is not None and len(exponent[1].lstrip("+-0")) > 3:
+        raise ValueError(text)
+    return Fraction(text)
 
 
 def _whole(text: str) -> int:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from cobotwire_codegen.errors import Place, Problem, nearest
-from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, exact
 from cobotwire_codegen.model import Lines
 
 _RANGE = re.compile(r"(\d+)(?:-(\d+))?\Z")
@@ -220,6 +220,6 @@ def as_fraction(node: Node) -> Fraction | None:
     if isinstance(value, bool) or not isinstance(value, int | Fraction | str):
         return None
     try:
-        return Fraction(value)
+        return exact(value) if isinstance(value, str) else Fraction(value)
     except (ValueError, ZeroDivisionError):
         return None

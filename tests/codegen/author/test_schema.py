@@ -199,8 +199,6 @@ def test_a_protocol_of_ones_own_has_its_own_schema(tmp_path: Path) -> None:
 
 def test_every_file_of_the_spec_names_the_schema() -> None:
     for path in corpora()[0].files():
-        # The edition mycobot280 is written elsewhere at this time.
-        if "mycobot280" not in str(path):
-            first = path.read_text().splitlines()[0]
-            _, _, name = first.partition("# yaml-language-server: $schema=")
-            assert (path.parent / name).resolve() == vectors.ROOT / "spec/schema.json", path
+        first = path.read_text().splitlines()[0]
+        _, _, name = first.partition("# yaml-language-server: $schema=")
+        assert (path.parent / name).resolve() == vectors.ROOT / "spec/schema.json", path

@@ -80,6 +80,7 @@ def _command(
         replies=replies,
         ack=ack,
         alias=reader.text("alias", ""),
+        shares_id=tuple(reader.names("shares_id")),
         text=text,
         request_text=build_text(reader, "request_text"),
         notes=reader.texts("notes"),

@@ -20,7 +20,10 @@ Operation = Callable[[Parts, Reader, list[str]], str]
 
 
 def apply_changes(parts: Parts, root: Node, problems: list[Problem]) -> None:
-    """Apply a changes file, in its order."""
+    """Apply a changes file, in its order; or a change that stands in the edition itself."""
+    if isinstance(root, Mapping) and "changes" not in root.entries:
+        _apply(parts, root, problems)
+        return
     reader = Reader(root, "the changes file", problems)
     for node in reader.items("changes"):
         _apply(parts, node, problems)

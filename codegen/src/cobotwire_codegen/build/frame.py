@@ -14,7 +14,7 @@ _CHECKED = ("command", "data", "check")
 def build_frame_format(parts: Parts, outer: Reader, problems: list[Problem]) -> Frame:
     """The frame format of an edition."""
     frame = Reader(parts.frame or outer.root, "the frame", problems)
-    link = Reader(parts.link or outer.root, "the link", problems)
+    link = Reader(parts.link or parts.frame or outer.root, "the link", problems)
     word = frame.one_of("check", CHECKS, "footer")
     wanted = _FOOTED if word == "footer" else _CHECKED
     if frame.texts("length_counts") != wanted:

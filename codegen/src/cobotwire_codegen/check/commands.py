@@ -17,7 +17,9 @@ def ids_fit(edition: Edition) -> Iterator[Problem]:
     """An id is a byte."""
     for command in edition.commands:
         if not 0 <= command.id <= 0xFF:
-            yield Problem(command.place, "bad-id", f"the id {command.id:#x} is no byte")
+            yield Problem(
+                command.place, "bad-id", f"the id {command.id} ({command.id:#x}) is no byte"
+            )
 
 
 def payload_fits(edition: Edition) -> Iterator[Problem]:
@@ -77,6 +79,34 @@ def _excludes(field: Field, value: int) -> bool:
     [number] = lower.numbers(field.type)
     inside: bool = number["minimum"] <= value <= number["maximum"]
     return not inside or value not in (lower.choices(field.type) or (value,))
+
+
+def ids_apart(edition: Edition) -> Iterator[Problem]:
+    """An id stands for one call, unless the spec says that calls share it."""
+    seen: dict[int, Command] = {}
+    for command in edition.commands:
+        first = seen.setdefault(command.id, command)
+        said = {first.alias, command.alias, *first.shares_id, *command.shares_id}
+        if first is not command and not said & {first.name, command.name}:
+            message = (
+                f"{command.name} has the id {command.id:#04x}, as {first.name} has at "
+                f"{first.place}; if they share it, say shares_id: {first.name}"
+            )
+            yield Problem(command.place, "duplicate-id", message)
+
+
+def shared_ids_there(edition: Edition) -> Iterator[Problem]:
+    """What is said to share an id does."""
+    commands = {command.name: command for command in edition.commands}
+    for command in edition.commands:
+        for name in command.shares_id:
+            other = commands.get(name)
+            if other is None:
+                message = f"there is no command {name}{nearest(name, commands)}"
+                yield Problem(command.place, "unknown-command", message)
+            elif other.id != command.id:
+                message = f"{name} has another id than {command.name}: they share none"
+                yield Problem(command.place, "bad-shared-id", message)
 
 
 def aliases_alike(edition: Edition) -> Iterator[Problem]:
@@ -144,6 +174,8 @@ RULES = (
     ids_fit,
     payload_fits,
     forms_apart,
+    ids_apart,
+    shared_ids_there,
     aliases_alike,
     cases_alike,
     echoes_match,

@@ -13,6 +13,8 @@ RESERVED_FIELDS = frozenset(
 )
 # What every client is and can beside its commands.
 RESERVED_COMMANDS = frozenset({"close", "codec", "table"})
+# A named tuple's own methods, and the types that stand in its annotations.
+RESERVED_ITEMS = frozenset({"count", "index", "int", "float", "bool", "str", "tuple"})
 RESERVED_FAMILIES = frozenset({"types"})
 RESERVED_CLASSES = frozenset(
     {
@@ -46,6 +48,19 @@ def reserved(edition: Edition) -> Iterator[Problem]:
             yield _reserved(command.name, command.place)
         for field in command.fields:
             if field.name in RESERVED_FIELDS:
+                yield _reserved(field.name, field.place)
+
+
+def items_free(edition: Edition) -> Iterator[Problem]:
+    """Parts of a named tuple hide neither what tuples can do nor the types of other parts."""
+    for type in edition.types:
+        if isinstance(type, Value):
+            for name, _ in type.items:
+                if name in RESERVED_ITEMS:
+                    yield _reserved(name, type.place)
+    for command in edition.commands:
+        for field in command.reply:
+            if len([f for f in command.reply if not f.echo]) > 1 and field.name in RESERVED_ITEMS:
                 yield _reserved(field.name, field.place)
 
 
@@ -83,4 +98,4 @@ def _classes(edition: Edition) -> Iterator[tuple[str, Place]]:
             yield type.class_name, type.place
 
 
-RULES = (reserved, classes_apart)
+RULES = (reserved, items_free, classes_apart)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 import sys
 from pathlib import Path
 
@@ -10,7 +11,13 @@ import click
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.generate import show_stale, write_all
-from cobotwire_codegen.cli.shared import edition_path, format_option, problems_told
+from cobotwire_codegen.cli.shared import (
+    edition_path,
+    format_option,
+    problems_told,
+    template_errors_told,
+    unwritable_told,
+)
 from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.render import render_python, render_reference
 
@@ -37,17 +44,33 @@ def build(
     (`cobotwire --edition PACKAGE`). The folders must hold nothing else.
     """
     path = edition_path(file)
+    _check_folders(Path(out), Path(docs) if docs else None)
     with problems_told(form):
         edition = build_edition(path, Path.cwd())
         check_edition(edition)
     own = Path(templates) if templates else None
-    wanted = [Target(Path(out), render_python(edition, own))]
-    if docs:
-        wanted.append(Target(Path(docs), render_reference(edition, own)))
+    with template_errors_told(own):
+        wanted = [Target(Path(out), render_python(edition, own))]
+        if docs:
+            wanted.append(Target(Path(docs), render_reference(edition, own)))
     if check_only:
         sys.exit(show_stale(wanted))
     strangers = [path for target in wanted for path in foreign(target)]
     if strangers:
         shown = ", ".join(str(path) for path in strangers[:3])
         raise click.UsageError(f"not generated, and in the way: {shown}; choose another folder")
-    click.echo(f"{edition.name} ({len(edition.commands)} commands): {write_all(wanted)} file(s)")
+    with unwritable_told():
+        written = write_all(wanted)
+    click.echo(f"{edition.name} ({len(edition.commands)} commands): {written} file(s)")
+
+
+def _check_folders(out: Path, docs: Path | None) -> None:
+    """The package's name must be importable, and neither folder may hold the other."""
+    name = out.resolve().name
+    if not name.isidentifier() or keyword.iskeyword(name) or name == "cobotwire":
+        raise click.UsageError(f"{name} cannot be a package's name; choose another folder")
+    if docs is None:
+        return
+    one, other = out.resolve(), docs.resolve()
+    if one == other or one in other.parents or other in one.parents:
+        raise click.UsageError("--out and --docs must be folders apart: each holds nothing else")

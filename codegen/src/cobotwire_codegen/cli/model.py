@@ -8,7 +8,12 @@ import click
 
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check as check_edition
-from cobotwire_codegen.cli.shared import edition_path, format_option, problems_told
+from cobotwire_codegen.cli.shared import (
+    edition_path,
+    format_option,
+    problems_told,
+    unwritable_told,
+)
 from cobotwire_codegen.publish import model_json
 
 
@@ -28,4 +33,5 @@ def model(file: str, out: str | None, form: str) -> None:
     if out is None:
         click.echo(text, nl=False)
     else:
-        Path(out).write_text(text, encoding="utf-8")
+        with unwritable_told():
+            Path(out).write_text(text, encoding="utf-8")

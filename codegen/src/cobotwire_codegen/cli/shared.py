@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import sys
+import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
+from jinja2 import TemplateSyntaxError
 
-from cobotwire_codegen.errors import Problem, SpecError
+from cobotwire_codegen.errors import Problem, SpecError, nearest
+from cobotwire_codegen.render import template_names
 
 FORMATS = ("text", "json", "github")
 
@@ -40,6 +43,44 @@ def problems_told(form: str = "text") -> Iterator[None]:
         if form == "text":
             click.echo(f"{len(error.problems)} problem(s) in the spec", err=True)
         sys.exit(2)
+
+
+@contextmanager
+def template_errors_told(folder: Path | None) -> Iterator[None]:
+    """Turn a mistake in somebody's own template into one line and exit code 2."""
+    _check_names(folder)
+    try:
+        yield
+    except TemplateSyntaxError as error:
+        raise click.UsageError(f"{error.filename}:{error.lineno}: {error.message}") from error
+    except Exception as error:  # whatever a template of somebody's own can do
+        if folder is None:
+            raise
+        frames = [
+            f for f in traceback.extract_tb(error.__traceback__) if f.filename.endswith(".j2")
+        ]
+        place = f"{frames[-1].filename}:{frames[-1].lineno}: " if frames else ""
+        raise click.UsageError(f"{place}{type(error).__name__}: {error}") from error
+
+
+def _check_names(folder: Path | None) -> None:
+    """A template takes the place of one of ours: a name that none of ours has is a mistake."""
+    if folder is None:
+        return
+    known = template_names()
+    for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+        name = path.relative_to(folder).as_posix()
+        if name not in known:
+            raise click.UsageError(f"{path}: there is no template {name}{nearest(name, known)}")
+
+
+@contextmanager
+def unwritable_told() -> Iterator[None]:
+    """Turn a file that cannot be written into one line and exit code 2."""
+    try:
+        yield
+    except OSError as error:
+        raise click.UsageError(f"cannot write {error.filename}: {error.strerror}") from error
 
 
 def tell(problems: Sequence[Problem], form: str) -> None:

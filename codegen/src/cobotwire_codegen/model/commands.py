@@ -50,7 +50,8 @@ class Command:
     """One call.
 
     ``requests`` and ``replies`` hold the forms of the messages, the full one first. With ``alias``
-    the call is another one's message under a name of its own.
+    the call is another one's message under a name of its own; ``shares_id`` names the calls that
+    have the same id with other data.
     """
 
     place: Place
@@ -65,6 +66,7 @@ class Command:
     replies: tuple[Form, ...]
     ack: bool
     alias: str
+    shares_id: tuple[str, ...]
     text: Text | None
     request_text: Text | None
     notes: tuple[str, ...]

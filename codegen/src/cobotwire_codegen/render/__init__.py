@@ -35,6 +35,8 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
         for name in ("__init__", "client", "enums", "values")
     }
+    # So that type checkers believe the package's annotations where it is installed.
+    files[PurePosixPath("py.typed")] = ""
     for part in ("__init__", "types"):
         template = jinja.get_template(f"python/table/{part}.py.j2")
         files[PurePosixPath(f"table/{part}.py")] = template.render(common)
@@ -66,6 +68,11 @@ def render_reference(edition: Edition, templates: Path | None = None) -> Files:
 def render_vectors(edition: Edition) -> Files:
     """The table and vectors as JSON."""
     return {PurePosixPath(f"{edition.name}.json"): vectors_json(edition)}
+
+
+def template_names() -> list[str]:
+    """The templates that can be replaced, by their names."""
+    return PackageLoader("cobotwire_codegen").list_templates()
 
 
 def _used_types(edition: Edition) -> tuple[Type, ...]:

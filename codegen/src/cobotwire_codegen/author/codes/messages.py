@@ -56,6 +56,22 @@ EXPLANATIONS = (
         "id: 0x20\nalias: get_angle\ntitle: Read an angle\ndoc: The same under its old name.",
     ),
     Explanation(
+        "duplicate-id",
+        "Two commands have the same id, and the spec does not say that they share it.",
+        "An id that is used twice by mistake reads well as long as the lengths differ.",
+        "Correct the id; or, if the calls do share it, say `shares_id: OTHER`.",
+        "id: 0x21\ntitle: Set a pin",
+        "id: 0x23\ntitle: Set a pin",
+    ),
+    Explanation(
+        "bad-shared-id",
+        "A command says that it shares its id with another one, but it does not.",
+        "What is said must be so, or a reader looks for the call at the wrong id.",
+        "Correct the id, or leave out `shares_id`.",
+        "id: 0x24\nshares_id: move\ntitle: Read the state",
+        "id: 0x24\ntitle: Read the state",
+    ),
+    Explanation(
         "alias-differs",
         "A command says that it is another one's message, but differs from it.",
         "An alias is the same message byte for byte: id, types in order, safety.",

@@ -8,8 +8,8 @@ from cobotwire_codegen.author.schema.leaves import (
     CLASS,
     LOWER,
     METHOD,
-    UPPER,
     Schema,
+    UPPER,
     by_key,
     closed,
     hexed,
@@ -21,6 +21,7 @@ from cobotwire_codegen.author.schema.leaves import (
     ref,
     text,
     whole,
+    words,
     yes,
 )
 from cobotwire_codegen.author.schema.types import SOURCE, free_doc, known
@@ -71,6 +72,7 @@ def _link() -> Schema:
         "The serial link.",
         {
             "baudrate": whole("Bits a second.", 1),
+            "shares_id": words("Calls with the same id and other data."),
             "deadline_ms": whole("How long an answer is awaited, in milliseconds.", 1),
         },
         {

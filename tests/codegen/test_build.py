@@ -1,0 +1,88 @@
+"""``cobotwire-gen build``: what a person can get wrong is said in a line, and nothing is lost."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+LAMP = (Path(__file__).parent / "lamp.yaml").read_text()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "lamp.yaml").write_text(LAMP)
+    return tmp_path
+
+
+def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "cobotwire_codegen", *words]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+
+
+def test_a_package_and_its_reference_are_written_and_stay_fresh(folder: Path) -> None:
+    words = ("build", "lamp.yaml", "--out", "lamp", "--docs", "docs")
+    assert run(folder, *words).returncode == 0
+    assert (folder / "lamp" / "py.typed").is_file()
+    again = run(folder, *words, "--check")
+    assert (again.returncode, again.stdout) == (0, "fresh\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--out", "o", "--docs", "o"), "must be folders apart"),
+        (("--out", "o", "--docs", "o/docs"), "must be folders apart"),
+        (("--out", "o/inner", "--docs", "o"), "must be folders apart"),
+        (("--out", "my-pkg"), "my-pkg cannot be a package's name"),
+        (("--out", "class"), "class cannot be a package's name"),
+        (("--out", "cobotwire"), "cobotwire cannot be a package's name"),
+        (("--out", "lamp.yaml/x"), "cannot write"),
+    ],
+)
+def test_folders_that_cannot_work_are_refused(
+    folder: Path, words: tuple[str, ...], said: str
+) -> None:
+    result = run(folder, "build", "lamp.yaml", *words)
+    assert result.returncode == 2
+    assert said in result.stderr
+    assert "Traceback" not in result.stderr
+    assert sorted(path.name for path in folder.iterdir()) == ["lamp.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("python/enums.py.j2", "{% bad %}", "enums.py.j2:1: Encountered unknown tag 'bad'"),
+        (
+            "python/enums.py.j2",
+            "\n{{ nope }}",
+            "enums.py.j2:2: UndefinedError: 'nope' is undefined",
+        ),
+        ("python/enums.py.j2", "{{ 1 // 0 }}", "enums.py.j2:1: ZeroDivisionError"),
+        (
+            "python/enum.py.j2",
+            "",
+            "no template python/enum.py.j2; did you mean python/enums.py.j2?",
+        ),
+    ],
+)
+def test_a_mistake_in_a_template_of_ones_own_has_its_place(
+    folder: Path, name: str, text: str, said: str
+) -> None:
+    path = folder / "templates" / name
+    path.parent.mkdir(parents=True)
+    path.write_text(text)
+    words = ("build", "lamp.yaml", "--out", "lamp", "--templates", "templates")
+    result = run(folder, *words)
+    assert result.returncode == 2
+    assert said in result.stderr
+    assert not (folder / "lamp").exists()
+
+
+def test_a_model_that_cannot_be_written_is_said_in_a_line(folder: Path) -> None:
+    result = run(folder, "model", "lamp.yaml", "--out", "nowhere/lamp.json")
+    assert result.returncode == 2
+    assert "cannot write nowhere/lamp.json: No such file" in result.stderr
