@@ -55,6 +55,7 @@ NEW: dict[str, Any] = {
     "lines": ((1, 2),),
     "values": (("new", 1),),
     "commands": ("get_pose",),
+    "shares_id": ("get_pose",),
     "notes": ("New.",),
     "choices": (3,),
     "printed": b"\xfe",

@@ -63,6 +63,9 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
     if old.alias != new.alias:
         shown = [f"that of {side.alias}" if side.alias else "its own" for side in (old, new)]
         yield finding("alias-changed", where, *shown)
+    if old.shares_id != new.shares_id:
+        shown = [", ".join(side.shares_id) or "none" for side in (old, new)]
+        yield finding("sharing-changed", where, *shown)
     yield from prose.doc(f"{where}/title", old.title, new.title)
     yield from prose.doc(where, old.doc, new.doc)
     yield from prose.source(where, old.source, new.source)

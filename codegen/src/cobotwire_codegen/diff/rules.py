@@ -130,6 +130,7 @@ _DOCS = {
     "note-changed": "the notes changed: {new}",
     "order-changed": "the order was {old}; is {new}",
     "range-restated": "the range is {new}, as before, but said in another way",
+    "sharing-changed": "calls said to have the same id: {old}, then {new}",
     "source-changed": "the source was {old}, is {new}",
     "type-added": "the type {new} came",
     "type-removed": "the type {old} went",
