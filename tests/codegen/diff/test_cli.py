@@ -59,9 +59,12 @@ def test_findings_stand_under_their_levels() -> None:
     [
         (BREAKING, "major (before 1.0: minor)", 1),
         (("class: Axis", "class: Way"), "major (before 1.0: minor)", 1),
-        (("range: [0, 100]", "range: [0, 50]"), "minor (before 1.0: patch)", 0),
-        (("joints: 2", "joints: 3"), "minor (before 1.0: patch)", 0),
-        (("[2, 5, 35]", "[2, 5, 35, 36]"), "minor (before 1.0: patch)", 0),
+        (("range: [0, 100]", "range: [0, 50]"), "minor (before 1.0: minor)", 0),
+        (("joints: 2", "joints: 3"), "minor (before 1.0: minor)", 0),
+        (("[2, 5, 35]", "[2, 5, 35, 36]"), "minor (before 1.0: minor)", 0),
+        (("scale: 1/100", "scale: 1/10"), "minor (before 1.0: minor)", 0),
+        (("safety: query", "safety: motion"), "minor (before 1.0: minor)", 0),
+        (("echo: required", "echo: optional"), "minor (before 1.0: patch)", 0),
         (("doc: A frame.", "doc: Frame."), "patch (before 1.0: patch)", 0),
     ],
 )

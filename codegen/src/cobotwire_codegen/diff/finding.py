@@ -20,12 +20,14 @@ _BUMPS: dict[Level, Bump] = {
 }
 _ORDER: tuple[Bump, ...] = ("none", "patch", "minor", "major")
 # SemVer 2.0.0, item 4, promises nothing for 0.x. By custom, which Cargo's resolver turned into a
-# rule, a breaking change raises the minor number there, and all else the patch.
-_BEFORE_1_0: dict[Bump, Bump] = {
-    "major": "minor",
-    "minor": "patch",
-    "patch": "patch",
-    "none": "none",
+# rule, a breaking change raises the minor number there, and all else the patch. What means
+# something else than before counts as breaking: who takes patches unseen must not move otherwise.
+_BUMPS_BEFORE_1_0: dict[Level, Bump] = {
+    "wire": "minor",
+    "api": "minor",
+    "behaviour": "minor",
+    "addition": "patch",
+    "docs": "patch",
 }
 
 
@@ -56,9 +58,13 @@ def breaking(findings: Iterable[Finding]) -> bool:
 
 def bump(findings: Iterable[Finding]) -> Bump:
     """The part of a version, from 1.0 on, that must go up."""
-    return max((_BUMPS[found.level] for found in findings), key=_ORDER.index, default="none")
+    return _highest(findings, _BUMPS)
 
 
 def bump_before_1_0(findings: Iterable[Finding]) -> Bump:
     """The part of a version 0.x that goes up, by custom."""
-    return _BEFORE_1_0[bump(findings)]
+    return _highest(findings, _BUMPS_BEFORE_1_0)
+
+
+def _highest(findings: Iterable[Finding], bumps: dict[Level, Bump]) -> Bump:
+    return max((bumps[found.level] for found in findings), key=_ORDER.index, default="none")

@@ -27,16 +27,19 @@ def message_changes(
         return
     names = renames(before, after)
     matched = _match(before, after, names)
-    reshaped = list(zip(matched.gone, matched.came))
-    for gone, came in reshaped:
-        yield from _reshaped(where, direction, gone, came, names)
-    for form in matched.gone[len(reshaped) :]:
+    # Of what is left over, a form of the same length is the nearest, then the shortest one: what
+    # longer forms have besides may be left out.
+    rest = Matched(sorted(matched.gone, key=len), sorted(matched.came, key=len))
+    rest = rest.further(len).further(lambda form: None)
+    for gone, came in rest.pairs:
+        yield from _reshaped(where, direction, gone, came, after, names)
+    for form in rest.gone:
         yield from _lonely(where, direction, form, after, names)
-    for form in matched.came[len(reshaped) :]:
-        yield from _new_form(where, direction, form, old, new)
+    for form in rest.came:
+        yield from _new_form(where, direction, form, (before, after), names)
     yield from order(where, matched, lambda form: words.form(form) or "no fields")
     part = PART[direction]
-    for one, other in _field_pairs([*matched.pairs, *reshaped], names):
+    for one, other in _field_pairs([*matched.pairs, *rest.pairs], names):
         yield from field_changes(f"{where}/{other.name}", part, one, other, known)
 
 
@@ -58,11 +61,22 @@ def renames(before: tuple[Form, ...], after: tuple[Form, ...]) -> dict[str, str]
     old_names, new_names = (
         {field.name for form in side for field in form} for side in (before, after)
     )
+
+    def renamed(one: Field, other: Field) -> bool:
+        fresh = one.name not in new_names and other.name not in old_names
+        return fresh and _same_type(one, other)
+
+    def same(old: Form, new: Form) -> bool:
+        pairs = zip(old, new)
+        return all(one.name == other.name or renamed(one, other) for one, other in pairs)
+
+    straight = list(zip(before, after))
+    # Optional fields that came or went put forms in other places; there, all else must be equal.
+    crossed = [(old, new) for old in before for new in after if same(old, new)]
     found: dict[str, str] = {}
-    for old, new in zip(before, after):
+    for old, new in (*straight, *crossed):
         for one, other in zip(old, new) if len(old) == len(new) else ():
-            fresh = one.name not in new_names and other.name not in old_names
-            if fresh and other.name not in found.values() and _same_type(one, other):
+            if other.name not in found.values() and renamed(one, other):
                 found.setdefault(one.name, other.name)
     return found
 
@@ -88,7 +102,12 @@ def _named(form: Form, names: dict[str, str]) -> list[str]:
 
 
 def _reshaped(
-    where: str, direction: Direction, gone: Form, came: Form, names: dict[str, str]
+    where: str,
+    direction: Direction,
+    gone: Form,
+    came: Form,
+    legal: tuple[Form, ...],
+    names: dict[str, str],
 ) -> Iterator[Finding]:
     """A form in the place of another one."""
     before, after = _named(gone, names), _named(came, names)
@@ -96,15 +115,26 @@ def _reshaped(
     added = [field for field in came if field.name not in before]
     stayed = [n for n in before if n in after], [n for n in after if n in before]
     constant = any(field.const is not None for field in (*removed, *added))
-    if stayed[0] != stayed[1] or constant:
+    moved = stayed[0] != stayed[1] or constant
+    if moved:
         yield finding(f"{direction}-layout-changed", where, words.form(gone), words.form(came))
-    for field in removed:
-        if field.const is None:
-            yield _removed(where, direction, field)
-    for field in added:
-        if field.const is None:
-            rule = "argument-added-required" if direction == "request" else "result-added"
-            yield finding(rule, f"{where}/{field.name}", "", field.name)
+    lost = [field for field in removed if field.const is None]
+    for field in lost:
+        yield _removed(where, direction, field)
+    rules = {f.name: _added(direction, f, legal) for f in added if f.const is None}
+    for name, rule in rules.items():
+        yield finding(rule, f"{where}/{name}", "", name)
+    # The shorter form is refused, even where all that came may be left out of another one.
+    if not (moved or lost) and {*rules.values()} <= {"argument-added-optional"}:
+        yield finding(f"{direction}-form-removed", where, words.form(gone) or "no fields")
+
+
+def _added(direction: Direction, field: Field, legal: tuple[Form, ...]) -> str:
+    """The rule for a field that came: none is required where a form goes without it."""
+    if direction == "reply":
+        return "result-added"
+    everywhere = all(field.name in {other.name for other in form} for form in legal)
+    return f"argument-added-{'required' if everywhere else 'optional'}"
 
 
 def _lonely(
@@ -121,11 +151,15 @@ def _lonely(
 
 
 def _new_form(
-    where: str, direction: Direction, form: Form, old: Command, new: Command
+    where: str,
+    direction: Direction,
+    form: Form,
+    sides: tuple[tuple[Form, ...], tuple[Form, ...]],
+    names: dict[str, str],
 ) -> Iterator[Finding]:
     """A form that came, beside those that stay."""
-    known = {field.name for other in old.forms(direction) for field in other}
-    everywhere = set.intersection(*({f.name for f in other} for other in new.forms(direction)))
+    known = {name for other in sides[0] for name in _named(other, names)}
+    everywhere = set.intersection(*({f.name for f in other} for other in sides[1]))
     fresh = [f for f in form if f.const is None and f.name not in known | everywhere]
     if direction == "reply" or not fresh:
         yield finding(f"{direction}-form-added", where, "", words.form(form) or "no fields")
