@@ -70,8 +70,8 @@ def diff(old: str, new: str, waivers: str | None, form: str) -> None:
     of its name. A spec is read, not checked: `cobotwire-gen check` does that.
 
     Wire- and API-breaking findings ask for a major version, behaviour and additions for a minor
-    one, docs for a patch. Before 1.0 SemVer promises nothing; by custom what breaks raises the
-    minor number, and all else the patch.
+    one, docs for a patch. Before 1.0 SemVer promises nothing; here what breaks or behaves otherwise
+    raises the minor number, and all else the patch.
 
     Exit codes: 0 nothing breaks; 1 something breaks the wire or the API, and no waiver says why;
     2 the call, the spec or the waivers are wrong.
