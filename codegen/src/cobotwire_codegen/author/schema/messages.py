@@ -72,7 +72,6 @@ def _link() -> Schema:
         "The serial link.",
         {
             "baudrate": whole("Bits a second.", 1),
-            "shares_id": words("Calls with the same id and other data."),
             "deadline_ms": whole("How long an answer is awaited, in milliseconds.", 1),
         },
         {
@@ -135,6 +134,7 @@ def command() -> Schema:
         "request_text": ref("request_text"),
         "ack": yes("The reply is an acknowledgement: it may come, late or never."),
         "alias": name("The command whose message this is, under a name of its own.", METHOD),
+        "shares_id": words("Calls with the same id and other data."),
         "deadline_ms": whole("How long an answer is awaited. Left out: as the link says.", 1),
         "notes": listed({"type": "string"}, "Sentences for the reference."),
         "disputed": ref("disputed"),
