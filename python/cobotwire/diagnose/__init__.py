@@ -16,7 +16,7 @@ from cobotwire.diagnose.findings import (
     ServoPacket,
     Span,
     Text,
-    UnknownCommand,
+    UnlistedFrame,
     Unrecognised,
 )
 from cobotwire.diagnose.words import Summary, summary, words
@@ -36,7 +36,7 @@ __all__ = [
     "Span",
     "Summary",
     "Text",
-    "UnknownCommand",
+    "UnlistedFrame",
     "Unrecognised",
     "summary",
     "words",

@@ -131,11 +131,15 @@ class OtherWay(Finding):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class UnknownCommand(Finding):
-    """A whole frame with an id that the edition lacks."""
+class UnlistedFrame(Finding):
+    """A whole frame with an id that the edition lacks in that direction.
+
+    ``command`` is what the edition calls the id in the other direction, None if it has none there.
+    """
 
     id: int
-    kind: ClassVar[str] = "unknown-command"
+    command: str | None
+    kind: ClassVar[str] = "unlisted-frame"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,10 +6,11 @@ from collections import deque
 
 from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.diagnose import firmware, servo
-from cobotwire.diagnose.findings import DamagedFrame, Finding, OtherWay, UnknownCommand
+from cobotwire.diagnose.findings import DamagedFrame, Finding, OtherWay, UnlistedFrame
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 from cobotwire.table import Command, Direction
 
+DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 # So many requests are remembered, to tell their echo.
 REMEMBERED = 8
 # A damaged frame may have so many bytes more or less than an undamaged one; nearest first.
@@ -30,7 +31,13 @@ class Frames:
         self._other = _OTHER.get(listening)
         # A framer is the law of framing itself, so that it is not said a second time here.
         self._other_framer = None if self._other is None else codec.framer(self._other)
-        self._any_framer = codec.framer("both", accept_unknown=True)
+        self._any_framer = codec.framer(listening, accept_unknown=True)
+        self._listed = {
+            command.id
+            for command in codec.table.commands
+            for direction in DIRECTIONS
+            if direction != self._other and command.layouts(direction)
+        }
         self._sent: deque[bytes] = deque(maxlen=REMEMBERED)
 
     def sent(self, data: bytes) -> None:
@@ -98,11 +105,13 @@ class Frames:
                     direction=self._other,
                     sent=False,
                 )
-        if id in self._by_id:
+        if id in self._listed:
             return None
         heard = [*self._any_framer.feed(data), *self._any_framer.flush()]
-        known = len(heard) == 1 and isinstance(heard[0], Frame)
-        return UnknownCommand(spans=spans, reason=reason, id=id) if known else None
+        if len(heard) != 1 or not isinstance(heard[0], Frame):
+            return None
+        name = self._by_id[id][0].name if id in self._by_id else None
+        return UnlistedFrame(spans=spans, reason=reason, id=id, command=name)
 
     def _named(self, data: bytes, direction: Direction) -> Command | None:
         """The command of a frame; of those that share its id, the first of that size."""

@@ -23,7 +23,7 @@ PIECE_LIMIT = 256
 # Fewer bytes say nothing; a real line's garbage is mixed with some that do not fit.
 GARBAGE_MINIMUM = 3
 GARBAGE_SHARE = 0.75
-# Numbers below come in any protocol; garbage also has larger ones.
+# Smaller numbers come in any protocol; at least half of the bytes must fit and be larger.
 SMALL = 0x40
 
 _FITTING = frozenset(
@@ -60,7 +60,9 @@ def classify(residue: Residue, start: int, end: int) -> Finding:
         return _nuls(residue, start, end)
     spans, reason = residue.spans(start, end), residue.reason(start)
     fitting = sum(byte in _FITTING for byte in data)
-    if len(data) < GARBAGE_MINIMUM or fitting < GARBAGE_SHARE * len(data) or max(data) < SMALL:
+    large = sum(byte in _FITTING and byte >= SMALL for byte in data)
+    stretched = fitting >= GARBAGE_SHARE * len(data) and 2 * large >= len(data)
+    if len(data) < GARBAGE_MINIMUM or not stretched:
         return Unrecognised(spans=spans, reason=reason)
     return Garbage(spans=spans, reason=reason, fitting=fitting, chance=_chance(len(data), fitting))
 

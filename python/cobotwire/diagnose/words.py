@@ -16,7 +16,7 @@ from cobotwire.diagnose.findings import (
     Panic,
     ServoPacket,
     Text,
-    UnknownCommand,
+    UnlistedFrame,
     Unrecognised,
 )
 
@@ -46,7 +46,7 @@ def words(finding: Finding) -> str:
             return f"the controller boots: {finding.cause}"
         case Nuls():
             return f"{finding.count} NULs" + (": the controller restarts" if finding.reboot else "")
-        case OtherWay() | UnknownCommand() | DamagedFrame():
+        case OtherWay() | UnlistedFrame() | DamagedFrame():
             return _frame(finding)
         case Garbage():
             return (
@@ -60,7 +60,7 @@ def _servo(packet: ServoPacket) -> str:
     """The packet without the word that it is one."""
     servo = "all servos" if packet.servo == _BROADCAST else f"servo {packet.servo}"
     if packet.role == "status":
-        where = "" if packet.register is None else f" ({_register(packet)})"
+        where = "" if packet.register is None else f" at {_register(packet)}"
         said = f"answers {packet.parameters.hex(' ')}{where}" if packet.parameters else "answers"
         return f"{servo} {said}{_errors(packet.error or 0)}"
     if packet.servos:
@@ -85,7 +85,7 @@ def _errors(error: int) -> str:
 
 
 def _doubt(packet: ServoPacket) -> str:
-    return " (or a status reply with errors)" if packet.ambiguous else ""
+    return " (or a reply with errors)" if packet.ambiguous else ""
 
 
 def _panic(panic: Panic) -> str:
@@ -99,7 +99,7 @@ def _panic(panic: Panic) -> str:
     return text + (", rebooting" if panic.rebooting else "")
 
 
-def _frame(finding: OtherWay | UnknownCommand | DamagedFrame) -> str:
+def _frame(finding: OtherWay | UnlistedFrame | DamagedFrame) -> str:
     match finding:
         case OtherWay(sent=True):
             return f"echo of our own {finding.command}"
@@ -107,8 +107,9 @@ def _frame(finding: OtherWay | UnknownCommand | DamagedFrame) -> str:
             return f"a request, {finding.command}: an echo, or another host"
         case OtherWay():
             return f"a reply, {finding.command}"
-        case UnknownCommand():
-            return f"a frame with the unknown id 0x{finding.id:02X}"
+        case UnlistedFrame():
+            known = f"{finding.command}, not listed that way" if finding.command else "unknown"
+            return f"a whole frame with the id 0x{finding.id:02X} ({known})"
     name = finding.command or "frame"
     return f"damaged {name}: {_DAMAGE.get(finding.reason, finding.reason)}"
 
@@ -146,7 +147,7 @@ class Summary:
         parts += [
             self._several("servo", "servo bus leak: ", "packet"),
             self._several("other-way", "", "frame"),
-            self._several("unknown-command", "", "frame"),
+            self._several("unlisted-frame", "", "frame"),
             self._several("damaged-frame", "", "damaged frame"),
             self._several("garbage", "perhaps another baud rate: ", "stretch"),
             self._several("text", "text: ", "line"),
