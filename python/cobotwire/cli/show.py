@@ -25,8 +25,24 @@ Reader = Callable[[bytes], tuple[Reading, ...]]
 
 
 def reader(codec: Codec, directions: tuple[Direction, ...]) -> Reader:
-    """Reads frames in each direction, and remembers the last of them."""
-    return lru_cache(REMEMBERED)(lambda data: readings(codec, data, directions))
+    """Reads bytes in each direction that their id and LEN fit, or in all, to say why they do not.
+
+    The last of them are remembered.
+    """
+    frame = codec.table.frame
+    fits: dict[bytes, list[Direction]] = {}
+    for direction in directions:
+        for command in codec.table.commands:
+            for form in command.layouts(direction):
+                ways = fits.setdefault(bytes([frame.length(form.size), command.id]), [])
+                if direction not in ways:
+                    ways.append(direction)
+
+    def read(data: bytes) -> tuple[Reading, ...]:
+        ways = fits.get(data[frame.length_at : frame.length_at + 2], directions)
+        return readings(codec, data, tuple(ways))
+
+    return lru_cache(REMEMBERED)(read)
 
 
 def on_a_line(read: Reader, colour: bool) -> Show:

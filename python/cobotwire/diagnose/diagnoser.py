@@ -77,8 +77,11 @@ class Diagnoser:
                 self._gap = 0
                 continue
             self._gap += len(event.data)
-            self._residue.mark()
-            self._scan(items, closed=self._gap > REACH)
+            far = self._gap > REACH
+            if self._residue:
+                self._residue.mark()
+                self._scan(items, closed=far)
+            self._in_text = self._in_text and not far
             if self._residue:
                 self._held.append(event)
             else:
@@ -90,6 +93,7 @@ class Diagnoser:
         """Decide what waits: nothing more comes, or not soon. To be called after the framer's."""
         items: list[Item] = []
         self._scan(items, closed=True)
+        self._in_text = False
         return items
 
     def _scan(self, items: list[Item], closed: bool) -> None:
@@ -108,11 +112,10 @@ class Diagnoser:
         if not residue:
             items.extend(self._held)
             self._held.clear()
-        if closed:
-            self._in_text = False
 
     def _emit(self, items: list[Item], finding: Finding) -> None:
-        finding = replace(finding, continued=self._continues(finding))
+        if self._continues(finding):
+            finding = replace(finding, continued=True)
         self._last, self._in_text = finding, isinstance(finding, _TEXTS)
         if isinstance(finding, ServoPacket):
             self._bus.heard(finding)

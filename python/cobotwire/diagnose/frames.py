@@ -10,7 +10,7 @@ from cobotwire.diagnose.findings import DamagedFrame, Finding, OtherWay, Unliste
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 from cobotwire.table import Command, Direction
 
-DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
+_DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 # So many requests are remembered, to tell their echo.
 REMEMBERED = 8
 # A damaged frame may have so many bytes more or less than an undamaged one; nearest first.
@@ -35,7 +35,7 @@ class Frames:
         self._listed = {
             command.id
             for command in codec.table.commands
-            for direction in DIRECTIONS
+            for direction in _DIRECTIONS
             if direction != self._other and command.layouts(direction)
         }
         self._sent: deque[bytes] = deque(maxlen=REMEMBERED)
