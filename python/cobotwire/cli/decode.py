@@ -17,7 +17,7 @@ from cobotwire import editions
 from cobotwire.cli import show
 from cobotwire.cli.source import Form, Source, open_source
 from cobotwire.cli.tally import Tally
-from cobotwire.codec.interface import Event
+from cobotwire.codec.interface import Framer
 from cobotwire.diagnose import Diagnoser, Item
 from cobotwire.explain import DIRECTIONS
 from cobotwire.table import Direction
@@ -86,13 +86,11 @@ def decode(
         shown = show.byte_by_byte(read, table.frame)
     tally = Tally(read)
     framer = codec.framer(direction, accept_unknown=accept_unknown)
-    diagnoser = Diagnoser(codec, direction)
     try:
         with _progress(source, quiet) as blocks:
-            for block in blocks:
-                _print(_counted(tally, diagnoser, framer.feed(block)), shown, quiet)
-        _print(_counted(tally, diagnoser, framer.flush()), shown, quiet)
-        _print([_count(tally, item) for item in diagnoser.flush()], shown, quiet)
+            for items in _diagnosed(framer, Diagnoser(codec, direction), blocks, tally):
+                if items and not quiet:
+                    _write("\n".join(map(shown, items)))
     finally:
         # Also what was counted until Ctrl-C.
         if summary:
@@ -100,19 +98,15 @@ def decode(
     sys.exit(0 if tally.clean else 1)
 
 
-def _counted(tally: Tally, diagnoser: Diagnoser, events: list[Event]) -> list[Item]:
-    tally.events(events)
-    return [_count(tally, item) for item in diagnoser.feed(events)]
-
-
-def _count(tally: Tally, item: Item) -> Item:
-    tally.item(item)
-    return item
-
-
-def _print(items: list[Item], shown: show.Show, quiet: bool) -> None:
-    if items and not quiet:
-        _write("\n".join(map(shown, items)))
+def _diagnosed(
+    framer: Framer, diagnoser: Diagnoser, blocks: Iterator[bytes], tally: Tally
+) -> Iterator[list[Item]]:
+    """The frames and findings of each block, counted."""
+    for block in blocks:
+        events = framer.feed(block)
+        yield tally.count(events, diagnoser.feed(events))
+    events = framer.flush()
+    yield tally.count(events, diagnoser.feed(events) + diagnoser.flush())
 
 
 def _write(text: str) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable
 
 from cobotwire.cli.show import Reader
 from cobotwire.codec.interface import Event, Frame, Noise
@@ -29,8 +28,14 @@ class Tally:
         """Whether there was nothing but legal frames."""
         return not self._noise and not self._illegal
 
-    def events(self, events: Iterable[Event]) -> None:
-        """Count what the framer gave."""
+    def count(self, events: list[Event], items: list[Item]) -> list[Item]:
+        """Count what the framer gave and what became of it; give the latter back."""
+        self._count_events(events)
+        for item in items:
+            self._count_item(item)
+        return items
+
+    def _count_events(self, events: list[Event]) -> None:
         for event in events:
             self._bytes += len(event.data)
             if isinstance(event, Noise):
@@ -39,8 +44,7 @@ class Tally:
                 self._resyncs += 1
             self._in_noise = isinstance(event, Noise)
 
-    def item(self, item: Item) -> None:
-        """Count a frame with its name, or a finding."""
+    def _count_item(self, item: Item) -> None:
         if not isinstance(item, Frame):
             self._findings.add(item)
             return
