@@ -157,7 +157,7 @@ class Frames:
         for size in sorted(sizes, key=lambda size: (size != claimed, size)):
             for extra in _SLACK if format.check == "footer" else ():
                 end = at + format.overhead + size + extra
-                if end <= limit and residue.data.startswith(format.footer, end - 1):
+                if end <= limit and residue.data.startswith(format.footer, end - format.check_size):
                     return end
         return min(limit, at + format.overhead + (claimed if claimed in sizes else max(sizes)))
 
