@@ -30,6 +30,9 @@ Item = Frame | Finding
 # and the longest reply, twice. Behind more of them nobody could say what belongs together.
 REACH = 64
 
+# Bytes by which the pattern below tells a start.
+_LOOKAHEAD = max(firmware.TEXT_MINIMUM, garbage.NUL_MINIMUM)
+
 _TEXTS = (Text, CommandError, Boot, Panic)
 # Kinds that come in pieces, and how large the full ones are.
 _PIECES: dict[type[Finding], int] = {
@@ -57,6 +60,8 @@ class Diagnoser:
         self._gap = 0
         self._last: Finding | None = None
         self._in_text = False
+        # So many bytes from the start of the residue are known to start nothing, whatever comes.
+        self._plain = 0
         # Where, in bytes of the residue, something may be recognised.
         self._interesting = re.compile(
             re.escape(codec.table.frame.header[:1])
@@ -134,25 +139,33 @@ class Diagnoser:
 
     def _next(self, start: int) -> Finding | None:
         """The finding that starts at ``start``; None if that cannot be told yet."""
-        verdict = self._recognise(start, self._in_text)
-        if verdict is not None:
-            return None if isinstance(verdict, Wait) else verdict
+        if not self._plain:
+            verdict = self._recognise(start, self._in_text)
+            if verdict is not None:
+                return None if isinstance(verdict, Wait) else verdict
+            self._plain = 1
         end, final = self._residue.stretch(start)
         limit = min(end, start + garbage.PIECE_LIMIT)
-        place = start
-        while True:
-            found = self._interesting.search(self._residue.data, place + 1)
-            place = found.start() if found else end
-            if place >= limit:
-                break
+        place = start + self._plain
+        while (place := self._place(place, limit)) < limit:
             verdict = self._recognise(place, in_text=False)
-            if isinstance(verdict, Wait):
-                return None
             if verdict is not None:
-                return garbage.classify(self._residue, start, place)
-        if limit == end and limit < start + garbage.PIECE_LIMIT and not final:
-            return None
-        return garbage.classify(self._residue, start, limit)
+                self._plain = place - start
+                return None if isinstance(verdict, Wait) else self._unknown(start, place)
+            place += 1
+        self._plain = limit - start
+        cut = self._plain == garbage.PIECE_LIMIT
+        return self._unknown(start, limit) if cut or final else None
+
+    def _place(self, start: int, limit: int) -> int:
+        """Where something may be recognised, from ``start`` on; ``limit`` or more: not before."""
+        # Nothing needs to be looked for behind the limit, and a start before it is seen whole.
+        found = self._interesting.search(self._residue.data, start, limit + _LOOKAHEAD)
+        return found.start() if found else limit
+
+    def _unknown(self, start: int, end: int) -> Finding:
+        self._plain = 0
+        return garbage.classify(self._residue, start, end)
 
     def _recognise(self, at: int, in_text: bool) -> Verdict:
         residue, byte = self._residue, self._residue.data[at]
