@@ -202,6 +202,24 @@ PANIC = (
 )
 
 
+def spoilt_panics() -> st.SearchStrategy[bytes]:
+    """A panic with some bytes in its middle that are no text."""
+    return st.builds(
+        lambda cut, bad: PANIC[:cut] + bad + PANIC[cut:],
+        st.integers(21, len(PANIC)),
+        st.lists(st.integers(0x80, 0xFF), max_size=6).map(bytes),
+    )
+
+
+def damaged_replies() -> st.SearchStrategy[bytes]:
+    """The beginning of a get_angles reply, with or without a footer at the wrong place."""
+    return st.builds(
+        lambda size, footer: (b"\xfe\xfe\x0e\x20" + bytes(range(16)))[:size] + footer,
+        st.integers(1, 19),
+        st.sampled_from([b"", b"\xfa", b"\xfb"]),
+    )
+
+
 def field_noise() -> st.SearchStrategy[bytes]:
     """What firmware, servos and bad lines say, whole or broken off, short and long."""
     whole = st.one_of(
@@ -213,6 +231,14 @@ def field_noise() -> st.SearchStrategy[bytes]:
         st.integers(1, 3000).map(lambda size: b"~" * size),
         st.binary(max_size=300),
         line_noise(),
+        spoilt_panics(),
+        # A message at a line's limit, and right behind a frame that breaks off.
+        st.integers(1000, 1050).map(lambda size: b"x" * size + b"cmd_len error"),
+        st.builds(
+            lambda parts, behind: b"".join(parts) + behind,
+            st.lists(damaged_replies(), min_size=1, max_size=4),
+            st.sampled_from([b"", b"cmd_len error\r\n", PANIC]) | servo_packets(),
+        ),
     )
     return st.one_of(
         whole, st.builds(lambda data, cut: data[: cut % (len(data) + 1)], whole, st.integers(0))

@@ -30,9 +30,6 @@ Item = Frame | Finding
 # and the longest reply, twice. Behind more of them nobody could say what belongs together.
 REACH = 64
 
-# Bytes by which the pattern below tells a start.
-_LOOKAHEAD = max(firmware.TEXT_MINIMUM, garbage.NUL_MINIMUM)
-
 _TEXTS = (Text, CommandError, Boot, Panic)
 # Kinds that come in pieces, and how large the full ones are.
 _PIECES: dict[type[Finding], int] = {
@@ -159,8 +156,8 @@ class Diagnoser:
 
     def _place(self, start: int, limit: int) -> int:
         """Where something may be recognised, from ``start`` on; ``limit`` or more: not before."""
-        # Nothing needs to be looked for behind the limit, and a start before it is seen whole.
-        found = self._interesting.search(self._residue.data, start, limit + _LOOKAHEAD)
+        # The pattern also finds what the limit cuts; whoever recognises it sees the whole.
+        found = self._interesting.search(self._residue.data, start, limit)
         return found.start() if found else limit
 
     def _unknown(self, start: int, end: int) -> Finding:
