@@ -33,8 +33,9 @@ python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
 
-bench: .venv/.tools .venv/.native ## how fast, beside the limits
+bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py
+	$(BIN)/python bench/resync.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target

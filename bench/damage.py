@@ -64,7 +64,7 @@ def damage(table: Table, line: Line, kind: str, rate: float, *, seed: int = 2) -
     edits: Edits = []
     for each in kinds:
         edits += _edits(table, line, each, rate / len(kinds), heads, random)
-    return apply(line, edits, _legal_acks(table))
+    return apply(line, edits)
 
 
 def noisy(
@@ -104,10 +104,10 @@ def noisy(
         Edit(place, 0, b"".join(pool[next(picks)] for _ in range(burst)))
         for place, burst in zip(places.tolist(), random.permutation(bursts).tolist())
     ]
-    return apply(line, edits, legal_acks=False)
+    return apply(line, edits)
 
 
-def apply(line: Line, edits: Edits, legal_acks: bool) -> Line:
+def apply(line: Line, edits: Edits) -> Line:
     """``line`` after the edits, of which only the first counts where two have one place."""
     assert line.whole.all(), "truth is known for a stream that was not damaged before"
     first = {edit.place: edit for edit in reversed(edits)}
@@ -126,7 +126,7 @@ def apply(line: Line, edits: Edits, legal_acks: bool) -> Line:
     pure = np.where(removed == 0, 1, 0)
     before_start = np.searchsorted(places * 2 + 1 - pure, line.starts * 2 + 1)
     before_end = np.searchsorted(places, line.ends)
-    acks = [i for i, edit in enumerate(edits) if legal_acks and edit.data == field_noise.ACK]
+    acks = [i for i, edit in enumerate(edits) if edit.data == field_noise.ACK]
     moved = Line(
         data,
         line.starts + shifts[before_start],
@@ -200,7 +200,3 @@ def _angles_replies(table: Table, line: Line) -> Places:
         [line.data.startswith(head, start) for start in line.starts.tolist()], np.bool_
     )
     return line.starts[found]
-
-
-def _legal_acks(table: Table) -> bool:
-    return field_noise.ACK[:4] in field_noise.legal_heads(table)

@@ -32,8 +32,8 @@ class Line:
 
     ``starts[i]`` is where frame i (or what is left of it) starts in ``data``, and ``ends[i]`` where
     it ends; ``whole[i]`` says that it stands there just as it was sent, in ``sent``. ``sites`` are
-    the places just behind each damage. ``acks`` are the starts of frames that noise brought along
-    and that are legal in themselves, so that to accept one is no mistake.
+    the places just behind each damage. ``acks`` are the starts of acknowledgements that came
+    along: where the edition knows none they are noise, but to accept one is no mistake anywhere.
     """
 
     data: bytes
