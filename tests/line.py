@@ -15,6 +15,9 @@ TEXTS = [
     b"Backtrace: 0x400d1f3c:0x3ffb1f20 0x400d2a81:0x3ffb1f40\r\n\r\nRebooting...\r\n",
 ]
 
+# A whole frame, one behind a tail of noise, a damaged one, and noise alone.
+KINDS = ["whole", "tail", "damaged", "noise"]
+
 
 class Received(NamedTuple):
     """What came of the frames that were sent: the bytes, and each frame that came whole."""
@@ -84,20 +87,32 @@ def damaged(draw: st.DrawFn, frame: bytes, table: Table) -> bytes:
     return frame[: place + 1] + between + behind
 
 
+def tails(table: Table) -> st.SearchStrategy[bytes]:
+    """Noise whose last bytes could begin a frame: what most readers lose the next frame to."""
+    return st.one_of(
+        st.integers(1, 5).map(lambda count: b"\xfe" * count),
+        servo_packets_ending_in_a_header_byte(),
+        false_headers(table),
+        st.tuples(false_headers(table), st.integers(1, 3)).map(lambda cut: cut[0][: cut[1]]),
+        st.sampled_from([b"\xfe\xfe\x77", b"\xfe\xfe\x0e\x99", b"\xfe\xfe\x03\x20"]),
+    )
+
+
 @st.composite
 def received(draw: st.DrawFn, frames: st.SearchStrategy[bytes], table: Table) -> Received:
     """Frames as they come in over a bad line, noise and broken ones among them."""
     data, whole = bytearray(), []
-    for kind in draw(st.lists(st.sampled_from(["whole", "whole", "damaged", "noise"]), max_size=9)):
-        if kind == "noise":
-            data += draw(line_noise(table))
+    for kind in draw(st.lists(st.sampled_from(KINDS), min_size=1, max_size=9)):
+        if kind == "damaged":
+            data += draw(damaged(draw(frames), table))
             continue
-        frame = draw(frames)
-        if kind == "whole":
+        data += (
+            b"" if kind == "whole" else draw(tails(table) if kind == "tail" else line_noise(table))
+        )
+        if kind != "noise":
+            frame = draw(frames)
             whole.append((len(data), frame))
             data += frame
-        else:
-            data += draw(damaged(frame, table))
     return Received(bytes(data), whole)
 
 

@@ -19,7 +19,7 @@ from cobotwire.editions.mycobot import TABLE
 from cobotwire.table import Table
 from strategies import TABLES, codec_of
 
-NAMES = st.sampled_from(["reference", "native"])
+EACH_CODEC = pytest.mark.parametrize("name", ["reference", "native"])
 EDITIONS = st.sampled_from(sorted(TABLES))
 LISTENING = st.sampled_from(["request", "reply", "both"])
 
@@ -58,7 +58,8 @@ def _legal(table: Table, listening: Listening, data: bytes) -> bool:
     )
 
 
-@given(NAMES, EDITIONS, LISTENING, st.data())
+@EACH_CODEC
+@given(EDITIONS, LISTENING, st.data())
 def test_an_undamaged_frame_is_recovered_unless_a_legal_false_one_covers_it(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
@@ -74,7 +75,8 @@ def test_an_undamaged_frame_is_recovered_unless_a_legal_false_one_covers_it(
             assert _legal(table, listening, over[0].data)
 
 
-@given(NAMES, EDITIONS, LISTENING, st.data())
+@EACH_CODEC
+@given(EDITIONS, LISTENING, st.data())
 def test_what_is_accepted_is_legal_by_the_table_and_stood_there(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
@@ -86,7 +88,8 @@ def test_what_is_accepted_is_legal_by_the_table_and_stood_there(
             assert event.command == event.data[3]
 
 
-@given(NAMES, EDITIONS, LISTENING, st.data())
+@EACH_CODEC
+@given(EDITIONS, LISTENING, st.data())
 def test_every_byte_of_a_bad_line_is_in_just_one_event(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
@@ -107,7 +110,8 @@ def test_both_codecs_tell_the_same_however_the_line_is_cut(
         assert _byte_by_byte(_cut(codec_of(edition, name), listening, chunks)) == whole
 
 
-@given(NAMES, EDITIONS, st.data())
+@EACH_CODEC
+@given(EDITIONS, st.data())
 def test_header_bytes_in_front_of_a_frame_never_cost_it(
     name: CodecName, edition: str, data: st.DataObject
 ) -> None:
