@@ -40,7 +40,7 @@ bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost o
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench
 	mkdir -p target
-	$(BIN)/python bench/resync.py --frames 150000 --json target/resync.json
+	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
 
 clean: ## forget the environment and what was built

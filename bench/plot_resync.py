@@ -13,7 +13,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from judge import STEPS
-from resync_table import READERS
 
 Rows = Sequence[dict[str, Any]]
 
@@ -48,7 +47,7 @@ def lost_by_rate(rows: Rows) -> Figure:
     """Undamaged frames lost, over how often something happens to a byte."""
     figure, axes = _canvas("All kinds of damage together, replies of both editions")
     rates = sorted({row["rate"] for row in rows if row["kind"] == "mixed"})
-    for name in READERS:
+    for name in LOOKS:
         lost = [_lost(_some(rows, kind="mixed", rate=rate), name) for rate in rates]
         axes.plot(rates, lost, label=NAMES[name], **LOOKS[name])
     axes.set_xscale("log")
@@ -66,8 +65,8 @@ def lost_by_kind(rows: Rows) -> Figure:
     figure, axes = _canvas("One damage in a hundred bytes, replies of both editions", height=5.6)
     rate = max(row["rate"] for row in rows if row["kind"] == "mixed")
     kinds = [row["kind"] for row in _some(rows[: len(rows) // 2], rate=rate)]
-    kinds.sort(key=lambda kind: max(_lost(_some(rows, kind=kind, rate=rate), n) for n in READERS))
-    for place, name in enumerate(READERS):
+    kinds.sort(key=lambda kind: max(_lost(_some(rows, kind=kind, rate=rate), n) for n in LOOKS))
+    for place, name in enumerate(LOOKS):
         lost = [_lost(_some(rows, kind=kind, rate=rate), name) for kind in kinds]
         heights = [at + 0.3 - 0.2 * place for at in range(len(kinds))]
         axes.plot(lost, heights, linestyle="none", clip_on=False, label=NAMES[name], **LOOKS[name])
@@ -91,9 +90,7 @@ def recovery(rows: Rows) -> Figure:
         rows, kind="mixed", rate=max(row["rate"] for row in rows if row["kind"] == "mixed")
     )
     damages = sum(row["damages"] for row in some)
-    spreads = {
-        name: [row["readers"][name]["bytes_to_recovery"] for row in some] for name in READERS
-    }
+    spreads = {name: [row["readers"][name]["bytes_to_recovery"] for row in some] for name in LOOKS}
     for name in ("cobotwire", "textbook", "pymycobot"):
         share = _longer(spreads[name], damages)
         axes.plot(STEPS, share, markevery=4, markersize=5, label=NAMES[name], **LOOKS[name])

@@ -19,6 +19,7 @@ from unittest import mock
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Event, Frame, Listening
 from cobotwire.table import Table
+from streams import Line
 
 
 class Accepted(NamedTuple):
@@ -102,11 +103,11 @@ def any_length(longest: int) -> Reader:
 def pymycobot() -> Reader:
     """``_read`` of pymycobot's MyCobot280, its own code, called until the line is over.
 
-    In memory: its port gives one byte a call, as its code asks for; its clock is the line's, one
-    byte at 115200 baud for each look at it, so that its 0.5 s are over after 5,760 bytes without
-    a frame. Left out are its requests: it empties the buffer before each, and throws away a frame
-    that is not the reply it waits for. A frame counts as read if ``_read`` returns just its bytes
-    when its last byte has been taken.
+    This is its best case: nothing that it read is thrown away for being another reply than the one
+    waited for. In memory: the port gives one byte a call, as its code asks for; the clock is the
+    line's, a byte at 115200 baud for each look at it, so that its 0.5 s are over after 5,760 bytes
+    without a frame. A frame counts as read if ``_read`` returns just its bytes when its last byte
+    has been taken.
     """
     common, peer = _peer()
 
@@ -127,6 +128,29 @@ def pymycobot() -> Reader:
         return found
 
     return read
+
+
+def pymycobot_asked(line: Line) -> list[Accepted]:
+    """The same code as its users meet it: a request for each frame that was sent, in turn.
+
+    Each request empties the buffer, as ``_res`` does, so that reading starts anew behind the frame
+    before; what stands in front of the reply comes behind the request. A frame with another id is
+    thrown away, as there. Asking again, which ``_res`` does twice, would be another frame.
+    """
+    common, peer = _peer()
+    found: list[Accepted] = []
+    begins = [0, *line.ends.tolist()]
+    for begin, start, end in zip(begins, line.starts.tolist(), line.ends.tolist()):
+        window = iter([line.data[at : at + 1] for at in range(begin, end)])
+        # Behind the reply nothing more comes, and its 0.5 s go by.
+        times = itertools.chain(itertools.repeat(0.0, end - begin + 1), itertools.repeat(1.0))
+        peer._serial_port = SimpleNamespace(read=partial(next, window, b""))
+        with mock.patch.object(common, "time", SimpleNamespace(time=times.__next__)):
+            frame = bytes(peer._read(0x20))
+        if frame[3:4] == line.data[start + 3 : start + 4]:
+            stop = end - operator.length_hint(window)
+            found.append(Accepted(stop - len(frame), stop, frame))
+    return found
 
 
 def _peer() -> tuple[SimpleNamespace, SimpleNamespace]:

@@ -73,15 +73,15 @@ def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) ->
     """One row of the report."""
     table = TABLES[scenario.edition]
     line = scenario.line(frames, seed)
-    asked: dict[str, Reader] = {
-        "cobotwire": readers.ours(table, "native", scenario.listening),
-        "any LEN to 64": readers.any_length(64),
-        "textbook": readers.textbook(table),
-        "pymycobot": readers.pymycobot(),
+    read = {
+        "cobotwire": readers.ours(table, "native", scenario.listening)(line.data),
+        "any LEN to 64": readers.any_length(64)(line.data),
+        "textbook": readers.textbook(table)(line.data),
+        "pymycobot": readers.pymycobot()(line.data),
+        "pymycobot asked": readers.pymycobot_asked(line),
     }
     verdicts = {
-        name: judge(table, scenario.listening, line, read(line.data))
-        for name, read in asked.items()
+        name: judge(table, scenario.listening, line, frames) for name, frames in read.items()
     }
     return {
         **asdict(scenario),
@@ -135,7 +135,7 @@ def _late(table: Table, listening: Listening, data: bytes) -> dict[str, int]:
 def main() -> int:
     """Measure all rows, print them, and tell whether each lost frame is explained."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--frames", type=int, default=40_000, help="sent in a row, on average")
+    parser.add_argument("--frames", type=int, default=25_000, help="sent in a row, on average")
     parser.add_argument("--reference-bytes", type=int, default=20_000, help="for both codecs")
     parser.add_argument("--seed", type=int, default=4)
     parser.add_argument("--show", type=int, default=12, help="how many lost frames to show")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-READERS = ("cobotwire", "any LEN to 64", "textbook", "pymycobot")
+READERS = ("cobotwire", "any LEN to 64", "textbook", "pymycobot", "pymycobot asked")
 
 HEAD = """\
 Recovered: % of the undamaged frames; lost: how many of them we did not read, all covered by a false
@@ -13,12 +13,13 @@ frame that the table allows, + those without that excuse. Wrong: frames accepted
 damaged-but-legal + where no frame was. To next: bytes from a damage to the next undamaged frame
 read, median/99 %/most; ideal is what no reader can better. Late: how many of our frames came after
 more bytes than their own, and by how many at most.
-Readers: ours; any id with any LEN up to 64; a textbook state machine; pymycobot's own code.
+Readers: ours; the same scan with any id and any LEN up to 64; a textbook state machine; pymycobot's
+own code, reading on and on, and asked for one reply after the other.
 """
 COLUMNS = (
     f"{'edition':10} {'stream':9} {'damage':12} {'rate':>6} {'undamaged':>9} |"
-    f"{'recovered %':^33}|{'lost':>7} |{'wrong':^26}|{'to next undamaged frame':^55}| late\n"
-    f"{'':50} |{'ours':>7} {'anyLEN':>7} {'textbk':>7} {'pymyc':>7}  |{'ours':>7} |"
+    f"{'recovered %':^40}|{'lost':>7} |{'wrong':^26}|{'to next undamaged frame':^55}| late\n"
+    f"{'':50} |{'ours':>7} {'anyLEN':>7} {'textbk':>7} {'pymyc':>7} {'asked':>7} |{'ours':>7} |"
     f"{'ours':>8} {'textbk':>8} {'pymyc':>8}|"
     f"{'ideal':>13} {'ours':>13} {'textbk':>13} {'pymyc':>13}| ours"
 )
@@ -27,7 +28,7 @@ COLUMNS = (
 def row(row: dict[str, Any]) -> str:
     """One line of the table."""
     told = [row["readers"][name] for name in READERS]
-    some = [told[0], *told[2:]]
+    some = [told[0], told[2], told[3]]
     stream = {"A": "A", "reply": "replies", "both": "both ways"}
     name = stream[row["stream"] if row["stream"] == "A" else row["listening"]]
     shares = " ".join(f"{_percent(each):>7}" for each in told)
@@ -41,7 +42,7 @@ def row(row: dict[str, Any]) -> str:
     faults = "" if row["codecs_agree"] else "  THE CODECS DIFFER"
     return (
         f"{row['edition']:10} {name:9} {row['kind']:12} {row['rate']:>6g} {row['undamaged']:>9} |"
-        f"{shares}  |{lost:>7} |{wrong}|{distances}| {late}{faults}"
+        f"{shares} |{lost:>7} |{wrong}|{distances}| {late}{faults}"
     )
 
 
@@ -69,7 +70,7 @@ def summary(rows: Sequence[dict[str, Any]], show: int) -> str:
             sum(each[key] for each in told) for key in ("lost", "altered", "restored", "phantoms")
         )
         lines.append(
-            f"  {name:14} lost {lost:6} ({100 * lost / undamaged:.4f} %), damaged but legal"
+            f"  {name:15} lost {lost:6} ({100 * lost / undamaged:.4f} %), damaged but legal"
             f" {altered}, phantoms {phantoms}, damaged but read right {restored}"
         )
     covered = [(row, each) for row in rows for each in row["covered"]]

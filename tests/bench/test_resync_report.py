@@ -70,6 +70,12 @@ def test_pymycobots_own_reader_reads_a_clean_line_whole() -> None:
     assert [frame.data for frame in found] == [line.original(i) for i in range(line.frames)]
 
 
+def test_pymycobot_asked_for_a_reply_throws_it_away_for_an_ack_in_front_of_it() -> None:
+    line = _line("ack")
+    verdict = _judged(line, readers.pymycobot_asked(line))
+    assert verdict.undamaged - verdict.recovered == len(line.acks) > 0
+
+
 def test_the_report_ends_with_1_if_a_frame_is_lost_without_excuse(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
