@@ -81,14 +81,9 @@ def noisy(
     ``inside`` is how much of the noise comes at any place, and so cuts most often into a frame.
     """
     random = np.random.default_rng(seed)
-    heads, makers = field_noise.legal_heads(table), list(kinds)
-    odds = np.array([kinds[maker] for maker in makers], np.float64)
-    # A pool of pieces is drawn from, since drawing a million of them would take a minute.
-    which = random.choice(len(makers), 4096, p=odds / odds.sum())
-    pool = [makers[index](heads, random) for index in which]
-    wanted = len(line.data) * share / (1 - share)
+    pool = _pool(table, kinds, random)
     average = sum(map(len, pool)) / len(pool)
-    pieces = int(wanted / average)
+    pieces = max(1, int(len(line.data) * share / (1 - share) / average))
     places = np.unique(
         np.where(
             random.random(pieces) < inside,
@@ -105,6 +100,14 @@ def noisy(
         for place, burst in zip(places.tolist(), random.permutation(bursts).tolist())
     ]
     return apply(line, edits)
+
+
+def _pool(table: Table, kinds: Mapping[Maker, float], random: np.random.Generator) -> list[bytes]:
+    # Pieces are picked from a few thousand; to make each of a million would take a minute.
+    heads, makers = field_noise.legal_heads(table), list(kinds)
+    odds = np.array([kinds[maker] for maker in makers], np.float64)
+    which = random.choice(len(makers), 4096, p=odds / odds.sum())
+    return [makers[index](heads, random) for index in which]
 
 
 def apply(line: Line, edits: Edits) -> Line:

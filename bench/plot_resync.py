@@ -45,10 +45,11 @@ SETTINGS: Any = {
 
 def lost_by_rate(rows: Rows) -> Figure:
     """Undamaged frames lost, over how often something happens to a byte."""
-    figure, axes = _canvas("All kinds of damage together, replies of both editions")
-    rates = sorted({row["rate"] for row in rows if row["kind"] == "mixed"})
+    figure, axes = _canvas("All kinds of damage together, all streams of both editions")
+    mixed = _some(rows, kind="mixed")
+    rates = sorted({row["rate"] for row in mixed})
     for name in LOOKS:
-        lost = [_lost(_some(rows, kind="mixed", rate=rate), name) for rate in rates]
+        lost = [_lost(_some(mixed, rate=rate), name) for rate in rates]
         axes.plot(rates, lost, label=NAMES[name], **LOOKS[name])
     axes.set_xscale("log")
     axes.set_yscale("symlog", linthresh=1)
@@ -63,11 +64,11 @@ def lost_by_rate(rows: Rows) -> Figure:
 def lost_by_kind(rows: Rows) -> Figure:
     """Undamaged frames lost, for each kind of damage."""
     figure, axes = _canvas("One damage in a hundred bytes, replies of both editions", height=5.6)
-    rate = max(row["rate"] for row in rows if row["kind"] == "mixed")
-    kinds = [row["kind"] for row in _some(rows[: len(rows) // 2], rate=rate)]
-    kinds.sort(key=lambda kind: max(_lost(_some(rows, kind=kind, rate=rate), n) for n in LOOKS))
+    rows = _some(rows, stream="catalogue", listening="reply", rate=1e-2)
+    kinds = list(dict.fromkeys(row["kind"] for row in rows))
+    kinds.sort(key=lambda kind: max(_lost(_some(rows, kind=kind), n) for n in LOOKS))
     for place, name in enumerate(LOOKS):
-        lost = [_lost(_some(rows, kind=kind, rate=rate), name) for kind in kinds]
+        lost = [_lost(_some(rows, kind=kind), name) for kind in kinds]
         heights = [at + 0.3 - 0.2 * place for at in range(len(kinds))]
         axes.plot(lost, heights, linestyle="none", clip_on=False, label=NAMES[name], **LOOKS[name])
     axes.set_xscale("symlog", linthresh=1)
@@ -85,10 +86,9 @@ def lost_by_kind(rows: Rows) -> Figure:
 
 def recovery(rows: Rows) -> Figure:
     """How many bytes behind a damage the next undamaged frame is read."""
-    figure, axes = _canvas("All kinds of damage, one in a hundred bytes, replies of both editions")
-    some = _some(
-        rows, kind="mixed", rate=max(row["rate"] for row in rows if row["kind"] == "mixed")
-    )
+    figure, axes = _canvas("All kinds of damage, one in a hundred bytes, all streams")
+    mixed = _some(rows, kind="mixed")
+    some = _some(mixed, rate=max(row["rate"] for row in mixed))
     damages = sum(row["damages"] for row in some)
     spreads = {name: [row["readers"][name]["bytes_to_recovery"] for row in some] for name in LOOKS}
     for name in ("cobotwire", "textbook", "pymycobot"):
@@ -98,6 +98,8 @@ def recovery(rows: Rows) -> Figure:
     axes.plot(STEPS, ideal, color="black", linestyle=":", label="the next undamaged frame itself")
     axes.set_yscale("log")
     axes.set_xlim(0, 80)
+    axes.set_ylim(1e-3, 1)
+    axes.set_yticks([1, 0.1, 0.01, 0.001], ["100 %", "10 %", "1 %", "0.1 %"])
     axes.set_xlabel("bytes behind the damage")
     axes.set_ylabel("share of damages after which\nno undamaged frame was read yet")
     return _with_legend(figure, axes)
@@ -134,8 +136,7 @@ def _with_legend(figure: Figure, axes: Axes) -> Figure:
 
 
 def _some(rows: Rows, **wanted: object) -> list[dict[str, Any]]:
-    chosen = {"stream": "catalogue", "listening": "reply", **wanted}
-    return [row for row in rows if all(row[key] == value for key, value in chosen.items())]
+    return [row for row in rows if all(row[key] == value for key, value in wanted.items())]
 
 
 def _lost(rows: Rows, reader: str) -> float:

@@ -76,14 +76,37 @@ def test_pymycobot_asked_for_a_reply_throws_it_away_for_an_ack_in_front_of_it() 
     assert verdict.undamaged - verdict.recovered == len(line.acks) > 0
 
 
-def test_the_report_ends_with_1_if_a_frame_is_lost_without_excuse(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
     few = [resync.Scenario("mycobot280", "catalogue", "reply", "false header", 1e-2)]
     monkeypatch.setattr(resync, "scenarios", lambda: few)
     monkeypatch.setattr("sys.argv", ["resync.py", "--frames", "2000"])
+
+
+@pytest.mark.usefixtures("short")
+def test_the_report_ends_with_1_if_a_frame_is_lost_without_excuse(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert resync.main() == 0
     assert NO_LOSS in capsys.readouterr().out
     monkeypatch.setattr(readers, "ours", lambda table, name, listening: readers.textbook(table))
     assert resync.main() == 1
     assert NO_LOSS not in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("short")
+def test_the_report_ends_with_1_if_the_codecs_differ(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ours = readers.ours
+    monkeypatch.setattr(
+        readers,
+        "ours",
+        lambda table, name, listening: (
+            ours(table, name, listening) if name == "native" else readers.textbook(table)
+        ),
+    )
+    assert resync.main() == 1
+    out = capsys.readouterr().out
+    assert NO_LOSS in out
+    assert "THE CODECS DIFFER" in out
