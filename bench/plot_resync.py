@@ -31,7 +31,6 @@ NAMES = {
 }
 SETTINGS: Any = {
     "svg.hashsalt": "cobotwire",  # the same report gives the same file
-    "svg.fonttype": "none",
     "font.family": "DejaVu Sans",
     "font.size": 10,
     "axes.spines.top": False,

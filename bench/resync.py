@@ -135,7 +135,7 @@ def _late(table: Table, listening: Listening, data: bytes) -> dict[str, int]:
 def main() -> int:
     """Measure all rows, print them, and tell whether each lost frame is explained."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--frames", type=int, default=25_000, help="sent in a row, on average")
+    parser.add_argument("--frames", type=int, default=20_000, help="sent in a row, on average")
     parser.add_argument("--reference-bytes", type=int, default=20_000, help="for both codecs")
     parser.add_argument("--seed", type=int, default=4)
     parser.add_argument("--show", type=int, default=12, help="how many lost frames to show")

@@ -73,8 +73,16 @@ def summary(rows: Sequence[dict[str, Any]], show: int) -> str:
             f"  {name:15} lost {lost:6} ({100 * lost / undamaged:.4f} %), damaged but legal"
             f" {altered}, phantoms {phantoms}, damaged but read right {restored}"
         )
+    late = [row["late"] for row in rows]
+    lines.append(
+        f"  of ours {sum(each['late'] for each in late)} of {sum(each['frames'] for each in late)}"
+        f" came late, by {max(each['most'] for each in late)} bytes at most (fed byte by byte)"
+    )
     covered = [(row, each) for row in rows for each in row["covered"]]
     lines += ["", f"Undamaged frames that a legal false frame covers: {len(covered)}"]
+    for kind in dict.fromkeys(row["kind"] for row in rows):
+        count = sum(where["kind"] == kind for where, _ in covered)
+        lines += [f"  {kind}: {count}"] if count else []
     for where, each in covered[: max(show, 0)]:
         lines.append(
             f"  {where['edition']}, {where['kind']} at {where['rate']:g}: the frame at"
