@@ -109,7 +109,7 @@ def pymycobot() -> Reader:
     without a frame. A frame counts as read if ``_read`` returns just its bytes when its last byte
     has been taken.
     """
-    common, peer = _peer()
+    common, peer = pymycobot_peer()
 
     def read(data: bytes) -> list[Accepted]:
         line = iter([data[at : at + 1] for at in range(len(data))])
@@ -137,7 +137,7 @@ def pymycobot_asked(line: Line) -> list[Accepted]:
     before; what stands in front of the reply comes behind the request. A frame with another id is
     thrown away, as there. Asking again, which ``_res`` does twice, would be another frame.
     """
-    common, peer = _peer()
+    common, peer = pymycobot_peer()
     found: list[Accepted] = []
     begins = [0, *line.ends.tolist()]
     for begin, start, end in zip(begins, line.starts.tolist(), line.ends.tolist()):
@@ -153,7 +153,8 @@ def pymycobot_asked(line: Line) -> list[Accepted]:
     return found
 
 
-def _peer() -> tuple[SimpleNamespace, SimpleNamespace]:
+def pymycobot_peer() -> tuple[SimpleNamespace, SimpleNamespace]:
+    """Pymycobot's module of shared code, and one of its arms without a port."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # importing it calls what Python 3.11 deprecates
         from pymycobot import CommandGenerator, MyCobot280, common
