@@ -46,6 +46,8 @@ ONE_IMPORTER = {
     "serial": ["transport/serial.py"],
     "click": ["cli/"],
     "rich": ["cli/"],
+    "numpy": ["codec/columns.py"],
+    "pyarrow": ["codec/arrow.py"],
 }
 
 
