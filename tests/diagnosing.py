@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import field
-from cobotwire.codec.interface import Codec, Listening
+from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.diagnose import Diagnoser, Item
 
 READ = bytes.fromhex("ff ff 01 04 02 38 02 be")
@@ -28,3 +28,8 @@ def diagnose(
 def only(codec: Codec, data: bytes, listening: Listening = "reply") -> Item:
     (item,) = diagnose(codec, data, listening)
     return item
+
+
+def kinds(items: list[Item]) -> list[type]:
+    """What each is; frames of either codec are frames."""
+    return [Frame if isinstance(item, Frame) else type(item) for item in items]

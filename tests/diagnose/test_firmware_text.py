@@ -7,15 +7,15 @@ import pytest
 import field
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.diagnose import CommandError, Finding, Garbage, Nuls, Panic, Text, summary, words
-from diagnosing import FRAME, PING, READ, STATUS, diagnose, only
+from diagnosing import FRAME, PING, READ, STATUS, diagnose, kinds, only
 
 
 def test_cmd_len_error_again_and_again(codec: Codec) -> None:
     for end in (b"\r\n", b"\n", b""):
         items = diagnose(codec, (b"cmd_len error" + end) * 5)
-        assert [type(item) for item in items] == [CommandError] * 5
+        assert kinds(items) == [CommandError] * 5
     both = diagnose(codec, b"cmd_len error\r\n" + FRAME + b"cmd_len error\r\n")
-    assert [type(item) for item in both] == [CommandError, Frame, CommandError]
+    assert kinds(both) == [CommandError, Frame, CommandError]
 
 
 def test_a_panic_tells_its_cause_and_place(codec: Codec) -> None:
@@ -65,8 +65,7 @@ def test_a_crash_from_the_error_to_the_boot(codec: Codec) -> None:
     garbage = bytes.fromhex("78 80 78")
     stream = FRAME + b"cmd_len error\r\n" * 2 + field.PANIC + bytes(277) + garbage + FRAME
     items = diagnose(codec, stream)
-    kinds = [type(item) for item in items]
-    assert kinds == [Frame, CommandError, CommandError, Panic, Nuls, Garbage, Frame]
+    assert kinds(items) == [Frame, CommandError, CommandError, Panic, Nuls, Garbage, Frame]
     said = summary([item for item in items if isinstance(item, Finding)])
     assert said.startswith("the controller rebooted: panic LoadProhibited; ")
     assert "cmd_len error 2 times" in said

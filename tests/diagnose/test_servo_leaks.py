@@ -7,7 +7,18 @@ import pytest
 import field
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.diagnose import ServoPacket, words
-from diagnosing import ANGLES, FRAME, PING, READ, STATUS, SYNC_READ, SYNC_WRITE, diagnose, only
+from diagnosing import (
+    ANGLES,
+    FRAME,
+    PING,
+    READ,
+    STATUS,
+    SYNC_READ,
+    SYNC_WRITE,
+    diagnose,
+    kinds,
+    only,
+)
 
 
 def test_a_read_of_a_servo(codec: Codec) -> None:
@@ -75,14 +86,20 @@ def test_a_checksum_of_fe_in_front_of_a_frame(codec: Codec, frame: bytes) -> Non
     packet = field.servo_packet(bytes.fromhex("01 04 00 00 fc"))
     assert packet.endswith(b"\xfe")
     items = diagnose(codec, packet + frame)
-    assert [type(item) for item in items] == [ServoPacket, Frame]
+    assert kinds(items) == [ServoPacket, Frame]
     assert [item.data for item in items] == [packet, frame]
 
 
 def test_a_leak_interleaved_with_frames(codec: Codec) -> None:
     stream = READ + FRAME + STATUS + SYNC_READ + ANGLES + PING
-    kinds = [type(item) for item in diagnose(codec, stream)]
-    assert kinds == [ServoPacket, Frame, ServoPacket, ServoPacket, Frame, ServoPacket]
+    assert kinds(diagnose(codec, stream)) == [
+        ServoPacket,
+        Frame,
+        ServoPacket,
+        ServoPacket,
+        Frame,
+        ServoPacket,
+    ]
 
 
 def test_a_packet_with_frames_in_its_middle_is_one_finding_in_pieces(codec: Codec) -> None:
