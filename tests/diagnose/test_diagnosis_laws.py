@@ -7,6 +7,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
+import field
 import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
@@ -15,7 +16,7 @@ from cobotwire.editions.mycobot import TABLE
 
 CODECS = st.sampled_from([codecs.load(TABLE, "reference"), codecs.load(TABLE, "native")])
 LISTENING = st.sampled_from(["request", "reply", "both"])
-STREAMS = strategies.field_streams() | strategies.streams()
+STREAMS = field.streams() | strategies.streams()
 
 
 def diagnose(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[Item]:
@@ -75,7 +76,7 @@ def test_items_come_in_the_order_of_the_stream_and_have_words(
     assert bool(summary(findings)) == bool(findings)
 
 
-@given(CODECS, strategies.servo_packets(), strategies.real_frames(), st.data())
+@given(CODECS, field.servo_packets(), strategies.real_frames(), st.data())
 def test_a_servo_packet_is_found_even_with_a_frame_in_its_middle(
     codec: Codec, packet: bytes, frame: bytes, data: st.DataObject
 ) -> None:
@@ -91,7 +92,7 @@ def test_a_servo_packet_is_found_even_with_a_frame_in_its_middle(
     assert [item.data for item in found] == [packet]
 
 
-@given(CODECS, strategies.servo_packets(), st.data())
+@given(CODECS, field.servo_packets(), st.data())
 def test_a_servo_packet_with_a_wrong_byte_is_none(
     codec: Codec, packet: bytes, data: st.DataObject
 ) -> None:
@@ -102,9 +103,7 @@ def test_a_servo_packet_with_a_wrong_byte_is_none(
     assert all(item.data != spoilt for item in found)
 
 
-@given(
-    CODECS, LISTENING, st.lists(strategies.field_noise() | strategies.real_frames(), max_size=30)
-)
+@given(CODECS, LISTENING, st.lists(field.noise() | strategies.real_frames(), max_size=30))
 def test_memory_stays_bounded(codec: Codec, listening: Listening, pieces: list[bytes]) -> None:
     framer, diagnoser = codec.framer(listening), Diagnoser(codec, listening)
     fed: list[Event] = []

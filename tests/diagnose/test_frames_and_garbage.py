@@ -16,7 +16,7 @@ from cobotwire.diagnose import (
     Unrecognised,
     words,
 )
-from diagnosing import ANGLES, FRAME, READ, diagnose, only
+from diagnosing import ANGLES, FRAME, READ, diagnose, kinds, only
 
 
 def test_a_merged_reply_loses_nothing(codec: Codec) -> None:
@@ -80,7 +80,7 @@ def test_a_frame_that_breaks_off(codec: Codec) -> None:
     assert isinstance(start, DamagedFrame)
     assert start.command is None
     behind = diagnose(codec, ANGLES[:9] + b"cmd_len error\r\n" + READ)
-    assert [type(item) for item in behind] == [DamagedFrame, CommandError, ServoPacket]
+    assert kinds(behind) == [DamagedFrame, CommandError, ServoPacket]
 
 
 def test_a_frame_that_a_flush_cut_in_two_is_damaged_and_no_echo(codec: Codec) -> None:

@@ -8,6 +8,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
+import field
 import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame, Noise
@@ -42,7 +43,7 @@ def streams(draw: st.DrawFn, codec: Codec) -> bytes:
         ]
     )
     cut = st.builds(lambda data, at: data[: at % len(data)], frames, st.integers(0))
-    pieces = st.one_of(frames, cut, strategies.field_noise(), st.just(codec.table.frame.header))
+    pieces = st.one_of(frames, cut, field.noise(), st.just(codec.table.frame.header))
     return b"".join(draw(st.lists(pieces, max_size=8)))
 
 

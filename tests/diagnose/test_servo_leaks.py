@@ -4,10 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-import strategies
+import field
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.diagnose import ServoPacket, words
-from diagnosing import ANGLES, FRAME, PING, READ, STATUS, SYNC_READ, SYNC_WRITE, diagnose, only
+from diagnosing import (
+    ANGLES,
+    FRAME,
+    PING,
+    READ,
+    STATUS,
+    SYNC_READ,
+    SYNC_WRITE,
+    diagnose,
+    kinds,
+    only,
+)
 
 
 def test_a_read_of_a_servo(codec: Codec) -> None:
@@ -40,9 +51,7 @@ def test_a_read_that_is_repeated_is_no_reply(codec: Codec) -> None:
 
 
 def test_a_sync_read_and_the_replies_of_all_its_servos(codec: Codec) -> None:
-    replies = b"".join(
-        strategies.servo_packet(bytes([id, 17, 0]) + bytes(15)) for id in range(1, 7)
-    )
+    replies = b"".join(field.servo_packet(bytes([id, 17, 0]) + bytes(15)) for id in range(1, 7))
     first, *answers = diagnose(codec, SYNC_READ + replies)
     assert isinstance(first, ServoPacket)
     assert (first.instruction, first.servo, first.ambiguous) == ("sync read", 0xFE, False)
@@ -66,7 +75,7 @@ def test_a_ping(codec: Codec) -> None:
 
 
 def test_a_servo_that_reports_an_overload(codec: Codec) -> None:
-    packet = only(codec, strategies.servo_packet(b"\x03\x02\x20"))
+    packet = only(codec, field.servo_packet(b"\x03\x02\x20"))
     assert isinstance(packet, ServoPacket)
     assert (packet.role, packet.error, packet.ambiguous) == ("status", 0x20, False)
     assert "overload" in words(packet)
@@ -74,17 +83,23 @@ def test_a_servo_that_reports_an_overload(codec: Codec) -> None:
 
 @pytest.mark.parametrize("frame", [FRAME, ANGLES])
 def test_a_checksum_of_fe_in_front_of_a_frame(codec: Codec, frame: bytes) -> None:
-    packet = strategies.servo_packet(bytes.fromhex("01 04 00 00 fc"))
+    packet = field.servo_packet(bytes.fromhex("01 04 00 00 fc"))
     assert packet.endswith(b"\xfe")
     items = diagnose(codec, packet + frame)
-    assert [type(item) for item in items] == [ServoPacket, Frame]
+    assert kinds(items) == [ServoPacket, Frame]
     assert [item.data for item in items] == [packet, frame]
 
 
 def test_a_leak_interleaved_with_frames(codec: Codec) -> None:
     stream = READ + FRAME + STATUS + SYNC_READ + ANGLES + PING
-    kinds = [type(item) for item in diagnose(codec, stream)]
-    assert kinds == [ServoPacket, Frame, ServoPacket, ServoPacket, Frame, ServoPacket]
+    assert kinds(diagnose(codec, stream)) == [
+        ServoPacket,
+        Frame,
+        ServoPacket,
+        ServoPacket,
+        Frame,
+        ServoPacket,
+    ]
 
 
 def test_a_packet_with_frames_in_its_middle_is_one_finding_in_pieces(codec: Codec) -> None:

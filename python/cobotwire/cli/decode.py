@@ -84,8 +84,8 @@ def decode(
         shown = show.as_json(read)
     elif each_byte or source.words:
         shown = show.byte_by_byte(read, table.frame)
-    tally = Tally(read)
     framer = codec.framer(direction, accept_unknown=accept_unknown)
+    tally = Tally(read, framer)
     try:
         with _progress(source, quiet) as blocks:
             for items in _diagnosed(framer, Diagnoser(codec, direction), blocks, tally):
@@ -103,10 +103,8 @@ def _diagnosed(
 ) -> Iterator[list[Item]]:
     """The frames and findings of each block, counted."""
     for block in blocks:
-        events = framer.feed(block)
-        yield tally.count(events, diagnoser.feed(events))
-    events = framer.flush()
-    yield tally.count(events, diagnoser.feed(events) + diagnoser.flush())
+        yield tally.count(diagnoser.feed(framer.feed(block)))
+    yield tally.count(diagnoser.feed(framer.flush()) + diagnoser.flush())
 
 
 def _write(text: str) -> None:

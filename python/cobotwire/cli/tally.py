@@ -6,43 +6,30 @@ import json
 from collections import Counter
 
 from cobotwire.cli.show import Reader
-from cobotwire.codec.interface import Event, Frame, Noise
+from cobotwire.codec.interface import Frame, Framer
 from cobotwire.diagnose import Item, Summary
 
 
 class Tally:
     """Counts of a stream; small, however long that is."""
 
-    def __init__(self, read: Reader) -> None:
+    def __init__(self, read: Reader, framer: Framer) -> None:
         self._read = read
-        self._bytes = 0
+        self._framer = framer
         self._frames: Counter[str] = Counter()
         self._illegal = 0
-        self._noise: Counter[str] = Counter()
-        self._resyncs = 0
-        self._in_noise = False
         self._findings = Summary()
 
     @property
     def clean(self) -> bool:
         """Whether there was nothing but legal frames."""
-        return not self._noise and not self._illegal
+        return not self._framer.counters.noise and not self._illegal
 
-    def count(self, events: list[Event], items: list[Item]) -> list[Item]:
-        """Count what the framer gave and what became of it; give the latter back."""
-        self._count_events(events)
+    def count(self, items: list[Item]) -> list[Item]:
+        """Count frames by name, and findings; give them back."""
         for item in items:
             self._count_item(item)
         return items
-
-    def _count_events(self, events: list[Event]) -> None:
-        for event in events:
-            self._bytes += len(event.data)
-            if isinstance(event, Noise):
-                self._noise[event.reason] += len(event.data)
-            elif self._in_noise:
-                self._resyncs += 1
-            self._in_noise = isinstance(event, Noise)
 
     def _count_item(self, item: Item) -> None:
         if not isinstance(item, Frame):
@@ -56,10 +43,12 @@ class Tally:
 
     def lines(self) -> str:
         """The counts for people."""
-        lines = [f"{self._bytes} bytes, {self._frames.total()} frames, {self._resyncs} resyncs"]
+        counters, noise = self._framer.counters, Counter(self._framer.counters.noise)
+        frames = f"{self._frames.total()} frames, {counters.resyncs} resyncs"
+        lines = [f"{counters.bytes} bytes, {frames}"]
         lines += [f"  {count:>10} x {name}" for name, count in self._frames.most_common()]
-        lines.append(f"{self._noise.total()} bytes of noise")
-        lines += [f"  {count:>10} {reason}" for reason, count in self._noise.most_common()]
+        lines.append(f"{noise.total()} bytes of noise")
+        lines += [f"  {count:>10} {reason}" for reason, count in noise.most_common()]
         lines.append(f"{self._findings.kinds.total()} findings")
         lines += [f"  {count:>10} x {kind}" for kind, count in self._findings.kinds.most_common()]
         return "\n".join(
@@ -68,14 +57,15 @@ class Tally:
 
     def as_json(self) -> str:
         """The counts as one JSON object."""
+        counters = self._framer.counters
         return json.dumps(
             {
                 "kind": "summary",
-                "bytes": self._bytes,
+                "bytes": counters.bytes,
                 "frames": dict(self._frames),
-                "noise": dict(self._noise),
+                "noise": dict(counters.noise),
                 "findings": dict(self._findings.kinds),
-                "resyncs": self._resyncs,
+                "resyncs": counters.resyncs,
                 "diagnosis": str(self._findings),
             }
         )
