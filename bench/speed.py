@@ -20,7 +20,7 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Columns, Frame, Scan
 from cobotwire.editions.mycobot280 import TABLE
 from damage import noisy
-from speed_table import Asked, Ratio, Timed, measure, ratios, show, write_json
+from speed_table import Asked, Ratio, Timed, Told, measure, ratios, show, write_json
 from streams import stream_a
 
 ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
@@ -80,7 +80,8 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         "raw": Timed(Reused(partial(codec.decode_columns, clean, "reply", raw=True))),
         "noisy raw": Timed(Reused(partial(codec.decode_columns, bad, "reply", raw=True))),
         "NumPy": Timed(partial(peers.numpy_columns, clean)),
-        "pymycobot": Timed(peers.pymycobot_reads(few), scale=frames / SLOWEST),
+        "pymycobot": Timed(peers.pymycobot_reads(few, SLOWEST), scale=frames / SLOWEST),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few), scale=frames / SLOWEST),
     }
     return timed, [
         Asked("framing scan to offsets", "scan", "memcpy", 1.6),
@@ -89,6 +90,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         Asked("float64 columns, fresh", "fresh", "memcpy", 8),
         Asked("float64 columns, fresh", "fresh", "NumPy", 10, faster=True),
         Asked("float64 columns, fresh", "fresh", "pymycobot", 3000, faster=True),
+        Told("float64 columns, fresh", "fresh", "pymycobot, no port"),
         Asked("raw columns, out=", "raw", "memcpy", 2.5),
         Asked("the same, 10 % noise", "noisy raw", "memcpy of the noisy one", 3),
     ]
@@ -112,8 +114,9 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         return [frame.values for frame in codec.framer("reply").feed(data)]  # type: ignore[union-attr]
 
     timed = {
-        "find": Timed(partial(peers.find_and_struct, some), scale=frames / SLOW),
-        "pymycobot": Timed(peers.pymycobot_reads(few), scale=frames / SLOWEST),
+        "find": Timed(lambda: peers.FindDecoder(TABLE).feed(some), scale=frames / SLOW),
+        "pymycobot": Timed(peers.pymycobot_reads(few, SLOWEST), scale=frames / SLOWEST),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few), scale=frames / SLOWEST),
         "list": Timed(lambda: codec.framer("reply").feed(data)),
         "iterated": Timed(iterated),
         "chunks": Timed(in_chunks),
@@ -123,6 +126,7 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         Asked("lazy messages, a list", "list", "find", 35, faster=True),
         Asked("lazy messages, each value read once", "iterated", "find", 12, faster=True),
         Asked("lazy messages in 4 KiB chunks", "chunks", "pymycobot", 400, faster=True),
+        Told("lazy messages in 4 KiB chunks", "chunks", "pymycobot, no port"),
         Asked("eager values, held in a list", "eager", "find", 7, faster=True),
         Asked("eager values, held in a list", "eager", "pymycobot", 60, faster=True),
     ]
@@ -141,12 +145,13 @@ def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     """One frame at a time."""
     frame = codec.encode("get_angles", "reply", (ANGLES,))
     framer = codec.framer("reply")
+    textbook = peers.FindDecoder(TABLE)
     values = (ANGLES, 30)
     many = 20_000
     timed = {
         "a no-op call": Timed(lambda: None, many),
-        "find": Timed(lambda: peers.find_and_struct(frame), many),
-        "pymycobot": Timed(peers.pymycobot_reads(frame * SLOWEST), scale=1 / SLOWEST),
+        "find": Timed(lambda: textbook.feed(frame), many),
+        "pymycobot": Timed(peers.pymycobot_reads(frame * SLOWEST, SLOWEST), scale=1 / SLOWEST),
         "feed": Timed(lambda: [event.values for event in framer.feed(frame)], many),  # type: ignore[union-attr]
         "encode": Timed(lambda: codec.encode("send_angles", "request", values), many),
         "struct": Timed(lambda: peers.struct_send_angles(ANGLES, 30), many),
