@@ -69,7 +69,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     """Scans and columns of stream A, and of one with 10 % noise."""
     line = stream_a(TABLE, frames)
     clean, bad = line.data, noisy(TABLE, line).data
-    few = stream_a(TABLE, SLOWEST).data
+    few = stream_a(TABLE, SLOWEST)
     timed = {
         "memcpy": Timed(peers.memcpy(clean)),
         "memcpy of the noisy one": Timed(peers.memcpy(bad)),
@@ -80,8 +80,8 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         "raw": Timed(Reused(partial(codec.decode_columns, clean, "reply", raw=True))),
         "noisy raw": Timed(Reused(partial(codec.decode_columns, bad, "reply", raw=True))),
         "NumPy": Timed(partial(peers.numpy_columns, clean)),
-        "pymycobot": Timed(peers.pymycobot_reads(few, SLOWEST), scale=frames / SLOWEST),
-        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few), scale=frames / SLOWEST),
+        "pymycobot": Timed(peers.pymycobot_reads(few.data, few.starts), scale=frames / SLOWEST),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few.data), scale=frames / SLOWEST),
     }
     return timed, [
         Asked("framing scan to offsets", "scan", "memcpy", 1.6),
@@ -99,7 +99,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
 def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     """Messages as Python objects."""
     data = stream_a(TABLE, frames).data
-    some, few = stream_a(TABLE, SLOW).data, stream_a(TABLE, SLOWEST).data
+    some, few = stream_a(TABLE, SLOW).data, stream_a(TABLE, SLOWEST)
 
     def iterated() -> None:
         for frame in _frames(codec, data):
@@ -115,8 +115,8 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
 
     timed = {
         "find": Timed(lambda: peers.FindDecoder(TABLE).feed(some), scale=frames / SLOW),
-        "pymycobot": Timed(peers.pymycobot_reads(few, SLOWEST), scale=frames / SLOWEST),
-        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few), scale=frames / SLOWEST),
+        "pymycobot": Timed(peers.pymycobot_reads(few.data, few.starts), scale=frames / SLOWEST),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few.data), scale=frames / SLOWEST),
         "list": Timed(lambda: codec.framer("reply").feed(data)),
         "iterated": Timed(iterated),
         "chunks": Timed(in_chunks),
@@ -151,7 +151,10 @@ def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     timed = {
         "a no-op call": Timed(lambda: None, many),
         "find": Timed(lambda: textbook.feed(frame), many),
-        "pymycobot": Timed(peers.pymycobot_reads(frame * SLOWEST, SLOWEST), scale=1 / SLOWEST),
+        "pymycobot": Timed(
+            peers.pymycobot_reads(frame * SLOWEST, range(0, SLOWEST * len(frame), len(frame))),
+            scale=1 / SLOWEST,
+        ),
         "feed": Timed(lambda: [event.values for event in framer.feed(frame)], many),  # type: ignore[union-attr]
         "encode": Timed(lambda: codec.encode("send_angles", "request", values), many),
         "struct": Timed(lambda: peers.struct_send_angles(ANGLES, 30), many),

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import itertools
+import os
 import struct
-from collections.abc import Callable
+import tty
+from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 from unittest import mock
@@ -98,18 +101,26 @@ def numpy_columns(data: bytes) -> dict[int, tuple[Any, Any]]:
     return found
 
 
-def pymycobot_reads(data: bytes, count: int) -> Callable[[], list[Any]]:
+def pymycobot_reads(data: bytes, starts: Sequence[int]) -> Callable[[], list[Any]]:
     """Pymycobot's own ``_read`` and ``_process_received`` on pyserial, as its users run them.
 
-    The port is pyserial's own ``loop://``: no operating system, no cable, and no waiting.
+    The port is a pseudo-terminal that is filled before each 100 frames are read, so that nothing is
+    waited for; to fill it takes one system call.
     """
     _, peer = pymycobot_peer()
-    peer._serial_port = serial.serial_for_url("loop://", timeout=0.1)
-    peer._serial_port.baudrate = 2_000_000_000  # else loop:// takes as long as a cable
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    peer._serial_port = serial.Serial(os.ttyname(slave), 1_000_000, timeout=0.1)
+    cuts = [*starts[::100], len(data)]
+    pieces = [data[a:b] for a, b in pairwise(cuts)]
 
     def read() -> list[Any]:
-        peer._serial_port.write(data)
-        return [_pymycobot_values(peer, peer._read(0x20)) for _ in range(count)]
+        found = []
+        for place, piece in enumerate(pieces):
+            os.write(master, piece)
+            for _ in starts[100 * place : 100 * place + 100]:
+                found.append(_pymycobot_values(peer, peer._read(0x20)))
+        return found
 
     return read
 
