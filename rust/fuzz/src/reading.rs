@@ -1,0 +1,125 @@
+//! The oracle for values: what a whole legal frame says, form by form, number by number.
+
+use cobotwire_core::{
+    BadRaw, Decoded, Direction, Field, Form, Layout, Number, Order, Table, Value,
+};
+
+/// What decoding a whole legal frame of that direction must give. `of`: only forms of the command
+/// with that index; `None`: it has none.
+pub fn read(
+    table: &Table,
+    direction: Direction,
+    frame: &[u8],
+    of: Option<usize>,
+) -> Option<Result<Decoded, BadRaw>> {
+    let format = table.frame();
+    let start = format.overhead() + 1;
+    let data = &frame[start..frame.len() - format.check.size()];
+    let mut first = None;
+    for (command, record) in table.commands().iter().enumerate() {
+        if record.id != frame[start - 1] || of.is_some_and(|of| of != command) {
+            continue;
+        }
+        for (layout, fields) in record.layouts(direction).iter().enumerate() {
+            if fields.size() != data.len() {
+                continue;
+            }
+            let form = Form {
+                direction,
+                command,
+                layout,
+            };
+            match values(form, fields, data, start) {
+                Ok(values) => {
+                    let address = (!format.addresses.is_empty()).then(|| frame[2]);
+                    return Some(Ok(Decoded {
+                        form,
+                        values,
+                        address,
+                    }));
+                }
+                Err(bad) => first = first.or(Some(Err(bad))),
+            }
+        }
+    }
+    first
+}
+
+fn values(form: Form, layout: &Layout, data: &[u8], offset: usize) -> Result<Vec<Value>, BadRaw> {
+    let mut values = Vec::new();
+    let mut at = 0;
+    let bad = |field, case, element, whole, at| BadRaw {
+        command: form.command,
+        layout: form.layout,
+        field,
+        case,
+        element,
+        whole,
+        offset: offset + at,
+    };
+    for (index, field) in layout.fields().iter().enumerate() {
+        let case = case(layout, field, data)
+            .map_err(|(selector, whole, at)| bad(selector, 0, 0, whole, at))?;
+        let numbers = &field.cases[case].numbers;
+        if field.many {
+            values.push(Value::Row(numbers.len()));
+        }
+        for (element, number) in numbers.iter().enumerate() {
+            let whole = whole(number, &data[at..]);
+            let allowed = if field.choices.is_empty() {
+                number.minimum <= whole && whole <= number.maximum
+            } else {
+                field.choices.contains(&whole)
+            };
+            if !allowed {
+                return Err(bad(index, case, element, whole, at));
+            }
+            values.push(physical(number, whole));
+            at += number.width;
+        }
+    }
+    Ok(values)
+}
+
+/// The index of a field's case; or the selector, what it holds, and where it stands.
+fn case(layout: &Layout, field: &Field, data: &[u8]) -> Result<usize, (usize, i64, usize)> {
+    let Some(selector) = field.selector else {
+        return Ok(0);
+    };
+    let at = size(&layout.fields()[..selector]);
+    let whole = whole(&layout.fields()[selector].cases[0].numbers[0], &data[at..]);
+    let mut cases = field.cases.iter();
+    cases
+        .position(|case| case.when.contains(&whole))
+        .ok_or((selector, whole, at))
+}
+
+fn size(fields: &[Field]) -> usize {
+    let numbers = fields.iter().flat_map(|field| &field.cases[0].numbers);
+    numbers.map(|number| number.width).sum()
+}
+
+/// By the definition: the unsigned word, and less by its span above `signed_at`.
+fn whole(number: &Number, data: &[u8]) -> i64 {
+    let mut bytes = data[..number.width].to_vec();
+    if number.order == Order::Little {
+        bytes.reverse();
+    }
+    let word = bytes
+        .iter()
+        .fold(0, |word, byte| word * 256 + i64::from(*byte));
+    if word > number.signed_at {
+        word - 256_i64.pow(number.width as u32)
+    } else {
+        word
+    }
+}
+
+fn physical(number: &Number, whole: i64) -> Value {
+    if number.multiply == 1 && number.divide == 1 {
+        Value::Whole(whole)
+    } else {
+        let exact = i128::from(whole) * i128::from(number.multiply);
+        Value::Real(exact as f64 / number.divide as f64)
+    }
+}
