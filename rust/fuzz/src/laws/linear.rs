@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::input::Input;
 
-const SHORT: usize = 32 << 10;
+const SHORT: usize = 8 << 10;
 const TIMES: usize = 8;
 /// Quadratic work would take `TIMES` times as long.
 const MOST: u32 = 3;
