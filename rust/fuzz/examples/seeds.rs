@@ -4,13 +4,14 @@
 use std::path::Path;
 use std::{env, fs, io};
 
-use cobotwire_core::{Direction, Listening};
+use cobotwire_core::Listening;
 use cobotwire_fuzz::input::Input;
+use cobotwire_fuzz::records::Vector;
 use cobotwire_fuzz::replay;
 use cobotwire_fuzz::subjects::{self, LISTENING};
 
 /// The targets whose input is a head and a stream. `tables` makes its own tables and has no seeds.
-const TARGETS: [&str; 4] = ["framer", "chunks", "decode", "linear"];
+const TARGETS: [&str; 3] = ["framer", "chunks", "decode"];
 
 const FOUND: [&str; 2] = [
     include_str!("../../../tests/found/streams.txt"),
@@ -19,35 +20,50 @@ const FOUND: [&str; 2] = [
 
 fn main() -> io::Result<()> {
     let folder = env::args_os().nth(1).expect("seeds FOLDER");
-    let seeds: Vec<Vec<u8>> = vectors().chain(found()).collect();
+    let folder = Path::new(&folder);
+    let streams: Vec<Vec<u8>> = rows().chain(found()).collect();
+    let all: Vec<Vec<u8>> = vectors().chain(streams.clone()).collect();
     for target in TARGETS {
-        let folder = Path::new(&folder).join(target);
-        fs::create_dir_all(&folder)?;
-        for (number, seed) in seeds.iter().enumerate() {
-            fs::write(folder.join(format!("seed-{number:04}")), seed)?;
-        }
+        write(&folder.join(target), &all)?;
     }
-    println!("{} seeds a target", seeds.len());
+    // It takes its time for each, and repeats it anyway.
+    write(&folder.join("linear"), &streams)?;
+    println!("{} seeds", all.len());
     Ok(())
 }
 
+fn write(folder: &Path, seeds: &[Vec<u8>]) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    for (number, seed) in seeds.iter().enumerate() {
+        fs::write(folder.join(format!("seed-{number:04}")), seed)?;
+    }
+    Ok(())
+}
+
+/// Each by itself.
 fn vectors() -> impl Iterator<Item = Vec<u8>> {
-    subjects::all()
-        .iter()
-        .enumerate()
-        .flat_map(|(index, subject)| {
-            let mut row = Vec::new();
-            let mut seeds = Vec::new();
-            for vector in &subject.edition.vectors {
-                let listening = Listening::To(vector.direction);
-                for bytes in vector.frame.iter().chain(&vector.printed) {
-                    row.extend(bytes);
-                    seeds.push(seed(index, listening, false, bytes));
-                }
-            }
-            seeds.push(seed(index, Listening::Both, false, &row));
-            seeds
+    let subjects = subjects::all().iter().enumerate();
+    subjects.flat_map(|(index, subject)| {
+        let vectors = subject.edition.vectors.iter();
+        vectors.flat_map(move |vector| {
+            let way = Listening::To(vector.direction);
+            bytes(vector).map(move |bytes| seed(index, way, false, bytes))
         })
+    })
+}
+
+/// A table's, one behind the other.
+fn rows() -> impl Iterator<Item = Vec<u8>> {
+    let subjects = subjects::all().iter().enumerate();
+    subjects.map(|(index, subject)| {
+        let vectors = subject.edition.vectors.iter().flat_map(bytes);
+        let row: Vec<u8> = vectors.flatten().copied().collect();
+        seed(index, Listening::Both, false, &row)
+    })
+}
+
+fn bytes(vector: &Vector) -> impl Iterator<Item = &Vec<u8>> {
+    vector.frame.iter().chain(&vector.printed)
 }
 
 fn found() -> impl Iterator<Item = Vec<u8>> {
@@ -57,9 +73,8 @@ fn found() -> impl Iterator<Item = Vec<u8>> {
         seed(table, stream.listening, stream.unknown, &stream.bytes())
     });
     let singles = replay::singles(singles).into_iter().map(|single| {
-        let direction: Direction = single.direction;
-        let table = table(&single.table);
-        seed(table, Listening::To(direction), false, &single.bytes)
+        let way = Listening::To(single.direction);
+        seed(table(&single.table), way, false, &single.bytes)
     });
     streams.chain(singles)
 }
