@@ -5,6 +5,7 @@
 //! I/O, looks at a clock or makes text: errors are a kind and a place. The Python reference in
 //! `python/cobotwire/codec/reference` is the specification; this crate gives the same answers.
 
+mod bulk;
 mod check;
 mod decode;
 mod encode;
@@ -16,9 +17,13 @@ mod given;
 mod judge;
 mod legal;
 mod read;
+mod scan;
+mod seam;
 mod table;
+mod tally;
 mod write;
 
+pub use bulk::{Cells, ColumnReader, Columns, Numbers, OffsetReader, Offsets, Plans, Rows, Spans};
 pub use check::{Check, crc16_modbus};
 pub use decode::{Decoded, decode};
 pub use encode::{Choice, encode};
@@ -33,3 +38,4 @@ pub use judge::{Rules, Verdict};
 pub use legal::Form;
 pub use read::Value;
 pub use table::{Command, Direction, Layout, Listening, Table};
+pub use tally::Tally;

@@ -9,7 +9,7 @@ use crate::judge::Rules;
 use crate::legal::Form;
 
 /// Which way a message goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// To the arm.
     Request,
