@@ -50,6 +50,8 @@ pub struct Input {
     pub listening: usize,
     pub unknown: bool,
     pub stream: Vec<u8>,
+    /// Whether a target that can take a long stream shall make one of this.
+    pub long: bool,
     pub cutting: Cutting,
 }
 
@@ -57,6 +59,7 @@ pub struct Input {
 const UNKNOWN: u8 = 4;
 const SCRIPT: u8 = 8;
 const FLUSHES: u8 = 16;
+const LONG: u8 = 32;
 
 impl Input {
     pub fn read(data: &[u8]) -> Self {
@@ -77,6 +80,7 @@ impl Input {
             subject,
             listening: usize::from(flags & 3) % LISTENING.len(),
             unknown: flags & UNKNOWN != 0,
+            long: flags & LONG != 0,
             stream,
             cutting,
         }
@@ -88,14 +92,8 @@ impl Input {
         [subject as u8, listening as u8 | flags, 0, 0]
     }
 
-    pub fn rules(&self) -> Rules {
-        let table = &self.subject.edition.table;
-        let rules = table.rules(LISTENING[self.listening]).clone();
-        if self.unknown {
-            rules.accepting_unknown()
-        } else {
-            rules
-        }
+    pub fn rules(&self) -> &Rules {
+        self.subject.rules(self.listening, self.unknown)
     }
 
     pub fn oracle(&self) -> &Oracle {
@@ -103,7 +101,7 @@ impl Input {
     }
 
     pub fn framer(&self) -> Framer {
-        Framer::new(self.rules())
+        Framer::new(self.rules().clone())
     }
 
     /// The stream as it is to be fed.
@@ -132,10 +130,31 @@ pub struct Cutting {
 
 /// Zero: the whole stream at once.
 const LARGEST: [usize; 6] = [0, 1, 3, 17, 64, 1000];
+/// Streams of this length are not cut so small.
+const LONG_STREAM: usize = 50_000;
+const LARGEST_OF_LONG: [usize; 6] = [0, 7_000, 30_000, 70_000, 100_000, 140_000];
 
 impl Cutting {
+    /// A stream of that size or little more, of pieces of this one.
+    pub fn grown(self, stream: &[u8], size: usize) -> Vec<u8> {
+        let mut dice = Dice(u32::from(self.seed));
+        let mut grown = Vec::with_capacity(size + stream.len());
+        while grown.len() < size && !stream.is_empty() {
+            let cut = match dice.roll(4) {
+                0 => dice.roll(stream.len()),
+                _ => 0,
+            };
+            grown.extend(&stream[cut..]);
+        }
+        grown
+    }
+
     pub fn cut(self, mut stream: &[u8]) -> Vec<Chunk<'_>> {
-        let largest = LARGEST[usize::from(self.class) % LARGEST.len()];
+        let largest = match stream.len() {
+            LONG_STREAM.. => LARGEST_OF_LONG,
+            _ => LARGEST,
+        };
+        let largest = largest[usize::from(self.class) % largest.len()];
         let mut dice = Dice(u32::from(self.seed));
         let mut chunks = Vec::new();
         while !stream.is_empty() {

@@ -56,6 +56,11 @@ impl Oracle {
         }
     }
 
+    /// The id of a frame.
+    pub fn id(&self, frame: &[u8]) -> u8 {
+        frame[self.frame.overhead()]
+    }
+
     /// The verdict of the first byte that decides.
     pub fn look(&self, rest: &[u8]) -> Found {
         let starts = self.frame.header.iter().zip(rest);

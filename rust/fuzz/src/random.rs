@@ -80,9 +80,14 @@ fn case(bytes: &mut Bytes<'_>, many_numbers: bool) -> Case {
         (false, 3) => bytes.pick(3),
         (false, _) => 1,
     };
+    // Long frames of few bytes.
+    let copies = match (many_numbers, flags >> 4 & 3) {
+        (true, 3) => bytes.pick(64),
+        _ => 1,
+    };
     Case {
         when: many(bytes, usize::from(flags & 3), |bytes| whole(bytes, 4)),
-        numbers: many(bytes, numbers, number),
+        numbers: vec![many(bytes, numbers, number); copies].concat(),
     }
 }
 

@@ -4,6 +4,9 @@ use cobotwire_core::{
     BadRaw, Decoded, Direction, Field, Form, Layout, Number, Order, Table, Value,
 };
 
+/// A number of a frame: the index of its field, what stands there, and what that stands for.
+pub type Read = (usize, i64, Value);
+
 /// What decoding a whole legal frame of that direction must give. `of`: only forms of the command
 /// with that index; `None`: it has none.
 pub fn read(
@@ -12,6 +15,22 @@ pub fn read(
     frame: &[u8],
     of: Option<usize>,
 ) -> Option<Result<Decoded, BadRaw>> {
+    Some(
+        numbers(table, direction, frame, of)?.map(|(form, read)| Decoded {
+            form,
+            values: values(table, form, &read),
+            address: (!table.frame().addresses.is_empty()).then(|| frame[2]),
+        }),
+    )
+}
+
+/// The same as a form and its numbers.
+pub fn numbers(
+    table: &Table,
+    direction: Direction,
+    frame: &[u8],
+    of: Option<usize>,
+) -> Option<Result<(Form, Vec<Read>), BadRaw>> {
     let format = table.frame();
     let start = format.overhead() + 1;
     let data = &frame[start..frame.len() - format.check.size()];
@@ -29,15 +48,8 @@ pub fn read(
                 command,
                 layout,
             };
-            match values(form, fields, data, start) {
-                Ok(values) => {
-                    let address = (!format.addresses.is_empty()).then(|| frame[2]);
-                    return Some(Ok(Decoded {
-                        form,
-                        values,
-                        address,
-                    }));
-                }
+            match of_form(form, fields, data, start) {
+                Ok(read) => return Some(Ok((form, read))),
                 Err(bad) => first = first.or(Some(Err(bad))),
             }
         }
@@ -45,8 +57,22 @@ pub fn read(
     first
 }
 
-fn values(form: Form, layout: &Layout, data: &[u8], offset: usize) -> Result<Vec<Value>, BadRaw> {
+/// The numbers as values: a row is told before its elements.
+fn values(table: &Table, form: Form, read: &[Read]) -> Vec<Value> {
+    let fields = table.commands()[form.command].layouts(form.direction)[form.layout].fields();
     let mut values = Vec::new();
+    for (index, field) in fields.iter().enumerate() {
+        let own = || read.iter().filter(|(of, ..)| *of == index);
+        if field.many {
+            values.push(Value::Row(own().count()));
+        }
+        values.extend(own().map(|(_, _, value)| *value));
+    }
+    values
+}
+
+fn of_form(form: Form, layout: &Layout, data: &[u8], offset: usize) -> Result<Vec<Read>, BadRaw> {
+    let mut read = Vec::new();
     let mut at = 0;
     let bad = |field, case, element, whole, at| BadRaw {
         command: form.command,
@@ -60,11 +86,7 @@ fn values(form: Form, layout: &Layout, data: &[u8], offset: usize) -> Result<Vec
     for (index, field) in layout.fields().iter().enumerate() {
         let case = case(layout, field, data)
             .map_err(|(selector, whole, at)| bad(selector, 0, 0, whole, at))?;
-        let numbers = &field.cases[case].numbers;
-        if field.many {
-            values.push(Value::Row(numbers.len()));
-        }
-        for (element, number) in numbers.iter().enumerate() {
+        for (element, number) in field.cases[case].numbers.iter().enumerate() {
             let whole = whole(number, &data[at..]);
             let allowed = if field.choices.is_empty() {
                 number.minimum <= whole && whole <= number.maximum
@@ -74,11 +96,11 @@ fn values(form: Form, layout: &Layout, data: &[u8], offset: usize) -> Result<Vec
             if !allowed {
                 return Err(bad(index, case, element, whole, at));
             }
-            values.push(physical(number, whole));
+            read.push((index, whole, physical(number, whole)));
             at += number.width;
         }
     }
-    Ok(values)
+    Ok(read)
 }
 
 /// The index of a field's case; or the selector, what it holds, and where it stands.

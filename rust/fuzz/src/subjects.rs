@@ -1,8 +1,8 @@
 //! The tables that are fuzzed: every edition, and the samples of what no edition has.
 
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
-use cobotwire_core::{Direction, Form, Listening, Table};
+use cobotwire_core::{Direction, Form, Listening, Plans, Rules, Table};
 
 use crate::oracle::Oracle;
 use crate::records::Edition;
@@ -42,12 +42,25 @@ pub struct Subject {
     /// Every form of its messages, for the script to pick from.
     pub forms: Vec<Form>,
     oracles: Vec<Oracle>,
+    rules: Vec<Rules>,
+    plans: [OnceLock<Plans>; LISTENING.len()],
 }
 
 impl Subject {
     /// The oracle for one of [`LISTENING`], by its index.
     pub fn oracle(&self, listening: usize, unknown: bool) -> &Oracle {
         &self.oracles[2 * listening + usize::from(unknown)]
+    }
+
+    /// The core's rules for the same.
+    pub fn rules(&self, listening: usize, unknown: bool) -> &Rules {
+        &self.rules[2 * listening + usize::from(unknown)]
+    }
+
+    /// How columns are read. To make that takes long, and not every target needs it.
+    pub fn plans(&self, listening: usize) -> &Plans {
+        let make = || Plans::new(&self.edition.table, LISTENING[listening]);
+        self.plans[listening].get_or_init(make)
     }
 }
 
@@ -59,14 +72,31 @@ pub fn all() -> &'static [Subject] {
 
 fn subject((name, text): (&'static str, &str)) -> Subject {
     let edition = Edition::read(text);
-    let oracles = LISTENING.iter().flat_map(|listening| {
-        [false, true].map(|unknown| Oracle::new(&edition.table, *listening, unknown))
-    });
+    let table = &edition.table;
+    let each = || {
+        LISTENING
+            .iter()
+            .flat_map(|way| [(*way, false), (*way, true)])
+    };
+    let oracles = each().map(|(way, unknown)| Oracle::new(table, way, unknown));
+    let rules = each().map(|(way, unknown)| rules(table, way, unknown));
     Subject {
         name,
         oracles: oracles.collect(),
+        rules: rules.collect(),
         forms: forms(&edition.table),
+        plans: Default::default(),
         edition,
+    }
+}
+
+/// The rules for listening so; `unknown`: to ids, too, that the table lacks.
+pub fn rules(table: &Table, listening: Listening, unknown: bool) -> Rules {
+    let rules = table.rules(listening).clone();
+    if unknown {
+        rules.accepting_unknown()
+    } else {
+        rules
     }
 }
 

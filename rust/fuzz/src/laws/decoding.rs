@@ -1,7 +1,8 @@
 //! The laws of decoding, and that the core reads as the oracle does.
 
 use cobotwire_core::{
-    Choice, DecodeError, Direction, Event, Layout, Listening, Reason, Table, Value, decode, encode,
+    Choice, DecodeError, Direction, Event, Framer, Layout, Listening, Reason, Table, Value, decode,
+    encode,
 };
 
 use crate::common::{Sample, Samples};
@@ -21,7 +22,7 @@ pub fn frames_read_as_the_oracles(data: &[u8]) {
         };
         let oracle = input.subject.oracle(index, false);
         hold(table, oracle, *direction, &input.stream);
-        let mut framer = cobotwire_core::Framer::new(table.rules(*listening).clone());
+        let mut framer = Framer::new(table.rules(*listening).clone());
         framer.feed(&input.stream, |event| {
             if let Event::Frame { frame, .. } = event {
                 hold(table, oracle, *direction, frame.bytes());

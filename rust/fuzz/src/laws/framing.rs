@@ -2,6 +2,7 @@
 
 use cobotwire_core::{Event, Framer, Rules};
 
+use super::tally::Count;
 use crate::common::{Owned, owned};
 use crate::input::{Chunk, Cutting, Input};
 use crate::oracle::Oracle;
@@ -9,7 +10,7 @@ use crate::oracle::Oracle;
 /// After each chunk: the same events as the oracle's, at the same offsets, and the same bytes wait.
 pub fn events_are_the_oracles(data: &[u8]) {
     let input = Input::read(data);
-    hold(input.oracle(), &input.rules(), &input.chunks());
+    hold(input.oracle(), input.rules(), &input.chunks());
 }
 
 /// All of it for any table.
@@ -20,6 +21,7 @@ pub fn hold(oracle: &Oracle, rules: &Rules, chunks: &[Chunk<'_>]) {
         rules,
         offset: 0,
         open: vec![],
+        count: Count::default(),
     };
     for chunk in chunks {
         line.open.extend(chunk.bytes);
@@ -32,6 +34,7 @@ pub fn hold(oracle: &Oracle, rules: &Rules, chunks: &[Chunk<'_>]) {
     }
     line.expect(&mut framer, true, |framer, sink| framer.flush(sink));
     assert_eq!(framer.pending(), 0, "after a flush nothing waits");
+    line.count.check(framer.tally());
     let fed: usize = chunks.iter().map(|chunk| chunk.bytes.len()).sum();
     assert_eq!(line.offset, fed as u64, "every byte is accounted for");
 }
@@ -42,6 +45,7 @@ struct Line<'a> {
     rules: &'a Rules,
     offset: u64,
     open: Vec<u8>,
+    count: Count,
 }
 
 impl Line<'_> {
@@ -67,6 +71,7 @@ impl Line<'_> {
                 (*offset, &data[..], *why),
                 (self.offset + at as u64, bytes, reason)
             );
+            self.count.add(self.oracle, bytes, reason);
             at += size;
         }
         assert_eq!(given.next(), None, "no event but the oracle's");

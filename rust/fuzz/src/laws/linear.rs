@@ -2,11 +2,13 @@
 
 use std::time::Duration;
 
+use cobotwire_core::OffsetReader;
 use rustix::time::{ClockId, clock_gettime};
 
-use crate::input::Input;
+use crate::input::{Chunk, Input};
 
-const SHORT: usize = 8 << 10;
+/// For the framer, and for bulk reading, whose blocks are longer than the other.
+const SHORT: [usize; 2] = [8 << 10, 128 << 10];
 const TIMES: usize = 8;
 /// Quadratic work would take `TIMES` times as long.
 const MOST: u32 = 3;
@@ -20,8 +22,9 @@ pub fn work_grows_with_the_input(data: &[u8]) {
     if input.stream.is_empty() {
         return;
     }
-    let short = repeated(&input.stream, SHORT);
-    let long = repeated(&input.stream, SHORT * TIMES);
+    let size = SHORT[usize::from(input.long)];
+    let short = repeated(&input.stream, size);
+    let long = repeated(&input.stream, size * TIMES);
     let (mut least_short, mut least_long) = (Duration::MAX, Duration::MAX);
     for _ in 0..TRIES {
         // The short one as often as to read as many bytes.
@@ -42,16 +45,33 @@ fn time(input: &Input, stream: &[u8], times: usize) -> Duration {
     let chunks = input.cutting.cut(stream);
     let started = own_time();
     for _ in 0..times {
-        let mut framer = input.framer();
-        for chunk in &chunks {
-            framer.feed(chunk.bytes, |_| ());
-            if chunk.flush {
-                framer.flush(|_| ());
-            }
+        if input.long {
+            read(input, &chunks);
+        } else {
+            cut(input, &chunks);
         }
-        framer.flush(|_| ());
     }
     own_time() - started
+}
+
+fn cut(input: &Input, chunks: &[Chunk<'_>]) {
+    let mut framer = input.framer();
+    for chunk in chunks {
+        framer.feed(chunk.bytes, |_| ());
+        if chunk.flush {
+            framer.flush(|_| ());
+        }
+    }
+    framer.flush(|_| ());
+}
+
+fn read(input: &Input, chunks: &[Chunk<'_>]) {
+    let mut reader = OffsetReader::new(input.rules().clone());
+    for chunk in chunks {
+        reader.feed(chunk.bytes);
+        reader.take();
+    }
+    reader.flush();
 }
 
 /// What this thread has computed so far.
