@@ -19,7 +19,14 @@ ROOT = HERE.parent.parent
 TOOLS = ROOT / ".cargo-tools" / "bin"
 # The largest input of each. A run is a stream, or a table with a stream; long enough for frames to
 # stand beside each other in every way, short enough for thousands of runs a second.
-LARGEST = {"framer": 1024, "chunks": 1024, "decode": 1024, "columns": 1024, "tables": 512, "linear": 256}
+LARGEST = {
+    "framer": 1024,
+    "chunks": 1024,
+    "decode": 1024,
+    "columns": 1024,
+    "tables": 512,
+    "linear": 256,
+}
 # Far above what any input takes: what takes longer hangs.
 SECONDS_FOR_ONE_INPUT = 20
 SECONDS_TO_MINIMISE = 20

@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cobotwire_core::{DecodeError, Event, Framer, decode};
+use cobotwire_core::{DecodeError, Event, Framer, OffsetReader, Rules, decode};
 use common::{Owned, events};
 use records::Edition;
 use replay::{Single, Stream};
@@ -45,13 +45,17 @@ fn tables() -> HashMap<String, Edition> {
         .collect()
 }
 
-fn framer(tables: &HashMap<String, Edition>, stream: &Stream) -> Framer {
+fn rules(tables: &HashMap<String, Edition>, stream: &Stream) -> Rules {
     let rules = tables[&stream.table].table.rules(stream.listening).clone();
-    Framer::new(if stream.unknown {
+    if stream.unknown {
         rules.accepting_unknown()
     } else {
         rules
-    })
+    }
+}
+
+fn framer(tables: &HashMap<String, Edition>, stream: &Stream) -> Framer {
+    Framer::new(rules(tables, stream))
 }
 
 /// The events that the file tells, with their offsets and bytes.
@@ -110,6 +114,30 @@ fn every_found_stream_gives_them_however_it_is_cut() {
             let found = events(&mut framer(&tables, &stream), bytes.chunks(size));
             assert_eq!(found, told(&stream), "in chunks of {size}: {stream:?}");
         }
+    }
+}
+
+#[test]
+fn bulk_reading_finds_their_frames() {
+    let tables = tables();
+    for stream in replay::streams(&text("streams.txt")) {
+        if stream.chunks.iter().any(|(_, silence)| *silence) {
+            continue;
+        }
+        let mut reader = OffsetReader::new(rules(&tables, &stream));
+        let mut frames = Vec::new();
+        for (bytes, _) in &stream.chunks {
+            reader.feed(bytes);
+            frames.extend(reader.take().frames);
+        }
+        reader.flush();
+        frames.extend(reader.take().frames);
+        let told = told(&stream).into_iter();
+        let told: Vec<u64> = told
+            .filter(|event| event.2.is_none())
+            .map(|e| e.0)
+            .collect();
+        assert_eq!(frames, told, "{stream:?}");
     }
 }
 

@@ -20,7 +20,16 @@ fn main() {
     match &target[..] {
         "tables" => println!("{:#?}", random::table(&mut Bytes(&data))),
         "decode" => frames(&Input::read(&data)),
+        "columns" | "linear" => pattern(&Input::read(&data)),
         _ => stream(&Input::read(&data)),
+    }
+}
+
+/// What a long stream is made of, if it is one.
+fn pattern(input: &Input) {
+    stream(input);
+    if input.long {
+        println!("of which a long stream was made: {:?}", input.cutting);
     }
 }
 
