@@ -6,7 +6,7 @@ EXAMPLES ?= 100
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test rust-test gen bench fuzz clean
+.PHONY: help demo test lint python-test rust-test gen bench plots fuzz clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -36,8 +36,15 @@ python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
 
-bench: .venv/.tools .venv/.native ## how fast, beside the limits
+bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py
+	$(BIN)/python bench/resync.py
+
+plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
+	$(BIN)/python -m pip install --quiet --group bench
+	mkdir -p target
+	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
+	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
 
 fuzz: .venv/.tools .venv/.native $(CARGO_FUZZ) ## search for faults, FUZZ_SECONDS (60) a target; CONTRIBUTING.md says what then
 	cargo clippy --manifest-path rust/fuzz/Cargo.toml --all-targets --quiet -- -D warnings

@@ -26,14 +26,28 @@ MAY_IMPORT: dict[str, set[str]] = {
     "editions": {"errors", "table", "values", "driver"},
     "sim": {"errors", "table", "codec", "session"},
     "explain": {"errors", "table", "codec"},
+    "diagnose": {"errors", "table", "codec"},
     "demo": {"codec", "driver", "editions", "sim"},
-    "cli": {"errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"},
+    "cli": {
+        "errors",
+        "table",
+        "codec",
+        "driver",
+        "editions",
+        "sim",
+        "session",
+        "explain",
+        "demo",
+        "diagnose",
+    },
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.
 ONE_IMPORTER = {
     "serial": ["transport/serial.py"],
     "click": ["cli/"],
     "rich": ["cli/"],
+    "numpy": ["codec/columns.py"],
+    "pyarrow": ["codec/arrow.py"],
 }
 
 

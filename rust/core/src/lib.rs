@@ -23,15 +23,17 @@ mod table;
 mod tally;
 mod write;
 
-pub use bulk::{Cells, ColumnReader, Columns, Numbers, OffsetReader, Offsets, Plans, Rows, Spans};
+pub use bulk::{
+    Advise, Cells, ColumnReader, Columns, Numbers, OffsetReader, Offsets, Plans, Rows, Spans,
+};
 pub use check::{Check, crc16_modbus};
-pub use decode::{Decoded, decode};
+pub use decode::{Decoded, decode, read};
 pub use encode::{Choice, encode};
 pub use error::{
     BadRaw, BadValue, DecodeError, EncodeError, Misfit, Reason, TableError, ValueFault,
 };
 pub use field::{Case, Field, Number, Order};
-pub use frame::{Frame, FrameFormat};
+pub use frame::{Frame, FrameFormat, OwnedFrame};
 pub use framer::{Event, Framer};
 pub use given::{Given, Row, Unread};
 pub use judge::{Rules, Verdict};

@@ -86,13 +86,9 @@ impl Reader<'_> {
 
     fn refuse(&self, place: (usize, usize, usize), whole: i64, start: usize) -> BadRaw {
         let (field, case, element) = place;
-        let Form {
-            command, layout, ..
-        } = self.form;
         let offset = self.offset + start;
         BadRaw {
-            command,
-            layout,
+            form: self.form,
             field,
             case,
             element,

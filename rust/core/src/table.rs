@@ -154,7 +154,9 @@ impl Table {
         &self.commands
     }
 
-    pub(crate) fn layout(&self, form: Form) -> Option<&Layout> {
+    /// The layout of a form.
+    #[must_use]
+    pub fn layout(&self, form: Form) -> Option<&Layout> {
         let command = self.commands.get(form.command)?;
         command.layouts(form.direction).get(form.layout)
     }

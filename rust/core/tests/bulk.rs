@@ -11,6 +11,8 @@
 mod common;
 mod records;
 
+use std::sync::Arc;
+
 use cobotwire_core::{
     Cells, ColumnReader, Columns, Direction, Event, Form, Framer, Listening, Numbers, OffsetReader,
     Plans, Spans, Table, Tally, Value, decode,
@@ -112,12 +114,12 @@ const LISTENING: [Listening; 3] = [
     Listening::Both,
 ];
 
-fn check(table: &Table, stream: &[u8], dice: &mut Dice) {
+fn check(table: &Arc<Table>, stream: &[u8], dice: &mut Dice) {
     for listening in LISTENING {
         let slow = slowly(table, listening, stream);
         let offsets: Vec<u64> = slow.frames.iter().map(|(offset, _)| *offset).collect();
 
-        let mut reader = OffsetReader::new(table.rules(listening).clone());
+        let mut reader = OffsetReader::new(table.rules(listening).clone(), None);
         let (mut frames, mut noise) = (Vec::new(), Spans::default());
         for chunk in dice.chunks(stream) {
             reader.feed(chunk);
@@ -135,8 +137,8 @@ fn check(table: &Table, stream: &[u8], dice: &mut Dice) {
         assert_eq!(noise, slow.noise);
         assert_eq!(Some(reader.tally()), slow.tally.as_ref());
 
-        let plans = Plans::new(table, listening);
-        let mut reader = ColumnReader::new(table, &plans, Numbers::Physical, None);
+        let plans = Arc::new(Plans::new(table, listening));
+        let mut reader = ColumnReader::new(Arc::clone(table), plans, Numbers::Physical, None);
         reader.feed(stream);
         reader.flush();
         let columns = reader.take();
@@ -185,6 +187,7 @@ fn bulk_reading_gives_what_framer_and_decoder_give() {
     let mut dice = Dice(4);
     for path in ["tests/data/mycobot.json", "tests/data/mycobot280.json"] {
         let edition = Edition::read(&std::fs::read_to_string(path).unwrap());
+        let table = Arc::new(edition.table);
         let frames: Vec<Vec<u8>> = edition
             .vectors
             .iter()
@@ -198,19 +201,11 @@ fn bulk_reading_gives_what_framer_and_decoder_give() {
             (300_000, 3),
             (200_000, 60),
         ] {
-            check(
-                &edition.table,
-                &stream(&mut dice, &frames, size, noise),
-                &mut dice,
-            );
+            check(&table, &stream(&mut dice, &frames, size, noise), &mut dice);
         }
-        check(&edition.table, &vec![0xFE; 150_000], &mut dice);
-        check(
-            &edition.table,
-            &[0xFE, 0xFE, 0x0E, 0x20].repeat(40_000),
-            &mut dice,
-        );
-        check(&edition.table, &frames[0].repeat(40_000), &mut dice);
+        check(&table, &vec![0xFE; 150_000], &mut dice);
+        check(&table, &[0xFE, 0xFE, 0x0E, 0x20].repeat(40_000), &mut dice);
+        check(&table, &frames[0].repeat(40_000), &mut dice);
     }
 }
 
@@ -220,24 +215,27 @@ fn frames_that_hold_frames_do_not_mislead_the_lanes() {
     let edition = Edition::read(&std::fs::read_to_string("tests/data/mycobot.json").unwrap());
     let inner = [0xFE, 0xFE, 0x03, 0x12, 0x01, 0xFA];
     let outer = [&[0xFE, 0xFE, 0x0E, 0x20][..], &inner, &inner, &[0xFA]].concat();
+    let table = Arc::new(edition.table);
     let mut dice = Dice(5);
     for shift in 0..outer.len() {
         let stream = [vec![0; shift], outer.repeat(12_000)].concat();
-        check(&edition.table, &stream, &mut dice);
+        check(&table, &stream, &mut dice);
     }
 }
 
 #[test]
 fn raw_columns_hold_the_whole_numbers_in_small_types() {
     let edition = Edition::read(&std::fs::read_to_string("tests/data/mycobot280.json").unwrap());
-    let plans = Plans::new(&edition.table, Listening::To(Direction::Reply));
+    let table = Arc::new(edition.table);
+    let plans = Arc::new(Plans::new(&table, Listening::To(Direction::Reply)));
+    let reader = |old| ColumnReader::new(Arc::clone(&table), Arc::clone(&plans), Numbers::Raw, old);
     let frame = [
         0xFE, 0xFE, 0x0E, 0x20, 0, 1, 0xFF, 0xFF, 0x80, 0, 0x7F, 0xFF, 0, 0, 1, 0, 0xFA,
     ];
-    let mut reader = ColumnReader::new(&edition.table, &plans, Numbers::Raw, None);
-    reader.feed(&frame);
-    reader.feed(&frame);
-    let columns = reader.take();
+    let mut first = reader(None);
+    first.feed(&frame);
+    first.feed(&frame);
+    let columns = first.take();
     let rows = columns
         .rows
         .iter()
@@ -248,9 +246,9 @@ fn raw_columns_hold_the_whole_numbers_in_small_types() {
     assert_eq!(rows.fields, [Cells::I16([row, row].concat())]);
 
     // Its memory serves the next one.
-    let mut reader = ColumnReader::new(&edition.table, &plans, Numbers::Raw, Some(columns));
-    reader.feed(&frame);
-    let again = reader.take();
+    let mut second = reader(Some(columns));
+    second.feed(&frame);
+    let again = second.take();
     let rows = again
         .rows
         .iter()

@@ -46,6 +46,18 @@ pub enum Cells {
     I64(Vec<i64>),
 }
 
+/// Told of memory that is about to be filled: where it starts, and its bytes.
+pub type Advise = fn(*const u8, usize);
+
+/// Have memory for so many more.
+pub(crate) fn reserve<T>(all: &mut Vec<T>, more: usize, advise: Advise) {
+    if all.capacity() - all.len() < more {
+        all.reserve_exact(more);
+        let spare = all.spare_capacity_mut();
+        advise(spare.as_ptr().cast(), size_of_val(spare));
+    }
+}
+
 /// Do the same with the vector of whatever type.
 macro_rules! each {
     ($cells:expr, $vector:ident => $what:expr) => {
@@ -91,6 +103,11 @@ impl Cells {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Have memory for so many more.
+    pub(crate) fn reserve(&mut self, more: usize, advise: Advise) {
+        each!(self, all => reserve(all, more, advise));
     }
 
     /// Forget the numbers, keep their memory.

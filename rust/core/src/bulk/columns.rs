@@ -1,10 +1,13 @@
 //! The values of a whole stream, in a column for each field of each message.
 
+use std::sync::Arc;
+
 use super::block::{Block, Found};
 use super::buckets::Buckets;
-use super::cells::{Cells, Numbers};
+use super::cells::{Advise, Cells, Numbers, reserve};
 use super::decode::Job;
 use super::plan::Plans;
+use super::sample::expected;
 use super::spans::Spans;
 use super::stream::{Collect, Stream};
 use crate::legal::Form;
@@ -23,7 +26,7 @@ pub struct Rows {
 }
 
 /// The messages of a stretch of a stream.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
     /// One for each form of the table that is listened to.
     pub rows: Vec<Rows>,
@@ -34,29 +37,38 @@ pub struct Columns {
 }
 
 /// Decodes a stream into columns.
-pub struct ColumnReader<'t> {
+pub struct ColumnReader {
     stream: Stream,
-    sorter: Sorter<'t>,
+    sorter: Sorter,
 }
 
-struct Sorter<'t> {
-    table: &'t Table,
-    plans: &'t Plans,
+struct Sorter {
+    table: Arc<Table>,
+    plans: Arc<Plans>,
     buckets: Buckets,
     rows: Vec<Rows>,
     refused: Vec<u64>,
 }
 
-impl<'t> ColumnReader<'t> {
+impl ColumnReader {
     /// A reader at the start of a stream, with the memory of what an earlier one found, if any.
     #[must_use]
-    pub fn new(table: &'t Table, plans: &'t Plans, numbers: Numbers, old: Option<Columns>) -> Self {
+    pub fn new(
+        table: Arc<Table>,
+        plans: Arc<Plans>,
+        numbers: Numbers,
+        old: Option<Columns>,
+    ) -> Self {
         let forms = plans.groups.iter().flat_map(|plan| &plan.forms);
-        let mut rows: Vec<Rows> = forms.map(|form| Rows::new(table, *form, numbers)).collect();
+        let mut rows: Vec<Rows> = forms
+            .map(|form| Rows::new(&table, *form, numbers))
+            .collect();
         let mut refused = Vec::new();
         if let Some(mut old) = old {
-            for (new, old) in rows.iter_mut().zip(old.rows) {
-                new.reuse(old);
+            for old in old.rows {
+                if let Some(new) = rows.iter_mut().find(|new| new.form == old.form) {
+                    new.reuse(old);
+                }
             }
             old.refused.clear();
             refused = old.refused;
@@ -70,6 +82,22 @@ impl<'t> ColumnReader<'t> {
                 rows,
                 refused,
             },
+        }
+    }
+
+    /// Ask for the memory that the values of `data` will need, as far as a look at parts of it tells.
+    pub fn expect(&mut self, data: &[u8], advise: Advise) {
+        let Sorter { plans, rows, .. } = &mut self.sorter;
+        let counts = expected(self.stream.rules(), plans.groups.len(), data);
+        for (plan, count) in plans.groups.iter().zip(counts) {
+            let first = plan.forms.first();
+            let Some(rows) = rows.iter_mut().find(|rows| Some(&rows.form) == first) else {
+                continue;
+            };
+            reserve(&mut rows.offsets, count, advise);
+            for (field, cells) in plan.fields.iter().flatten().zip(&mut rows.fields) {
+                cells.reserve(count * field.numbers.len(), advise);
+            }
         }
     }
 
@@ -124,7 +152,7 @@ impl Rows {
             std::mem::discriminant(new) == std::mem::discriminant(old)
         };
         let columns = self.fields.len() == old.fields.len();
-        if self.form == old.form && columns && self.fields.iter().zip(&old.fields).all(alike) {
+        if columns && self.fields.iter().zip(&old.fields).all(alike) {
             *self = old;
             self.offsets.clear();
             self.fields.iter_mut().for_each(Cells::clear);
@@ -142,7 +170,7 @@ impl Rows {
     }
 }
 
-impl Collect for Sorter<'_> {
+impl Collect for Sorter {
     fn take(&mut self, offset: u64, block: &Block, found: &[Found], tally: &mut Tally) {
         self.buckets.fill(found);
         self.buckets.drain(|group, frames| {
@@ -151,7 +179,7 @@ impl Collect for Sorter<'_> {
             };
             tally.add_frames(plan.id, frames.len() as u64);
             let job = Job {
-                table: self.table,
+                table: &self.table,
                 block,
                 offset,
                 frames,

@@ -11,13 +11,14 @@ mod decode;
 mod lanes;
 mod offsets;
 mod plan;
+mod sample;
 mod scale;
 mod spans;
 mod stream;
 mod window;
 mod words;
 
-pub use cells::{Cells, Numbers};
+pub use cells::{Advise, Cells, Numbers};
 pub use columns::{ColumnReader, Columns, Rows};
 pub use offsets::{OffsetReader, Offsets};
 pub use plan::Plans;

@@ -1,6 +1,8 @@
 //! Where the frames of a stream are, and nothing else of them.
 
 use super::block::{Block, Found};
+use super::cells::{Advise, reserve};
+use super::sample::expected;
 use super::spans::Spans;
 use super::stream::{Collect, Stream};
 use crate::judge::Rules;
@@ -31,27 +33,27 @@ struct Collected {
 }
 
 impl OffsetReader {
-    /// A reader at the start of a stream.
+    /// A reader at the start of a stream, with the memory of what an earlier one found, if any.
     #[must_use]
-    pub fn new(rules: Rules) -> Self {
+    pub fn new(rules: Rules, old: Option<Offsets>) -> Self {
         let id_at = rules.frame().overhead();
+        let mut frames = old.map(|old| old.frames).unwrap_or_default();
+        frames.clear();
         Self {
             stream: Stream::new(rules),
             collected: Collected {
-                frames: Vec::new(),
+                frames,
                 counts: Counts::default(),
                 id_at,
             },
         }
     }
 
-    /// The same, with the memory of what an earlier one found.
-    #[must_use]
-    pub fn reusing(rules: Rules, old: Offsets) -> Self {
-        let mut reader = Self::new(rules);
-        reader.collected.frames = old.frames;
-        reader.collected.frames.clear();
-        reader
+    /// Ask for the memory that the frames of `data` will need, as far as a look at parts of it tells.
+    pub fn expect(&mut self, data: &[u8], advise: Advise) {
+        let rules = self.stream.rules();
+        let counts = expected(rules, rules.legal().groups().len(), data);
+        reserve(&mut self.collected.frames, counts.iter().sum(), advise);
     }
 
     /// Take bytes; the frames that are certain are kept for [`OffsetReader::take`].

@@ -60,6 +60,10 @@ impl Stream {
         &self.tally
     }
 
+    pub(crate) fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
     /// The noise that is over by now.
     pub(crate) fn take_noise(&mut self) -> Spans {
         self.noise.take()
