@@ -124,7 +124,7 @@ fn bulk_reading_finds_their_frames() {
         if stream.chunks.iter().any(|(_, silence)| *silence) {
             continue;
         }
-        let mut reader = OffsetReader::new(rules(&tables, &stream));
+        let mut reader = OffsetReader::new(rules(&tables, &stream), None);
         let mut frames = Vec::new();
         for (bytes, _) in &stream.chunks {
             reader.feed(bytes);

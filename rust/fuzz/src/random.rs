@@ -123,6 +123,7 @@ fn whole(bytes: &mut Bytes<'_>, ordinary: i64) -> i64 {
         0xFE => i64::MAX,
         0xC0.. => edge.wrapping_neg(),
         0x80.. => edge.wrapping_sub(1),
-        _ => ordinary + i64::from(byte & 0x7F) - 8,
+        0x60.. => edge,
+        _ => ordinary + i64::from(byte) - 8,
     }
 }

@@ -1,7 +1,7 @@
 //! The oracle for values: what a whole legal frame says, form by form, number by number.
 
 use cobotwire_core::{
-    BadRaw, Decoded, Direction, Field, Form, Layout, Number, Order, Table, Value,
+    BadRaw, Decoded, Direction, Field, Form, Layout, Listening, Number, Order, Table, Value,
 };
 
 /// A number of a frame: the index of its field, what stands there, and what that stands for.
@@ -15,13 +15,34 @@ pub fn read(
     frame: &[u8],
     of: Option<usize>,
 ) -> Option<Result<Decoded, BadRaw>> {
-    Some(
-        numbers(table, direction, frame, of)?.map(|(form, read)| Decoded {
-            form,
-            values: values(table, form, &read),
-            address: (!table.frame().addresses.is_empty()).then(|| frame[2]),
-        }),
-    )
+    Some(numbers(table, direction, frame, of)?.map(|found| decoded(table, found, frame)))
+}
+
+/// What reading a frame must give that was heard in one direction or in both: a request's forms go
+/// before a reply's.
+pub fn heard(
+    table: &Table,
+    listening: Listening,
+    frame: &[u8],
+) -> Option<Result<(Form, Vec<Read>), BadRaw>> {
+    let ways: &[Direction] = match &listening {
+        Listening::To(way) => std::slice::from_ref(way),
+        Listening::Both => &[Direction::Request, Direction::Reply],
+    };
+    let read = || {
+        ways.iter()
+            .filter_map(|way| numbers(table, *way, frame, None))
+    };
+    read().find(Result::is_ok).or_else(|| read().next())
+}
+
+/// A form and its numbers as the core tells them.
+pub fn decoded(table: &Table, (form, read): (Form, Vec<Read>), frame: &[u8]) -> Decoded {
+    Decoded {
+        form,
+        values: values(table, form, &read),
+        address: (!table.frame().addresses.is_empty()).then(|| frame[2]),
+    }
 }
 
 /// The same as a form and its numbers.
@@ -75,8 +96,7 @@ fn of_form(form: Form, layout: &Layout, data: &[u8], offset: usize) -> Result<Ve
     let mut read = Vec::new();
     let mut at = 0;
     let bad = |field, case, element, whole, at| BadRaw {
-        command: form.command,
-        layout: form.layout,
+        form,
         field,
         case,
         element,

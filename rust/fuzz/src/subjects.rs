@@ -1,6 +1,6 @@
 //! The tables that are fuzzed: every edition, and the samples of what no edition has.
 
-use std::sync::{LazyLock, OnceLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 use cobotwire_core::{Direction, Form, Listening, Plans, Rules, Table};
 
@@ -8,7 +8,7 @@ use crate::oracle::Oracle;
 use crate::records::Edition;
 
 /// The files as the core's tests have them; a new edition is a new line here.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     (
         "mycobot",
         include_str!("../../core/tests/data/mycobot.json"),
@@ -23,6 +23,7 @@ const FILES: [(&str, &str); 6] = [
     ),
     ("crc", include_str!("../../core/tests/samples/crc.json")),
     ("sum", include_str!("../../core/tests/samples/sum.json")),
+    ("long", include_str!("../../core/tests/samples/long.json")),
     ("alike", include_str!("../../core/tests/samples/alike.json")),
 ];
 
@@ -39,11 +40,13 @@ pub struct Subject {
     pub name: &'static str,
     /// The table, with names and vectors.
     pub edition: Edition,
+    /// The same table, to be shared.
+    pub table: Arc<Table>,
     /// Every form of its messages, for the script to pick from.
     pub forms: Vec<Form>,
     oracles: Vec<Oracle>,
     rules: Vec<Rules>,
-    plans: [OnceLock<Plans>; LISTENING.len()],
+    plans: [OnceLock<Arc<Plans>>; LISTENING.len()],
 }
 
 impl Subject {
@@ -58,8 +61,8 @@ impl Subject {
     }
 
     /// How columns are read. To make that takes long, and not every target needs it.
-    pub fn plans(&self, listening: usize) -> &Plans {
-        let make = || Plans::new(&self.edition.table, LISTENING[listening]);
+    pub fn plans(&self, listening: usize) -> &Arc<Plans> {
+        let make = || Arc::new(Plans::new(&self.table, LISTENING[listening]));
         self.plans[listening].get_or_init(make)
     }
 }
@@ -84,7 +87,8 @@ fn subject((name, text): (&'static str, &str)) -> Subject {
         name,
         oracles: oracles.collect(),
         rules: rules.collect(),
-        forms: forms(&edition.table),
+        forms: forms(table),
+        table: Arc::new(table.clone()),
         plans: Default::default(),
         edition,
     }

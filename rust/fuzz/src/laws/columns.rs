@@ -1,8 +1,10 @@
 //! Bulk reading gives what the oracle gives frame by frame: the same rows, noise and counts, whole
 //! and in batches, into fresh memory and into used.
 
+use std::sync::Arc;
+
 use cobotwire_core::{
-    ColumnReader, Direction, Listening, Numbers, OffsetReader, Plans, Rules, Spans, Table, Value,
+    ColumnReader, Columns, Listening, Numbers, OffsetReader, Plans, Rules, Spans, Table, Value,
 };
 
 use super::rows::{Found, Rows, extend, key, layout};
@@ -21,7 +23,7 @@ const MOST_BATCHES: usize = 8;
 pub fn columns_hold_what_frames_read_as(data: &[u8]) {
     let input = Input::read(data);
     let source = Source {
-        table: &input.subject.edition.table,
+        table: &input.subject.table,
         plans: input.subject.plans(input.listening),
         listening: LISTENING[input.listening],
         oracle: input.subject.oracle(input.listening, false),
@@ -53,7 +55,7 @@ pub fn read(
 /// Where frames and noise are, for any rules.
 fn offsets_hold((oracle, rules): (&Oracle, &Rules), stream: &[u8], chunks: &[Chunk<'_>]) {
     let (expected, count) = frames(oracle, stream);
-    let mut reader = OffsetReader::new(rules.clone());
+    let mut reader = OffsetReader::new(rules.clone(), None);
     let (mut found, mut noise) = (Vec::new(), Spans::default());
     for chunk in chunks {
         reader.feed(chunk.bytes);
@@ -74,11 +76,18 @@ fn offsets_hold((oracle, rules): (&Oracle, &Rules), stream: &[u8], chunks: &[Chu
 
 /// What columns are read by.
 pub struct Source<'a> {
-    pub table: &'a Table,
-    pub plans: &'a Plans,
+    pub table: &'a Arc<Table>,
+    pub plans: &'a Arc<Plans>,
     pub listening: Listening,
     /// It listens so, and believes no unknown id.
     pub oracle: &'a Oracle,
+}
+
+impl Source<'_> {
+    fn reader(&self, numbers: Numbers, old: Option<Columns>) -> ColumnReader {
+        let (table, plans) = (Arc::clone(self.table), Arc::clone(self.plans));
+        ColumnReader::new(table, plans, numbers, old)
+    }
 }
 
 /// What they hold.
@@ -96,7 +105,7 @@ fn columns_hold(source: &Source<'_>, stream: &[u8], chunks: &[Chunk<'_>]) {
     ] {
         let (rows, refused) = expected(source, &frames, numbers);
         for chunks in cuts {
-            let mut reader = ColumnReader::new(source.table, source.plans, numbers, old.take());
+            let mut reader = source.reader(numbers, old.take());
             let mut found = Found::default();
             for (index, chunk) in chunks.iter().enumerate() {
                 reader.feed(chunk.bytes);
@@ -136,17 +145,10 @@ fn frames<'a>(oracle: &Oracle, stream: &'a [u8]) -> (Vec<(usize, &'a [u8])>, Cou
 
 /// Each frame by the first form that allows its values, a request's before a reply's.
 fn expected(source: &Source<'_>, frames: &[(usize, &[u8])], numbers: Numbers) -> (Rows, Vec<u64>) {
-    let ways: &[Direction] = match &source.listening {
-        Listening::To(way) => std::slice::from_ref(way),
-        Listening::Both => &[Direction::Request, Direction::Reply],
-    };
     let mut rows = Rows::default();
     let mut refused = Vec::new();
     for (at, bytes) in frames {
-        let mut read = ways
-            .iter()
-            .filter_map(|way| reading::numbers(source.table, *way, bytes, None)?.ok());
-        let Some((form, read)) = read.next() else {
+        let Some(Ok((form, read))) = reading::heard(source.table, source.listening, bytes) else {
             refused.push(*at as u64);
             continue;
         };

@@ -1,8 +1,8 @@
 //! The laws of decoding, and that the core reads as the oracle does.
 
 use cobotwire_core::{
-    Choice, DecodeError, Direction, Event, Framer, Layout, Listening, Reason, Table, Value, decode,
-    encode,
+    Choice, DecodeError, Direction, Event, Frame, Framer, Layout, Listening, Reason, Rules, Table,
+    Value, decode, encode, read,
 };
 
 use crate::common::{Sample, Samples};
@@ -15,15 +15,20 @@ use crate::subjects::LISTENING;
 /// its reason and at its byte; what was read builds the same bytes again.
 pub fn frames_read_as_the_oracles(data: &[u8]) {
     let input = Input::read(data);
-    let table = &input.subject.edition.table;
+    let table = &input.subject.table;
     for (index, listening) in LISTENING.iter().enumerate() {
+        let rules = input.subject.rules(index, input.unknown);
+        Framer::new(rules.clone()).feed(&input.stream, |event| {
+            if let Event::Frame { frame, .. } = event {
+                heard(table, rules, *listening, frame);
+            }
+        });
         let Listening::To(direction) = listening else {
             continue;
         };
         let oracle = input.subject.oracle(index, false);
         hold(table, oracle, *direction, &input.stream);
-        let mut framer = Framer::new(table.rules(*listening).clone());
-        framer.feed(&input.stream, |event| {
+        Framer::new(table.rules(*listening).clone()).feed(&input.stream, |event| {
             if let Event::Frame { frame, .. } = event {
                 hold(table, oracle, *direction, frame.bytes());
                 read_back(table, *direction, frame.bytes());
@@ -32,14 +37,28 @@ pub fn frames_read_as_the_oracles(data: &[u8]) {
     }
 }
 
+/// As the framer gave it, which knows what it heard.
+fn heard(table: &Table, rules: &Rules, listening: Listening, frame: Frame<'_>) {
+    let bytes = frame.bytes();
+    let expected = match reading::heard(table, listening, bytes) {
+        Some(Ok(found)) => Ok(reading::decoded(table, found, bytes)),
+        Some(Err(bad)) => Err(DecodeError::Raw(bad)),
+        None => Err(DecodeError::Frame {
+            reason: Reason::UnknownId,
+            offset: table.frame().overhead(),
+        }),
+    };
+    assert_eq!(read(table, rules, frame), expected);
+}
+
 /// For any table, of which `oracle` listens to that direction.
 pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
-    let read = decode(table, direction, data, None);
+    let met = decode(table, direction, data, None);
     let (reason, offset) = match oracle.look(data) {
         Found::Frame(size) if size == data.len() => {
             let expected = reading::read(table, direction, data, None);
             let expected = expected.expect("a legal frame has a form");
-            assert_eq!(read, expected.map_err(DecodeError::Raw));
+            assert_eq!(met, expected.map_err(DecodeError::Raw));
             return each_call(table, direction, data);
         }
         Found::Frame(size) => (Reason::Trailing, Some(size)),
@@ -49,9 +68,9 @@ pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
     let Err(DecodeError::Frame {
         reason: given,
         offset: at,
-    }) = read
+    }) = met
     else {
-        panic!("not refused for {reason:?}: {read:?}");
+        panic!("not refused for {reason:?}: {met:?}");
     };
     assert_eq!((given, at), (reason, offset.unwrap_or(at)));
     if offset.is_none() {

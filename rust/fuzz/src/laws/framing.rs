@@ -1,6 +1,6 @@
 //! The laws of framing, and that the core cuts as the oracle does.
 
-use cobotwire_core::{Event, Framer, Rules};
+use cobotwire_core::{Event, Framer, OwnedFrame, Rules};
 
 use super::tally::Count;
 use crate::common::{Owned, owned};
@@ -82,7 +82,7 @@ impl Line<'_> {
     }
 }
 
-/// A frame says of itself what its bytes say.
+/// A frame says of itself what its bytes say, and a copy of it the same.
 fn check_frame(rules: &Rules, event: Event<'_>) {
     let Event::Frame { frame, .. } = event else {
         return;
@@ -92,6 +92,7 @@ fn check_frame(rules: &Rules, event: Event<'_>) {
     assert_eq!(bytes[size], frame.id());
     assert_eq!(bytes[size - 1], frame.length());
     assert!(bytes.len() <= rules.longest());
+    assert_eq!(OwnedFrame::from(frame).get(), frame);
 }
 
 /// However a stream is cut, its events are the same, adjacent noise of one reason joined.

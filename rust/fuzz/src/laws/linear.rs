@@ -66,8 +66,9 @@ fn cut(input: &Input, chunks: &[Chunk<'_>]) {
 }
 
 fn read(input: &Input, chunks: &[Chunk<'_>]) {
-    let mut reader = OffsetReader::new(input.rules().clone());
+    let mut reader = OffsetReader::new(input.rules().clone(), None);
     for chunk in chunks {
+        reader.expect(chunk.bytes, |_, _| ());
         reader.feed(chunk.bytes);
         reader.take();
     }

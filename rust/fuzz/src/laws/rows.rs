@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cobotwire_core::{Cells, Columns, Direction, Form, Layout, Spans, Table};
+use cobotwire_core::{Cells, Columns, Direction, Field, Form, Layout, Spans, Table};
 
 /// The rows of each form: where they start, and its fields' numbers.
 pub type Rows = BTreeMap<(bool, usize, usize), (Vec<u64>, Vec<Vec<i64>>)>;
@@ -32,21 +32,44 @@ pub struct Found {
 impl Found {
     pub fn add(&mut self, table: &Table, columns: Columns) {
         for rows in columns.rows {
-            let fields = layout(table, rows.form).fields().len();
-            assert_eq!(rows.fields.len(), fields, "a column for each field");
+            let fields = layout(table, rows.form).fields();
+            assert_eq!(rows.fields.len(), fields.len(), "a column for each field");
+            for (cells, field) in rows.fields.iter().zip(fields) {
+                assert!(fits(cells, field), "{cells:?} holds {field:?}");
+            }
             if rows.offsets.is_empty() {
                 assert!(rows.fields.iter().all(Cells::is_empty));
                 continue;
             }
             let (offsets, all) = self.rows.entry(key(rows.form)).or_default();
             offsets.extend(rows.offsets);
-            all.resize(fields, vec![]);
+            all.resize(fields.len(), vec![]);
             for (all, cells) in all.iter_mut().zip(&rows.fields) {
                 all.extend(wholes(cells));
             }
         }
         self.refused.extend(columns.refused);
         extend(&mut self.noise, columns.noise);
+    }
+}
+
+/// Whether a column's type holds all that its field allows.
+fn fits(cells: &Cells, field: &Field) -> bool {
+    let (least, most) = match cells {
+        Cells::F64(_) | Cells::I64(_) => (i64::MIN, i64::MAX),
+        Cells::U8(_) => (0, u8::MAX.into()),
+        Cells::I8(_) => (i8::MIN.into(), i8::MAX.into()),
+        Cells::U16(_) => (0, u16::MAX.into()),
+        Cells::I16(_) => (i16::MIN.into(), i16::MAX.into()),
+        Cells::U32(_) => (0, u32::MAX.into()),
+        Cells::I32(_) => (i32::MIN.into(), i32::MAX.into()),
+    };
+    let holds = |whole: &i64| (least..=most).contains(whole);
+    let mut numbers = field.cases.iter().flat_map(|case| &case.numbers);
+    if field.choices.is_empty() {
+        numbers.all(|number| holds(&number.minimum) && holds(&number.maximum))
+    } else {
+        field.choices.iter().all(holds)
     }
 }
 

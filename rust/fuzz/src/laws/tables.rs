@@ -1,5 +1,7 @@
 //! A table is a caller's data: whatever it says, it is refused, or it works.
 
+use std::sync::Arc;
+
 use cobotwire_core::{Direction, Listening, Plans, Table};
 
 use super::{columns, decoding, framing};
@@ -21,7 +23,7 @@ pub fn any_table_is_refused_or_works(data: &[u8]) {
     let (format, commands) = random::table(&mut bytes);
     let count = commands.len();
     let table = match Table::new(format, commands) {
-        Ok(table) => table,
+        Ok(table) => Arc::new(table),
         Err(error) => return assert!(error.command < count, "the error names a command"),
     };
     let flags = bytes.byte();
@@ -43,7 +45,7 @@ pub fn any_table_is_refused_or_works(data: &[u8]) {
     if flags & COLUMNS == COLUMNS {
         let source = columns::Source {
             table: &table,
-            plans: &Plans::new(&table, listening),
+            plans: &Arc::new(Plans::new(&table, listening)),
             listening,
             oracle: &Oracle::new(&table, listening, false),
         };
