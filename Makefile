@@ -1,10 +1,12 @@
 # Each target does its own set-up, once, in .venv. Needs Python 3.11+, Rust and make.
 PYTHON ?= python3
 BIN := .venv/bin
-RUST_SOURCES := $(shell find rust -name '*.rs' -not -path '*/target/*') $(shell find rust -name Cargo.toml) Cargo.toml
+RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
 EXAMPLES ?= 100
+FUZZ_SECONDS ?= 60
+CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test rust-test gen bench plots clean
+.PHONY: help demo test lint python-test rust-test gen bench plots fuzz clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -22,6 +24,7 @@ lint: .venv/.tools .venv/.native ## formatting, linters, types, stubs against th
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest cobotwire._native --mypy-config-file pyproject.toml
 	cargo fmt --all --check
+	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
 	cargo clippy --workspace --all-targets --quiet -- -D warnings
 
 rust-test: ## the Rust core's own tests
@@ -43,8 +46,15 @@ plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again;
 	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
 
+fuzz: .venv/.tools .venv/.native $(CARGO_FUZZ) ## search for faults, FUZZ_SECONDS (60) a target; CONTRIBUTING.md says what then
+	cargo clippy --manifest-path rust/fuzz/Cargo.toml --all-targets --quiet -- -D warnings
+	@status=0; \
+	$(BIN)/python rust/fuzz/run.py $(FUZZ_SECONDS) || status=1; \
+	$(BIN)/python tests/deep.py $(FUZZ_SECONDS) || status=1; \
+	exit $$status
+
 clean: ## forget the environment and what was built
-	rm -rf .venv target
+	rm -rf .venv target .cargo-tools rust/fuzz/target
 
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
@@ -60,3 +70,7 @@ clean: ## forget the environment and what was built
 .venv/.tools: .venv/.base codegen/pyproject.toml
 	$(BIN)/python -m pip install --quiet -e codegen --group test
 	touch $@
+
+# In the project, so that no other project's version is touched.
+$(CARGO_FUZZ):
+	cargo install --quiet --locked --root .cargo-tools --version 0.13.1 cargo-fuzz

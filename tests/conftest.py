@@ -19,7 +19,12 @@ settings.register_profile(
     deadline=None,  # two busy cores: a slow moment is not a failure
     suppress_health_check=[HealthCheck.too_slow],
 )
-settings.register_profile("deep", settings.get_profile("quick"), max_examples=20_000)
+settings.register_profile(
+    "deep",
+    settings.get_profile("quick"),
+    # `make fuzz` takes as many as its time allows (deep.py).
+    max_examples=int(os.environ.get("HYPOTHESIS_EXAMPLES", "20000")),
+)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "quick"))
 
 

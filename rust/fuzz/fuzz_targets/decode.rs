@@ -1,0 +1,10 @@
+#![no_main]
+
+use cobotwire_fuzz::{laws, subjects};
+
+libfuzzer_sys::fuzz_target!(
+    init: {
+        subjects::all();
+    },
+    |data: &[u8]| laws::decoding::frames_read_as_the_oracles(data)
+);

@@ -1,0 +1,168 @@
+//! Bulk reading gives what the oracle gives frame by frame: the same rows, noise and counts, whole
+//! and in batches, into fresh memory and into used.
+
+use std::sync::Arc;
+
+use cobotwire_core::{
+    ColumnReader, Columns, Listening, Numbers, OffsetReader, Plans, Rules, Spans, Table, Value,
+};
+
+use super::rows::{Found, Rows, extend, key, layout};
+use super::tally::Count;
+use crate::input::{Chunk, Cutting, Input};
+use crate::oracle::Oracle;
+use crate::reading;
+use crate::subjects::LISTENING;
+
+/// More than a block of bulk reading with its margin, so that all its ways are gone.
+const SEVERAL_BLOCKS: usize = 150_000;
+
+/// A batch has rows for every form of the table, so that many of them take long.
+const MOST_BATCHES: usize = 8;
+
+pub fn columns_hold_what_frames_read_as(data: &[u8]) {
+    let input = Input::read(data);
+    let source = Source {
+        table: &input.subject.table,
+        plans: input.subject.plans(input.listening),
+        listening: LISTENING[input.listening],
+        oracle: input.subject.oracle(input.listening, false),
+    };
+    let any = (input.oracle(), input.rules());
+    read(&source, any, &input.stream, input.long, input.cutting);
+}
+
+/// All of it for any table; `any`: where frames and noise are, by any rules of it.
+pub fn read(
+    source: &Source<'_>,
+    any: (&Oracle, &Rules),
+    stream: &[u8],
+    long: bool,
+    cutting: Cutting,
+) {
+    let stream = if long {
+        cutting.grown(stream, SEVERAL_BLOCKS)
+    } else {
+        stream.to_vec()
+    };
+    let mut chunks = cutting.cut(&stream);
+    // Readers are flushed once, at the end of a capture.
+    chunks.iter_mut().for_each(|chunk| chunk.flush = false);
+    offsets_hold(any, &stream, &chunks);
+    columns_hold(source, &stream, &chunks);
+}
+
+/// Where frames and noise are, for any rules.
+fn offsets_hold((oracle, rules): (&Oracle, &Rules), stream: &[u8], chunks: &[Chunk<'_>]) {
+    let (expected, count) = frames(oracle, stream);
+    let mut reader = OffsetReader::new(rules.clone(), None);
+    let (mut found, mut noise) = (Vec::new(), Spans::default());
+    for chunk in chunks {
+        reader.feed(chunk.bytes);
+        let part = reader.take();
+        found.extend(part.frames);
+        extend(&mut noise, part.noise);
+    }
+    reader.flush();
+    let part = reader.take();
+    found.extend(part.frames);
+    extend(&mut noise, part.noise);
+    let starts: Vec<u64> = expected.iter().map(|(at, _)| *at as u64).collect();
+    assert_eq!(found, starts, "the oracle's frames");
+    assert_eq!(noise, count.spans, "the oracle's noise");
+    count.check(reader.tally());
+    assert_eq!(reader.pending(), 0);
+}
+
+/// What columns are read by.
+pub struct Source<'a> {
+    pub table: &'a Arc<Table>,
+    pub plans: &'a Arc<Plans>,
+    pub listening: Listening,
+    /// It listens so, and believes no unknown id.
+    pub oracle: &'a Oracle,
+}
+
+impl Source<'_> {
+    fn reader(&self, numbers: Numbers, old: Option<Columns>) -> ColumnReader {
+        let (table, plans) = (Arc::clone(self.table), Arc::clone(self.plans));
+        ColumnReader::new(table, plans, numbers, old)
+    }
+}
+
+/// What they hold.
+fn columns_hold(source: &Source<'_>, stream: &[u8], chunks: &[Chunk<'_>]) {
+    let (frames, count) = frames(source.oracle, stream);
+    let whole = [Chunk {
+        bytes: stream,
+        flush: false,
+    }];
+    // Memory of the same types is used again, that of others is not.
+    let mut old = None;
+    for (numbers, cuts) in [
+        (Numbers::Physical, [&whole[..], chunks]),
+        (Numbers::Raw, [chunks, &whole[..]]),
+    ] {
+        let (rows, refused) = expected(source, &frames, numbers);
+        for chunks in cuts {
+            let mut reader = source.reader(numbers, old.take());
+            let mut found = Found::default();
+            for (index, chunk) in chunks.iter().enumerate() {
+                reader.feed(chunk.bytes);
+                if index % (1 + chunks.len() / MOST_BATCHES) == 0 {
+                    found.add(source.table, reader.take());
+                }
+            }
+            reader.flush();
+            let last = reader.take();
+            found.add(source.table, last.clone());
+            old = Some(last);
+            found.refused.sort_unstable();
+            assert_eq!(found.rows, rows, "the oracle's rows as {numbers:?}");
+            assert_eq!(found.refused, refused, "the oracle's refusals");
+            assert_eq!(found.noise, count.spans, "the oracle's noise");
+            count.check(reader.tally());
+            assert_eq!(reader.pending(), 0);
+        }
+    }
+}
+
+/// The oracle's frames, and its counts.
+fn frames<'a>(oracle: &Oracle, stream: &'a [u8]) -> (Vec<(usize, &'a [u8])>, Count) {
+    let mut count = Count::default();
+    let mut frames = Vec::new();
+    let mut at = 0;
+    for (size, reason) in oracle.spans(stream, true).0 {
+        let bytes = &stream[at..at + size];
+        count.add(oracle, bytes, reason);
+        if reason.is_none() {
+            frames.push((at, bytes));
+        }
+        at += size;
+    }
+    (frames, count)
+}
+
+/// Each frame by the first form that allows its values, a request's before a reply's.
+fn expected(source: &Source<'_>, frames: &[(usize, &[u8])], numbers: Numbers) -> (Rows, Vec<u64>) {
+    let mut rows = Rows::default();
+    let mut refused = Vec::new();
+    for (at, bytes) in frames {
+        let Some(Ok((form, read))) = reading::heard(source.table, source.listening, bytes) else {
+            refused.push(*at as u64);
+            continue;
+        };
+        let fields = layout(source.table, form).fields().len();
+        let (offsets, columns) = rows.entry(key(form)).or_default();
+        columns.resize(fields, vec![]);
+        offsets.push(*at as u64);
+        for (field, whole, value) in read {
+            columns[field].push(match (numbers, value) {
+                (Numbers::Raw, _) => whole,
+                (_, Value::Real(real)) => real.to_bits() as i64,
+                _ => (whole as f64).to_bits() as i64,
+            });
+        }
+    }
+    (rows, refused)
+}

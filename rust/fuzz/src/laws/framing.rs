@@ -1,0 +1,116 @@
+//! The laws of framing, and that the core cuts as the oracle does.
+
+use cobotwire_core::{Event, Framer, OwnedFrame, Rules};
+
+use super::tally::Count;
+use crate::common::{Owned, owned};
+use crate::input::{Chunk, Cutting, Input};
+use crate::oracle::Oracle;
+
+/// After each chunk: the same events as the oracle's, at the same offsets, and the same bytes wait.
+pub fn events_are_the_oracles(data: &[u8]) {
+    let input = Input::read(data);
+    hold(input.oracle(), input.rules(), &input.chunks());
+}
+
+/// All of it for any table.
+pub fn hold(oracle: &Oracle, rules: &Rules, chunks: &[Chunk<'_>]) {
+    let mut framer = Framer::new(rules.clone());
+    let mut line = Line {
+        oracle,
+        rules,
+        offset: 0,
+        open: vec![],
+        count: Count::default(),
+    };
+    for chunk in chunks {
+        line.open.extend(chunk.bytes);
+        line.expect(&mut framer, false, |framer, sink| {
+            framer.feed(chunk.bytes, sink);
+        });
+        if chunk.flush {
+            line.expect(&mut framer, true, |framer, sink| framer.flush(sink));
+        }
+    }
+    line.expect(&mut framer, true, |framer, sink| framer.flush(sink));
+    assert_eq!(framer.pending(), 0, "after a flush nothing waits");
+    line.count.check(framer.tally());
+    let fed: usize = chunks.iter().map(|chunk| chunk.bytes.len()).sum();
+    assert_eq!(line.offset, fed as u64, "every byte is accounted for");
+}
+
+/// What was fed and is in no event yet.
+struct Line<'a> {
+    oracle: &'a Oracle,
+    rules: &'a Rules,
+    offset: u64,
+    open: Vec<u8>,
+    count: Count,
+}
+
+impl Line<'_> {
+    fn expect(
+        &mut self,
+        framer: &mut Framer,
+        at_end: bool,
+        act: impl FnOnce(&mut Framer, &mut dyn FnMut(Event<'_>)),
+    ) {
+        let mut events: Vec<Owned> = Vec::new();
+        let rules = self.rules;
+        act(framer, &mut |event| {
+            check_frame(rules, event);
+            events.push(owned(event));
+        });
+        let (spans, settled) = self.oracle.spans(&self.open, at_end);
+        let mut given = events.iter();
+        let mut at = 0;
+        for (size, reason) in spans {
+            let bytes = &self.open[at..at + size];
+            let (offset, data, why) = given.next().expect("as many events as the oracle's");
+            assert_eq!(
+                (*offset, &data[..], *why),
+                (self.offset + at as u64, bytes, reason)
+            );
+            self.count.add(self.oracle, bytes, reason);
+            at += size;
+        }
+        assert_eq!(given.next(), None, "no event but the oracle's");
+        self.open.drain(..settled);
+        self.offset += settled as u64;
+        assert_eq!(framer.pending(), self.open.len(), "the same bytes wait");
+        assert!(framer.pending() < rules.longest(), "little waits");
+    }
+}
+
+/// A frame says of itself what its bytes say, and a copy of it the same.
+fn check_frame(rules: &Rules, event: Event<'_>) {
+    let Event::Frame { frame, .. } = event else {
+        return;
+    };
+    let bytes = frame.bytes();
+    let size = bytes.len() - usize::from(frame.length());
+    assert_eq!(bytes[size], frame.id());
+    assert_eq!(bytes[size - 1], frame.length());
+    assert!(bytes.len() <= rules.longest());
+    assert_eq!(OwnedFrame::from(frame).get(), frame);
+}
+
+/// However a stream is cut, its events are the same, adjacent noise of one reason joined.
+pub fn chunking_does_not_matter(data: &[u8]) {
+    let input = Input::read(data);
+    let whole = cut(&input, 0);
+    for class in 1..=5 {
+        assert_eq!(cut(&input, class), whole, "cut as {class} says");
+    }
+}
+
+fn cut(input: &Input, class: u8) -> Vec<Owned> {
+    let cutting = Cutting {
+        class,
+        seed: input.cutting.seed,
+        flushes: false,
+    };
+    let chunks = cutting.cut(&input.stream);
+    let chunks = chunks.iter().map(|chunk| chunk.bytes);
+    crate::common::events(&mut input.framer(), chunks)
+}

@@ -1,0 +1,9 @@
+//! What holds for any bytes: one function a target.
+
+pub mod columns;
+pub mod decoding;
+pub mod framing;
+pub mod linear;
+pub mod rows;
+pub mod tables;
+pub mod tally;

@@ -1,0 +1,55 @@
+"""The tables of what no edition has, as the Rust tests read them: ``rust/core/tests/samples``."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from typing import Any
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
+from cobotwire.table import Case, Command, Field, FrameFormat, Layout, Number, Table
+from strategies import TABLES
+from vectors import ROOT
+
+SAMPLES = ROOT / "rust" / "core" / "tests" / "samples"
+
+
+@lru_cache
+def codec_of(name: str, kind: codecs.CodecName) -> Codec:
+    """One codec of an edition or of a sample, made once."""
+    return codecs.load(TABLES.get(name) or sample(name), kind)
+
+
+def sample(name: str) -> Table:
+    """The table of a sample."""
+    record = json.loads((SAMPLES / f"{name}.json").read_text())["table"]
+    frame = record["frame"]
+    format = FrameFormat(
+        bytes(frame["header"]),
+        bytes(frame["footer"]),
+        frame["maximum_length"],
+        frame.get("check", "footer"),
+        tuple(frame.get("addresses", ())),
+    )
+    return Table(
+        **{**record, "frame": format, "commands": tuple(map(_command, record["commands"]))}
+    )
+
+
+def _command(record: dict[str, Any]) -> Command:
+    forms = {way: tuple(map(_layout, record.get(way, ()))) for way in ("request", "reply")}
+    return Command(**{**record, **forms, "notes": tuple(record.get("notes", ()))})
+
+
+def _layout(record: dict[str, Any]) -> Layout:
+    return Layout(tuple(map(_field, record["fields"])))
+
+
+def _field(record: dict[str, Any]) -> Field:
+    rows = {name: tuple(record.get(name, ())) for name in ("choices", "labels")}
+    return Field(**{**record, **rows, "cases": tuple(map(_case, record["cases"]))})
+
+
+def _case(record: dict[str, Any]) -> Case:
+    return Case(tuple(record["when"]), tuple(Number(**number) for number in record["numbers"]))
