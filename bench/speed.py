@@ -80,7 +80,9 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         "raw": Timed(Reused(partial(codec.decode_columns, clean, "reply", raw=True))),
         "noisy raw": Timed(Reused(partial(codec.decode_columns, bad, "reply", raw=True))),
         "NumPy": Timed(partial(peers.numpy_columns, clean)),
-        "pymycobot": Timed(peers.pymycobot_reads(few.data, few.starts), scale=frames / SLOWEST),
+        "pymycobot": Timed(
+            peers.pymycobot_reads(few.data, few.starts.tolist()), scale=frames / SLOWEST
+        ),
         "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few.data), scale=frames / SLOWEST),
     }
     return timed, [
@@ -115,7 +117,9 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
 
     timed = {
         "find": Timed(lambda: peers.FindDecoder(TABLE).feed(some), scale=frames / SLOW),
-        "pymycobot": Timed(peers.pymycobot_reads(few.data, few.starts), scale=frames / SLOWEST),
+        "pymycobot": Timed(
+            peers.pymycobot_reads(few.data, few.starts.tolist()), scale=frames / SLOWEST
+        ),
         "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few.data), scale=frames / SLOWEST),
         "list": Timed(lambda: codec.framer("reply").feed(data)),
         "iterated": Timed(iterated),
