@@ -17,7 +17,7 @@ from rich.console import Console
 
 import speed_peers as peers
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec, Columns, Frame, Scan
+from cobotwire.codec.interface import Codec, Columns, Noise, Scan
 from cobotwire.editions.mycobot280 import TABLE
 from damage import noisy
 from speed_table import Asked, Ratio, Timed, Told, measure, ratios, show, write_json
@@ -25,8 +25,8 @@ from streams import stream_a
 
 ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
 CHUNK = 4096
-# What pymycobot and the textbook decoder read in a round; the time is that of a whole stream.
-SLOW, SLOWEST = 100_000, 2_000
+# What pymycobot reads in a round; the time is that of a whole stream.
+SLOWEST = 2_000
 MIB = 1 << 20
 
 
@@ -101,7 +101,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
 def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     """Messages as Python objects."""
     data = stream_a(TABLE, frames).data
-    some, few = stream_a(TABLE, SLOW).data, stream_a(TABLE, SLOWEST)
+    few = stream_a(TABLE, SLOWEST)
 
     def iterated() -> None:
         for frame in _frames(codec, data):
@@ -116,7 +116,7 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         return [frame.values for frame in codec.framer("reply").feed(data)]  # type: ignore[union-attr]
 
     timed = {
-        "find": Timed(lambda: peers.FindDecoder(TABLE).feed(some), scale=frames / SLOW),
+        "find": Timed(lambda: peers.FindDecoder(TABLE).feed(data)),
         "pymycobot": Timed(
             peers.pymycobot_reads(few.data, few.starts.tolist()), scale=frames / SLOWEST
         ),
@@ -141,7 +141,7 @@ def _frames(codec: Codec, data: bytes) -> Any:
     framer = codec.framer("reply")
     for start in range(0, len(data), 1 << 16):
         for event in framer.feed(data[start : start + (1 << 16)]):
-            if isinstance(event, Frame):
+            if not isinstance(event, Noise):
                 yield event
 
 
