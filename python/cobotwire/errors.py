@@ -51,28 +51,47 @@ class LinkError(CobotwireError, OSError):
 
     Attributes:
         url: the port or URL in question.
+        detail: what went wrong with it.
     """
 
     def __init__(self, url: str, detail: str) -> None:
         self.url = url
+        self.detail = detail
         super().__init__(f"{url}: {detail}")
 
 
 class ReplyTimeout(CobotwireError, TimeoutError):
-    """Silence: the deadline passed without the answer.
+    """Silence: the deadline passed without the answer, or the acknowledgement that was waited for.
 
     Attributes:
         command: the name of the command that was asked.
         waited: seconds from the request to giving up.
         heard: what came meanwhile instead, one line each.
+        tries: how often it was asked; 0 if it could not be sent without risk of a wrong answer.
+        asked: the call with its arguments, for example ``get_encoder(joint=1)``.
     """
 
-    def __init__(self, command: str, waited: float, heard: tuple[str, ...]) -> None:
+    def __init__(
+        self,
+        command: str,
+        waited: float,
+        heard: tuple[str, ...],
+        tries: int = 1,
+        asked: str = "",
+    ) -> None:
         self.command = command
         self.waited = waited
         self.heard = heard
+        self.tries = tries
+        self.asked = asked or command
         meanwhile = "; ".join(heard) if heard else "nothing"
-        super().__init__(f"no answer to {command} within {waited:.3f} s; heard: {meanwhile}")
+        super().__init__(
+            f"no answer to {self.asked} within {waited:.3f} s, {_often(tries)}; heard: {meanwhile}"
+        )
+
+
+def _often(tries: int) -> str:
+    return {0: "not asked", 1: "asked once", 2: "asked twice"}.get(tries, f"asked {tries} times")
 
 
 def _short(value: Any, limit: int = 80) -> str:

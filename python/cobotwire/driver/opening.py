@@ -1,0 +1,65 @@
+"""What both drivers take when they are opened, checked; and how their links are opened."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
+from cobotwire.errors import UsageError
+from cobotwire.session import RetryPolicy
+from cobotwire.table import Table
+from cobotwire.transport import Transport
+
+
+class Settings(NamedTuple):
+    """How a driver asks: ``timeout`` is seconds, None what the edition says of each command."""
+
+    codec: Codec
+    timeout: float | None
+    retry: RetryPolicy
+
+
+def settings(
+    table: Table,
+    timeout: float | None,
+    retry: RetryPolicy | None,
+    codec: codecs.CodecName | None,
+) -> Settings:
+    """Check what a caller wants.
+
+    Raises:
+        UsageError: an argument is not allowed.
+    """
+    seconds("timeout", timeout)
+    if retry is not None and not isinstance(retry, RetryPolicy):
+        raise UsageError("retry", retry, "a RetryPolicy")
+    return Settings(codecs.load(table, codec), timeout, retry or RetryPolicy())
+
+
+def seconds(argument: str, value: float | None) -> None:
+    """A time limit, or None.
+
+    Raises:
+        UsageError: it is none.
+    """
+    right = isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < 3600
+    if value is not None and not right:
+        raise UsageError(argument, value, "seconds above 0 and below 3600")
+
+
+def opened(port: str | Transport, table: Table, baudrate: int | None) -> Transport:
+    """The link: opened by name or URL, or as it was handed over.
+
+    Raises:
+        UsageError: it is neither.
+        LinkError: it is not there, or cannot be opened.
+    """
+    if isinstance(port, str):
+        # Here, not above: a program that brings its own transport need not load pyserial.
+        from cobotwire.transport.serial import SerialTransport
+
+        return SerialTransport(port, table.baudrate if baudrate is None else baudrate)
+    if isinstance(port, Transport):
+        return port
+    raise UsageError("port", port, "the name of a serial port, a URL, or a transport")
