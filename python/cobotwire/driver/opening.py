@@ -48,18 +48,27 @@ def seconds(argument: str, value: float | None) -> None:
         raise UsageError(argument, value, "seconds above 0 and below 3600")
 
 
+def check_port(port: str | Transport) -> None:
+    """What can be opened, or is open.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    if not isinstance(port, str | Transport):
+        raise UsageError("port", port, "the name of a serial port, a URL, or a transport")
+
+
 def opened(port: str | Transport, table: Table, baudrate: int | None) -> Transport:
     """The link: opened by name or URL, or as it was handed over.
 
     Raises:
-        UsageError: it is neither.
+        UsageError: it is neither, or is no URL, or the baud rate is none.
         LinkError: it is not there, or cannot be opened.
     """
-    if isinstance(port, str):
-        # Here, not above: a program that brings its own transport need not load pyserial.
-        from cobotwire.transport.serial import SerialTransport
-
-        return SerialTransport(port, table.baudrate if baudrate is None else baudrate)
-    if isinstance(port, Transport):
+    check_port(port)
+    if not isinstance(port, str):
         return port
-    raise UsageError("port", port, "the name of a serial port, a URL, or a transport")
+    # Here, not above: a program that brings its own transport need not load pyserial.
+    from cobotwire.transport.serial import SerialTransport
+
+    return SerialTransport(port, table.baudrate if baudrate is None else baudrate)

@@ -6,8 +6,7 @@ import errno
 import os
 import select
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -20,11 +19,12 @@ READ_SIZE = 4096
 # A backend that select() does not know is read in slices of this length.
 SLICE_SECONDS = 0.01
 HIGHEST_BAUDRATE = 2**31 - 1
+CLOSED = -1
 NETWORK = ("socket://", "rfc2217://")
 
 
 class SerialTransport:
-    """A link through pyserial; see :class:`cobotwire.transport.interface.Transport`."""
+    """A link through pyserial; see :class:`cobotwire.transport.interface.PollableTransport`."""
 
     def __init__(self, url: str, baudrate: int) -> None:
         """Open the port.
@@ -41,8 +41,8 @@ class SerialTransport:
         self._closed = False
         try:
             self._port = _open(url, baudrate)
-            self._selectable = _selectable(self._port)
-            if not self._selectable:
+            self._descriptor = _descriptor(self._port)
+            if self._descriptor is None:
                 self._port.timeout = SLICE_SECONDS
         # Each backend of pyserial fails in its own way, from KeyError to termios.error.
         except Exception as error:
@@ -51,20 +51,69 @@ class SerialTransport:
                 raise UsageError("port", url, f"what pyserial opens ({cause})") from None
             raise LinkError(url, f"cannot be opened: {_reason(error)}") from error
 
+    def fileno(self) -> int | None:
+        """What an event loop can watch; None: this backend has nothing of the kind."""
+        return None if self._closed else self._descriptor
+
     def write(self, data: bytes) -> None:
         """Send all of ``data``."""
-        with self._faults("cannot be written"):
-            self._port.write(data)
+        if self._descriptor is None:
+            try:
+                self._port.write(data)
+            except Exception as error:
+                raise self._fault("cannot be written", error) from error
+            return
+        taken = self.write_some(data)
+        if taken < len(data):
+            self._write_rest(data[taken:], time.monotonic() + WRITE_TIMEOUT)
+
+    def _write_rest(self, data: bytes, deadline: float) -> None:
+        interrupt: KeyboardInterrupt | None = None
+        while data:
+            try:
+                left = deadline - time.monotonic()
+                if left <= 0:
+                    raise TimeoutError(f"no byte was taken for {WRITE_TIMEOUT:.0f} s")
+                select.select([], [self._descriptor or CLOSED], [], left)
+                data = data[self.write_some(data) :]
+            except KeyboardInterrupt as error:
+                # The frame is finished first: behind half of one, the next would not be heard.
+                interrupt = error
+            except (OSError, ValueError, TypeError) as error:
+                raise self._fault("cannot be written", error) from error
+        if interrupt is not None:
+            raise interrupt
+
+    def write_some(self, data: bytes) -> int:
+        """Send what is taken at once; gives how many bytes that was, perhaps 0."""
+        try:
+            return os.write(self._descriptor, data)  # type: ignore[arg-type]  # faults are caught
+        except BlockingIOError:
+            return 0
+        except Exception as error:
+            raise self._fault("cannot be written", error) from error
 
     def read(self, timeout: float) -> bytes:
         """What has come, as soon as there is something."""
-        with self._faults("cannot be read"):
-            if not self._selectable:
+        descriptor = self._descriptor
+        try:
+            if descriptor is None:
                 return self._read_in_slices(time.monotonic() + timeout)
             # Not by pyserial's timeout: to change it configures the port anew, with every call.
-            ready, _, _ = select.select([self._port.fileno()], [], [], max(0.0, timeout))
-            data: bytes = self._port.read(READ_SIZE) if ready else b""
-            return data
+            ready, _, _ = select.select([descriptor], [], [], timeout if timeout > 0 else 0)
+            if not ready:
+                if self._closed:
+                    raise ClosedError
+                return b""
+            data = os.read(descriptor, READ_SIZE)
+        except BlockingIOError:
+            return b""
+        # Asked of a port that goes away, pyserial fails in as many ways as it has backends.
+        except Exception as error:
+            raise self._fault("cannot be read", error) from error
+        if not data:
+            raise self._fault("cannot be read", OSError("the other side disconnected"))
+        return data
 
     def _read_in_slices(self, deadline: float) -> bytes:
         while True:
@@ -78,21 +127,21 @@ class SerialTransport:
     def close(self) -> None:
         """Give the port back."""
         self._closed = True
+        # Another file may get the number; nobody must read that one.
+        self._descriptor = None if self._descriptor is None else CLOSED
         # What is gone already, or closed by another thread right now, need not be given back.
         with suppress(Exception):
             self._port.close()
 
-    @contextmanager
-    def _faults(self, what: str) -> Iterator[None]:
-        if self._closed:
-            raise LinkError(self.url, f"{what}: it is closed")
-        try:
-            yield
-        # Asked of a port that goes away, pyserial fails in as many ways as it has backends: its
-        # socket with an AttributeError, its posix port with termios.error or TypeError.
-        except Exception as error:
-            reason = "it was closed meanwhile" if self._closed else _reason(error)
-            raise LinkError(self.url, f"{what}: {reason}") from error
+    def _fault(self, what: str, error: Exception) -> LinkError:
+        if isinstance(error, LinkError):
+            return error
+        reason = "it is closed" if self._closed else _reason(error)
+        return LinkError(self.url, f"{what}: {reason}")
+
+
+class ClosedError(Exception):
+    """The port was closed by another thread meanwhile."""
 
 
 def _check_url(url: object) -> None:
@@ -123,12 +172,18 @@ def _open(url: str, baudrate: int) -> Any:
     return port
 
 
-def _selectable(port: Any) -> bool:
+def _descriptor(port: Any) -> int | None:
+    """The number that select() knows the port by; None where the backend does more than to read."""
+    kind = type(port)
+    if kind is not serial.Serial and kind.__module__ != "serial.urlhandler.protocol_socket":
+        return None
     try:
-        select.select([port.fileno()], [], [], 0)
-    except (OSError, ValueError):
-        return False
-    return True
+        descriptor: int = port.fileno()
+        select.select([descriptor], [], [], 0)
+    except (OSError, ValueError, AttributeError):
+        return None
+    os.set_blocking(descriptor, False)
+    return descriptor
 
 
 def _innermost(error: BaseException) -> BaseException:

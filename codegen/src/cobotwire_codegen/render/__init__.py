@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from jinja2 import (
     ChoiceLoader,
@@ -33,21 +34,36 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
     common = {"edition": edition, "named": _named_types(edition)}
     files = {
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
-        for name in ("__init__", "client", "enums", "values")
+        for name in ("__init__", "enums", "values")
     }
     # So that type checkers believe the package's annotations where it is installed.
     files[PurePosixPath("py.typed")] = ""
     for part in ("__init__", "types"):
         template = jinja.get_template(f"python/table/{part}.py.j2")
         files[PurePosixPath(f"table/{part}.py")] = template.render(common)
-    commands = jinja.get_template("python/commands/__init__.py.j2")
-    files[PurePosixPath("commands/__init__.py")] = commands.render(common)
     for family in edition.families:
-        for folder in ("table", "commands"):
-            template = jinja.get_template(f"python/{folder}/family.py.j2")
-            path = PurePosixPath(f"{folder}/{family.name}.py")
-            files[path] = template.render(common, family=family)
+        template = jinja.get_template("python/table/family.py.j2")
+        path = PurePosixPath(f"table/{family.name}.py")
+        files[path] = template.render(common, family=family)
+    for way in python_api.WAYS:
+        files |= _client(jinja, common, way)
     return files
+
+
+def _client(jinja: Environment, common: dict[str, Any], way: python_api.Way) -> Files:
+    """A client for one way of calling: the same templates make all of them."""
+    edition: Edition = common["edition"]
+    name = "client.py" if way is python_api.BLOCKING else f"{way.folder}_client.py"
+    made = {
+        name: jinja.get_template("python/client.py.j2").render(common, way=way),
+        f"{way.folder}/__init__.py": jinja.get_template("python/commands/__init__.py.j2").render(
+            common, way=way
+        ),
+    }
+    template = jinja.get_template("python/commands/family.py.j2")
+    for family in edition.families:
+        made[f"{way.folder}/{family.name}.py"] = template.render(common, family=family, way=way)
+    return {PurePosixPath(path): text for path, text in made.items()}
 
 
 def render_reference(edition: Edition, templates: Path | None = None) -> Files:
