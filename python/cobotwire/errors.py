@@ -1,6 +1,6 @@
 """Everything that can go wrong, sorted by whose fault it is.
 
-One root, four branches, each also the built-in exception that a caller would expect. The
+One root, five branches, each also the built-in exception that a caller would expect. The
 attributes are data; the text is made from them here and nowhere else.
 """
 
@@ -88,6 +88,25 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         super().__init__(
             f"no answer to {self.asked} within {waited:.3f} s, {_often(tries)}; heard: {meanwhile}"
         )
+
+
+class MotionTimeout(CobotwireError, TimeoutError):
+    """The arm has not come to its target in time, or stands still short of it.
+
+    It is not told to stop: call ``stop()`` where it should.
+
+    Attributes:
+        target: where it should go.
+        waited: seconds from the start of waiting to giving up.
+        standing: whether it stood still at the end; False where that is not known.
+    """
+
+    def __init__(self, target: tuple[float, ...], waited: float, standing: bool) -> None:
+        self.target = target
+        self.waited = waited
+        self.standing = standing
+        how = "stands still short of" if standing else "has not reached"
+        super().__init__(f"the arm {how} {list(target)} after {waited:.1f} s")
 
 
 def _often(tries: int) -> str:

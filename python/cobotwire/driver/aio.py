@@ -114,10 +114,17 @@ class AsyncDriver:
         request = self._conversation.prepare(name, values, text_values)
         await self._opened().tell(request, ack_within)
 
-    async def _ask(self, name: str, values: Sequence[Any]) -> dict[str, Any]:
-        """Ask a question and wait for its reply; gives the reply's fields by name."""
+    async def _ask(
+        self, name: str, values: Sequence[Any], *, longest: float | None = None
+    ) -> dict[str, Any]:
+        """Ask a question and wait for its reply; gives the reply's fields by name.
+
+        ``longest`` is less than the usual seconds, where the caller has less time.
+        """
         request = self._conversation.prepare(name, values)
-        return await self._opened().ask(request, self._settings.retry, self._settings.timeout)
+        chosen = self._settings
+        wait = chosen.timeout if longest is None else chosen.at_most(longest, request.command)
+        return await self._opened().ask(request, chosen.retry, wait)
 
     def _opened(self) -> AsyncLine:
         if self._line is None:

@@ -110,7 +110,14 @@ class Driver:
         seconds("ack_within", ack_within)
         self._line.tell(self._conversation.prepare(name, values, text_values), ack_within)
 
-    def _ask(self, name: str, values: Sequence[Any]) -> dict[str, Any]:
-        """Ask a question and wait for its reply; gives the reply's fields by name."""
+    def _ask(
+        self, name: str, values: Sequence[Any], *, longest: float | None = None
+    ) -> dict[str, Any]:
+        """Ask a question and wait for its reply; gives the reply's fields by name.
+
+        ``longest`` is less than the usual seconds, where the caller has less time.
+        """
         request = self._conversation.prepare(name, values)
-        return self._line.ask(request, self._settings.retry, self._settings.timeout)
+        chosen = self._settings
+        wait = chosen.timeout if longest is None else chosen.at_most(longest, request.command)
+        return self._line.ask(request, chosen.retry, wait)

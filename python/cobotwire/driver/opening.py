@@ -8,7 +8,7 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.errors import UsageError
 from cobotwire.session import RetryPolicy
-from cobotwire.table import Table
+from cobotwire.table import Command, Table
 from cobotwire.transport import Transport
 
 
@@ -18,6 +18,11 @@ class Settings(NamedTuple):
     codec: Codec
     timeout: float | None
     retry: RetryPolicy
+
+    def at_most(self, longest: float, command: Command) -> float:
+        """The seconds that a command's answer may take, where there are no more than so many."""
+        usual = command.deadline_ms / 1000 if self.timeout is None else self.timeout
+        return min(longest, usual)
 
 
 def settings(

@@ -24,7 +24,19 @@ RESERVED_FIELDS = frozenset(
     }
 )
 # What every client is and can beside its commands.
-RESERVED_COMMANDS = frozenset({"close", "codec", "listen", "open", "table", "watch"})
+RESERVED_COMMANDS = frozenset(
+    {
+        "close",
+        "codec",
+        "listen",
+        "move_angles",
+        "move_coords",
+        "open",
+        "table",
+        "wait_until_reached",
+        "watch",
+    }
+)
 # A named tuple's own methods, and the types that stand in its annotations.
 RESERVED_ITEMS = frozenset({"count", "index", "int", "float", "bool", "str", "tuple"})
 RESERVED_FAMILIES = frozenset({"types"})
@@ -41,7 +53,9 @@ RESERVED_CLASSES = frozenset(
         "Field",
         "FrameFormat",
         "IntEnum",
+        "AsyncMoving",
         "Layout",
+        "Moving",
         "NamedTuple",
         "Number",
         "Sequence",

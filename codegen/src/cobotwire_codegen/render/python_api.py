@@ -35,9 +35,20 @@ class Way:
     async_: str
     await_: str
     block: str
+    moving_module: str
 
 
-BLOCKING = Way("blocking", "commands", "", "cobotwire.driver", "Driver", "", "", "a ``with``")
+BLOCKING = Way(
+    "blocking",
+    "commands",
+    "",
+    "cobotwire.driver",
+    "Driver",
+    "",
+    "",
+    "a ``with``",
+    "cobotwire.driver.moving",
+)
 ASYNCIO = Way(
     "asyncio",
     "aio",
@@ -47,6 +58,7 @@ ASYNCIO = Way(
     "async ",
     "await ",
     "an ``async with``",
+    "cobotwire.driver.aio_moving",
 )
 WAYS = (BLOCKING, ASYNCIO)
 
@@ -194,6 +206,12 @@ def imports(family: Family) -> tuple[list[str], list[str], bool]:
             enums |= {t.class_name for t in parameter.types if isinstance(t, Enum)} & {kind}
             values |= {t.class_name for t in parameter.types if isinstance(t, Value)} & {kind}
     return sorted(enums), sorted(values), sequence
+
+
+def moves(edition: Edition) -> bool:
+    """Whether the edition has every command that it takes to wait for the end of a motion."""
+    needed = {"joint targets", "coordinate targets", "reached", "moving", "stop"}
+    return needed <= {command.role for command in edition.commands}
 
 
 def value_classes(edition: Edition) -> list[str]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from cobotwire.driver.moving import Moving
 from cobotwire.table import Table
 
 from .commands import (
@@ -24,6 +25,7 @@ from .table import TABLE
 
 
 class MyCobot(
+    Moving,
     PowerCommands,
     MotionCommands,
     CoordsCommands,

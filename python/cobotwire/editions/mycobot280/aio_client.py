@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from cobotwire.driver.aio_moving import AsyncMoving
 from cobotwire.table import Table
 
 from .aio import (
@@ -28,6 +29,7 @@ from .table import TABLE
 
 
 class AsyncMyCobot280(
+    AsyncMoving,
     AsyncPowerCommands,
     AsyncMotionCommands,
     AsyncCoordsCommands,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from cobotwire.driver.moving import Moving
 from cobotwire.table import Table
 
 from .commands import (
@@ -28,6 +29,7 @@ from .table import TABLE
 
 
 class MyCobot280(
+    Moving,
     PowerCommands,
     MotionCommands,
     CoordsCommands,

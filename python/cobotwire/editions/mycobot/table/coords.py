@@ -72,6 +72,7 @@ COMMANDS = (
         notes=(
             "Disputed: x, y and z are carried in tenths of a millimetre. Read: x10, as the example sends it (confidence high).",
         ),
+        role="coordinate target",
     ),
     Command(
         id=0x25,
@@ -108,5 +109,6 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="coordinate targets",
     ),
 )

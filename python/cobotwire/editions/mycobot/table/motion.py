@@ -84,6 +84,7 @@ COMMANDS = (
         notes=(
             "The protocol has no checksum; a request that is damaged on the line is simply another angle, and the arm obeys it.",
         ),
+        role="joint target",
     ),
     Command(
         id=0x22,
@@ -115,6 +116,7 @@ COMMANDS = (
         notes=(
             "The protocol has no checksum; a request that is damaged on the line is simply another angle, and the arm obeys it.",
         ),
+        role="joint targets",
     ),
     Command(
         id=0x26,
@@ -175,6 +177,7 @@ COMMANDS = (
         notes=(
             "Nothing answers; ask is_moving before relying on it. It is no emergency stop, for a frame can be lost on the line; have a switch that cuts the power.",
         ),
+        role="stop",
     ),
     Command(
         id=0x2A,
@@ -222,6 +225,7 @@ COMMANDS = (
         notes=(
             "Disputed: The request always carries the kind of the target, as its last data byte. Read: LEN 0F: six words, then the kind (confidence high).",
         ),
+        role="reached",
     ),
     Command(
         id=0x2B,
@@ -245,6 +249,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="moving",
     ),
     Command(
         id=0x40,
