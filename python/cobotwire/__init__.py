@@ -8,19 +8,46 @@
 ``codec_in_use()`` says which codec does the work: ``native`` (Rust) or ``reference`` (Python).
 """
 
+from typing import TYPE_CHECKING, Any
+
 from cobotwire.codec import chosen as codec_in_use
 from cobotwire.editions.mycobot import MyCobot
-from cobotwire.errors import CobotwireError, LinkError, ProtocolError, ReplyTimeout, UsageError
+from cobotwire.errors import (
+    CobotwireError,
+    LinkError,
+    MotionTimeout,
+    ProtocolError,
+    ReplyTimeout,
+    UsageError,
+)
+from cobotwire.limits import Limits
+from cobotwire.session import RetryPolicy
+
+if TYPE_CHECKING:
+    from cobotwire.editions.mycobot import AsyncMyCobot
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "AsyncMyCobot",
     "CobotwireError",
+    "Limits",
     "LinkError",
+    "MotionTimeout",
     "MyCobot",
     "ProtocolError",
     "ReplyTimeout",
+    "RetryPolicy",
     "UsageError",
     "__version__",
     "codec_in_use",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
+    if name == "AsyncMyCobot":
+        from cobotwire.editions.mycobot import AsyncMyCobot
+
+        return AsyncMyCobot
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -12,6 +12,7 @@ from cobotwire.driver.aio_line import AsyncLine
 from cobotwire.driver.opening import check_port, opened, seconds, settings
 from cobotwire.driver.watching import Watcher, Watchers
 from cobotwire.errors import LinkError
+from cobotwire.limits import Limits
 from cobotwire.session import Conversation, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
@@ -34,6 +35,7 @@ class AsyncDriver:
         baudrate: int | None = None,
         timeout: float | None = None,
         retry: RetryPolicy | None = None,
+        limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
         trace: Watcher | None = None,
     ) -> None:
@@ -43,7 +45,7 @@ class AsyncDriver:
             UsageError: an argument is not allowed.
         """
         check_port(port)
-        self._settings = settings(self.table, timeout, retry, codec)
+        self._settings = settings(self.table, timeout, retry, codec, limits)
         self.codec = self._settings.codec.name
         self._port = port
         self._baudrate = baudrate

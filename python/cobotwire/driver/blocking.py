@@ -10,6 +10,7 @@ from cobotwire import codec as codecs
 from cobotwire.driver.line import SharedLine
 from cobotwire.driver.opening import opened, seconds, settings
 from cobotwire.driver.watching import Watcher, Watchers
+from cobotwire.limits import Limits
 from cobotwire.session import Conversation, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
@@ -35,6 +36,7 @@ class Driver:
         baudrate: int | None = None,
         timeout: float | None = None,
         retry: RetryPolicy | None = None,
+        limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
         trace: Watcher | None = None,
     ) -> None:
@@ -47,6 +49,7 @@ class Driver:
             timeout: seconds that the arm has to answer, asking again included; left out: what the
                 edition says of the command.
             retry: how often queries are asked within that time; left out: up to three times.
+            limits: where the arm may be sent, narrower or wider than the edition says.
             codec: ``native`` or ``reference``; left out: the one in use.
             trace: called with everything that goes over the line; see :meth:`watch`.
 
@@ -54,7 +57,7 @@ class Driver:
             UsageError: an argument is not allowed.
             LinkError: the port is not there, or cannot be opened.
         """
-        self._settings = settings(self.table, timeout, retry, codec)
+        self._settings = settings(self.table, timeout, retry, codec, limits)
         self.codec = self._settings.codec.name
         self._conversation = Conversation(self._settings.codec)
         self._watchers = Watchers(trace)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.errors import UsageError
+from cobotwire.limits import Limits, limited
 from cobotwire.session import RetryPolicy
 from cobotwire.table import Command, Table
 from cobotwire.transport import Transport
@@ -30,6 +31,7 @@ def settings(
     timeout: float | None,
     retry: RetryPolicy | None,
     codec: codecs.CodecName | None,
+    limits: Limits | None,
 ) -> Settings:
     """Check what a caller wants.
 
@@ -39,6 +41,10 @@ def settings(
     seconds("timeout", timeout)
     if retry is not None and not isinstance(retry, RetryPolicy):
         raise UsageError("retry", retry, "a RetryPolicy")
+    if limits is not None:
+        if not isinstance(limits, Limits):
+            raise UsageError("limits", limits, "Limits")
+        table = limited(table, limits)
     return Settings(codecs.load(table, codec), timeout, retry or RetryPolicy())
 
 
