@@ -50,7 +50,7 @@ class SharedLine:
             self._link.write(data)
         self._watchers.sent(data)
         if order is not None:
-            self._await(order)
+            self._await(order, SLICE_SECONDS)
         elif self._leads():
             try:
                 self._sweep(now + CLEAR_SECONDS)
@@ -61,7 +61,8 @@ class SharedLine:
         """Ask a question and wait for its reply; gives the reply's fields by name."""
         with self._state:
             question = self._conversation.ask(request, time.monotonic(), policy, wait)
-        return self._await(question)
+        # What lies there already is read first, without waiting.
+        return self._await(question, 0.0)
 
     def listen(self, seconds: float) -> None:
         """Read what comes unasked for so long; the watchers are told of it."""
@@ -75,11 +76,12 @@ class SharedLine:
             else:
                 time.sleep(min(left, LOOK_SECONDS))
 
-    def _await(self, ticket: Ticket) -> dict[str, Any]:
+    def _await(self, ticket: Ticket, longest: float) -> dict[str, Any]:
         try:
             while not ticket.done:
                 if self._leads():
-                    self._turn(SLICE_SECONDS)
+                    self._turn(longest)
+                    longest = SLICE_SECONDS
                 else:
                     self._follow(ticket)
             return ticket.result()
@@ -107,10 +109,13 @@ class SharedLine:
     def _turn(self, longest: float) -> None:
         """Read once, let time pass, and send what is to be asked then."""
         conversation = self._conversation
-        with self._state:
-            wait = conversation.wait(time.monotonic())
+        if longest:
+            with self._state:
+                wait = conversation.wait(time.monotonic())
+            if wait is not None and wait < longest:
+                longest = wait
         try:
-            data = self._link.read(longest if wait is None else min(wait, longest))
+            data = self._link.read(longest)
         except LinkError as error:
             self._break(error)
             raise

@@ -123,7 +123,7 @@ class Conversation:
 
     def wake(self, now: float) -> list[SessionEvent]:
         """Let time pass. What has come must be received before, or it counts as late."""
-        events = self._host.wake(now)
+        events = [] if self._asked is None else self._host.wake(now)
         for event in events:
             self._tell(event, now)
         for order in [order for order in self._orders if order.until <= now]:
@@ -140,17 +140,17 @@ class Conversation:
             self._heal(self._asked)
         times = [order.until for order in self._orders]
         if self._asked is not None:
-            times.extend(t for t in (self._host.wake_at, self._host.again_at) if t is not None)
-        else:
-            times.extend(self._free_at(question, now) for question in self._queue)
+            times.append(self._host.next_at or now)
+        elif self._queue:
+            times.append(min([self._free_at(question, now) for question in self._queue]))
         return max(0.0, min(times) - now) if times else None
 
     def due(self, now: float) -> bool:
         """Whether :meth:`outgoing` may have something to send now."""
-        if self._asked is not None:
-            again_at = self._host.again_at
-            return again_at is not None and again_at <= now
-        return bool(self._queue) and self._next(now) is not None
+        if self._asked is None:
+            return bool(self._queue)
+        again_at = self._host.again_at
+        return again_at is not None and again_at <= now
 
     def outgoing(self, now: float, dry: bool) -> bytes:
         """The bytes of a question that is to be sent now, for the first time or again.

@@ -50,6 +50,15 @@ class HostSession:
         return None if self._pending is None else self._pending.over_at
 
     @property
+    def next_at(self) -> float | None:
+        """When something is to be done, if nothing is heard until then; None: never."""
+        pending = self._pending
+        if pending is None:
+            return None
+        again_at = self.again_at
+        return pending.over_at if again_at is None else min(pending.over_at, again_at)
+
+    @property
     def again_at(self) -> float | None:
         """When the question that waits is to be asked :meth:`again`; None: not again."""
         pending = self._pending

@@ -44,8 +44,10 @@ class Pending:
     @property
     def over_at(self) -> float:
         """When the wait ends, unless more is heard."""
-        silent_at = None if self.text is None else self.text.silent_at
-        if self.text is None or silent_at is None:
+        if self.text is None:
+            return self.deadline
+        silent_at = self.text.silent_at
+        if silent_at is None:
             return self.deadline
         # A text that has begun may be finished behind the deadline; babble may not go on for ever.
         return min(silent_at, self.deadline + self.text.silence)
