@@ -35,6 +35,7 @@ gen: .venv/.tools ## write the generated files from spec/
 
 bench: .venv/.tools .venv/.native ## how fast, beside the limits
 	$(BIN)/python bench/generator.py
+	$(BIN)/python bench/driver.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target
