@@ -140,7 +140,8 @@ class Conversation:
             self._heal(self._asked)
         times = [order.until for order in self._orders]
         if self._asked is not None:
-            times.append(self._host.next_at or now)
+            next_at = self._host.next_at
+            times.append(now if next_at is None else next_at)
         elif self._queue:
             times.append(min([self._free_at(question, now) for question in self._queue]))
         return max(0.0, min(times) - now) if times else None
@@ -166,7 +167,8 @@ class Conversation:
             return b""
         if not dry:
             # A line that brings more than can be read is never dry.
-            question.ready_since = question.ready_since or now
+            if question.ready_since is None:
+                question.ready_since = now
             if now < question.ready_since + CLEAR_SECONDS:
                 return b""
             if self._host.hold_until(question.request) is not None:
@@ -190,7 +192,8 @@ class Conversation:
             self._queue.appendleft(asked)
 
     def _free_at(self, question: Question, now: float) -> float:
-        return self._host.hold_until(question.request) or now
+        held = self._host.hold_until(question.request)
+        return now if held is None else held
 
     def _next(self, now: float) -> Question | None:
         """The first question that is not held."""
@@ -214,7 +217,7 @@ class Conversation:
         elif isinstance(event, Acknowledged):
             for order in [order for order in self._orders if order.due.done]:
                 self._orders.remove(order)
-                order.succeed(event.message.fields)
+                order.succeed({})
         else:
             for ticket in (asked, *self._orders):
                 if ticket is not None:

@@ -129,7 +129,7 @@ class HostSession:
         self._echo.sent(request, self._heard)
         due = None
         if request.command.ack:
-            due = self._acks.expect(request, now, wait)
+            due = self._acks.expect(request, now, wait, self._heard)
             if self._requests.mistakable(request.command):
                 self._debts.owe(request, due.until)
         return request.frame + request.text, due

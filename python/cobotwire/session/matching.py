@@ -61,9 +61,8 @@ class Matcher:
         acknowledged = self.acks.match(frame, now)
         if acknowledged is None:
             return Unasked(frame)
-        due, message = acknowledged
-        due.done = True
-        return Acknowledged(due.request.command, message, frame)
+        request, message = acknowledged
+        return Acknowledged(request.command, message, frame)
 
     def _weigh_copy(self, pending: Pending, frame: Frame, message: Message) -> SessionEvent:
         """See :mod:`cobotwire.session.echo`."""

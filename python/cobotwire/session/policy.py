@@ -51,7 +51,8 @@ class RetryPolicy:
         """
         if command.safety != "query" or command.text is not None:
             return 1
-        return max(1, min(self.tries, int(wait / self.shortest)))
+        # 0.3 s are three times 0.1 s, whatever binary fractions say.
+        return max(1, min(self.tries, int(wait / self.shortest + 1e-9)))
 
 
 ASK_ONCE = RetryPolicy(tries=1)
