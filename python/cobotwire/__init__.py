@@ -23,9 +23,6 @@ from cobotwire.errors import (
 from cobotwire.limits import Limits
 from cobotwire.session import RetryPolicy
 
-if TYPE_CHECKING:
-    from cobotwire.editions.mycobot import AsyncMyCobot
-
 __version__ = "0.1.0"
 
 __all__ = [
@@ -43,11 +40,14 @@ __all__ = [
     "codec_in_use",
 ]
 
+if TYPE_CHECKING:
+    from cobotwire.editions.mycobot import AsyncMyCobot
+else:
 
-def __getattr__(name: str) -> Any:
-    # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
-    if name == "AsyncMyCobot":
-        from cobotwire.editions.mycobot import AsyncMyCobot
+    def __getattr__(name: str) -> Any:
+        # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
+        if name == "AsyncMyCobot":
+            from cobotwire.editions.mycobot import AsyncMyCobot
 
-        return AsyncMyCobot
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            return AsyncMyCobot
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,6 +1,7 @@
 """Code that must not type-check: each line that ends in `# wrong` is an error, and no other."""
 
-from cobotwire import MyCobot
+import cobotwire
+from cobotwire import AsyncMyCobot, MyCobot
 
 
 def drive(arm: MyCobot) -> None:
@@ -15,4 +16,13 @@ def drive(arm: MyCobot) -> None:
     arm.get_angels()  # wrong
     angles: list[float] = arm.get_angles()  # wrong
     print(arm.get_coords().w)  # wrong
+    print(cobotwire.Nothing)  # wrong
     print(angles)
+    arm.power_on(ack_within=1.0)  # wrong
+    arm.move_angles([0, 0, 0, 0, 0, 0], 30, 5)  # wrong
+
+
+async def drive_async(arm: AsyncMyCobot) -> None:
+    """What is forgotten most."""
+    print(arm.get_angles().j1)  # wrong
+    await arm.send_angles("000000", 30)  # wrong

@@ -7,11 +7,14 @@ from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from cobotwire.driver import Driver
 from cobotwire.errors import UsageError
 from cobotwire.table import Table
+
+if TYPE_CHECKING:
+    from cobotwire.driver.aio import AsyncDriver
 
 DEFAULT = "mycobot"
 
@@ -21,6 +24,7 @@ class Edition(Protocol):
 
     TABLE: Table
     CLIENT: type[Driver]
+    ASYNC_CLIENT: type[AsyncDriver]
 
 
 def names() -> list[str]:

@@ -27,12 +27,10 @@ from .values import (
     WifiAccount,
 )
 
-if TYPE_CHECKING:
-    from .aio_client import AsyncMyCobot
-
 CLIENT = MyCobot
 
 __all__ = [
+    "ASYNC_CLIENT",
     "CLIENT",
     "TABLE",
     "Angles",
@@ -54,11 +52,16 @@ __all__ = [
     "WifiAccount",
 ]
 
+if TYPE_CHECKING:
+    from .aio_client import AsyncMyCobot
 
-def __getattr__(name: str) -> Any:
-    # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
-    if name in ("ASYNC_CLIENT", "AsyncMyCobot"):
-        from .aio_client import AsyncMyCobot
+    ASYNC_CLIENT = AsyncMyCobot
+else:
 
-        return AsyncMyCobot
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    def __getattr__(name: str) -> Any:
+        # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
+        if name in ("ASYNC_CLIENT", "AsyncMyCobot"):
+            from .aio_client import AsyncMyCobot
+
+            return AsyncMyCobot
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

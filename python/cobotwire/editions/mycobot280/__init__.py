@@ -38,12 +38,10 @@ from .values import (
     WifiAccount,
 )
 
-if TYPE_CHECKING:
-    from .aio_client import AsyncMyCobot280
-
 CLIENT = MyCobot280
 
 __all__ = [
+    "ASYNC_CLIENT",
     "CLIENT",
     "TABLE",
     "Angles",
@@ -76,11 +74,16 @@ __all__ = [
     "WifiAccount",
 ]
 
+if TYPE_CHECKING:
+    from .aio_client import AsyncMyCobot280
 
-def __getattr__(name: str) -> Any:
-    # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
-    if name in ("ASYNC_CLIENT", "AsyncMyCobot280"):
-        from .aio_client import AsyncMyCobot280
+    ASYNC_CLIENT = AsyncMyCobot280
+else:
 
-        return AsyncMyCobot280
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    def __getattr__(name: str) -> Any:
+        # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
+        if name in ("ASYNC_CLIENT", "AsyncMyCobot280"):
+            from .aio_client import AsyncMyCobot280
+
+            return AsyncMyCobot280
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
