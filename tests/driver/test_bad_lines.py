@@ -63,14 +63,7 @@ def test_a_reply_may_be_split_at_every_byte(open_arm: Opener, peer_on: Any, cut:
 
 @pytest.mark.parametrize(
     "script",
-    [
-        [ANGLES[:9] + PANIC],
-        [ANGLES[:9] + ANGLES[10:]],
-        [POWERED],
-        [ASK],
-        [SERVO_LEAK],
-        [bytes(277)],
-    ],
+    [ANGLES[:9] + PANIC, ANGLES[:9] + ANGLES[10:], POWERED, ASK, SERVO_LEAK, bytes(277)],
     ids=["a panic cuts it", "a byte is dropped", "another command's", "an echo", "a leak", "NULs"],
 )
 def test_no_reply_is_a_timeout_and_the_next_call_is_right(
