@@ -32,7 +32,7 @@ while data := os.read(master, 4096):
     if data[3] == 0x20:
         os.write(master, {ANSWER!r})
 """
-TURNS, CALLS, WARM_UP = 60, 25, 5
+TURNS, CALLS, WARM_UP = 20, 50, 5
 SETTERS = 1000
 FASTEST_BAUD = 1_000_000
 LIMITS = {"blocking": 2.0, "asyncio": 3.0}

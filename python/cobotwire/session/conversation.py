@@ -126,7 +126,8 @@ class Conversation:
         events = [] if self._asked is None else self._host.wake(now)
         for event in events:
             self._tell(event, now)
-        for order in [order for order in self._orders if order.until <= now]:
+        late = [order for order in self._orders if order.until <= now] if self._orders else ()
+        for order in late:
             self._orders.remove(order)
             if order.due.copied and not self._host.echoes:
                 order.succeed({})
@@ -138,13 +139,14 @@ class Conversation:
         """For how many seconds nothing is to be done unless bytes come; None: without end."""
         if self._asked is not None and not self._host.waiting:
             self._heal(self._asked)
-        times = [order.until for order in self._orders]
+        soonest = None
         if self._asked is not None:
-            next_at = self._host.next_at
-            times.append(now if next_at is None else next_at)
+            soonest = self._host.next_at
         elif self._queue:
-            times.append(min([self._free_at(question, now) for question in self._queue]))
-        return max(0.0, min(times) - now) if times else None
+            soonest = min([self._free_at(question, now) for question in self._queue])
+        for order in self._orders:
+            soonest = order.until if soonest is None else min(soonest, order.until)
+        return None if soonest is None else max(0.0, soonest - now)
 
     def due(self, now: float) -> bool:
         """Whether :meth:`outgoing` may have something to send now."""
@@ -205,7 +207,7 @@ class Conversation:
     def _tell(self, event: SessionEvent, now: float) -> None:
         """Hand an event to the tickets that it concerns."""
         asked = self._asked
-        if isinstance(event, Answered | Refused | Expired):
+        if isinstance(event, (Answered, Refused, Expired)):
             assert asked is not None, "only a question that was asked ends"
             self._asked = None
             if isinstance(event, Answered):

@@ -216,6 +216,6 @@ class HostSession:
     def _match(self, frame: Frame, now: float) -> SessionEvent:
         pending = self._pending
         event = self._matcher.match(frame, pending, now)
-        if pending is not None and isinstance(event, Answered | Refused):
+        if pending is not None and isinstance(event, (Answered, Refused)):
             self._settled(pending)
         return event

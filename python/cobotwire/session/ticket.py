@@ -20,15 +20,22 @@ class Ticket:
         waker: called once when it is over, by whoever feeds the conversation.
     """
 
-    __slots__ = ("_error", "_fields", "done", "heard", "request", "waker")
+    __slots__ = ("_error", "_fields", "_heard", "done", "request", "waker")
 
     def __init__(self, request: Request) -> None:
         self.request = request
         self.done = False
-        self.heard = Heard()
+        self._heard: Heard | None = None
         self.waker: Callable[[], object] | None = None
         self._fields: dict[str, Any] = {}
         self._error: CobotwireError | None = None
+
+    @property
+    def heard(self) -> Heard:
+        """What came meanwhile, and was no answer. Most calls hear nothing, and make none."""
+        if self._heard is None:
+            self._heard = Heard()
+        return self._heard
 
     def succeed(self, fields: dict[str, Any]) -> None:
         """It was answered."""
