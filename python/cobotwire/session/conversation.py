@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cobotwire.codec.interface import Codec
-from cobotwire.errors import CobotwireError, LinkError, ReplyTimeout
+from cobotwire.errors import LinkError, ReplyTimeout
 from cobotwire.session.events import (
     Acknowledged,
     Answered,
@@ -31,7 +31,7 @@ from cobotwire.session.events import (
 )
 from cobotwire.session.host import HostSession
 from cobotwire.session.policy import RetryPolicy
-from cobotwire.session.request import Request, in_words
+from cobotwire.session.request import Request
 from cobotwire.session.ticket import Order, Question, Ticket
 
 # How long what came before a question is read, if there is no end of that.
@@ -132,7 +132,7 @@ class Conversation:
             if order.due.copied and not self._host.echoes:
                 order.succeed({})
             else:
-                order.fail(self._silence(order, now - order.sent_at, 1))
+                order.fail(order.silence(self._codec, now - order.sent_at, 1))
         return events
 
     def wait(self, now: float) -> float | None:
@@ -189,7 +189,7 @@ class Conversation:
         """Ctrl-C came while the state was changed in a driver's thread: another one's question."""
         self._asked = None
         if asked.sent:
-            asked.fail(self._silence(asked, 0.0, 1))
+            asked.fail(asked.silence(self._codec, 0.0, 1))
         elif asked not in self._queue:
             self._queue.appendleft(asked)
 
@@ -215,7 +215,7 @@ class Conversation:
             elif isinstance(event, Refused):
                 asked.fail(event.error)
             else:
-                asked.fail(self._silence(asked, now - event.asked_at, event.tries))
+                asked.fail(asked.silence(self._codec, now - event.asked_at, event.tries))
         elif isinstance(event, Acknowledged):
             for order in [order for order in self._orders if order.due.done]:
                 self._orders.remove(order)
@@ -224,13 +224,3 @@ class Conversation:
             for ticket in (asked, *self._orders):
                 if ticket is not None:
                     ticket.heard.add(event)
-
-    def _silence(self, ticket: Ticket, waited: float, tries: int) -> CobotwireError:
-        request = ticket.request
-        return ReplyTimeout(
-            request.command.name,
-            waited,
-            ticket.heard.lines(),
-            tries,
-            in_words(request, self._codec),
-        )

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cobotwire.errors import CobotwireError, LinkError
+from cobotwire.codec.interface import Codec
+from cobotwire.errors import CobotwireError, LinkError, ReplyTimeout
 from cobotwire.session.acks import Due
 from cobotwire.session.heard import Heard
 from cobotwire.session.policy import RetryPolicy
-from cobotwire.session.request import Request
+from cobotwire.session.request import Request, in_words
 
 
 class Ticket:
@@ -60,6 +61,11 @@ class Ticket:
             # One fault of the link may end many tickets: each thread raises an error of its own.
             raise LinkError(error.url, error.detail) from error
         raise error
+
+    def silence(self, codec: Codec, waited: float, tries: int) -> ReplyTimeout:
+        """That nothing came: what was asked, how often, and what was heard meanwhile."""
+        words = in_words(self.request, codec)
+        return ReplyTimeout(self.request.command.name, waited, self.heard.lines(), tries, words)
 
     def _end(self) -> None:
         self.done = True

@@ -20,6 +20,7 @@ from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
 from cobotwire_codegen.render import markdown, parameters, python_api, python_table, words
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.vectors_json import vectors_json
+from cobotwire_codegen.render.way import BLOCKING, WAYS, Way
 
 Files = dict[PurePosixPath, str]
 
@@ -45,15 +46,15 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
         template = jinja.get_template("python/table/family.py.j2")
         path = PurePosixPath(f"table/{family.name}.py")
         files[path] = template.render(common, family=family)
-    for way in python_api.WAYS:
+    for way in WAYS:
         files |= _client(jinja, common, way)
     return files
 
 
-def _client(jinja: Environment, common: dict[str, Any], way: python_api.Way) -> Files:
+def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
     """A client for one way of calling: the same templates make all of them."""
     edition: Edition = common["edition"]
-    name = "client.py" if way is python_api.BLOCKING else f"{way.folder}_client.py"
+    name = "client.py" if way is BLOCKING else f"{way.folder}_client.py"
     made = {
         name: jinja.get_template("python/client.py.j2").render(common, way=way),
         f"{way.folder}/__init__.py": jinja.get_template("python/commands/__init__.py.j2").render(

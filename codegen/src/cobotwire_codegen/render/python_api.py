@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from dataclasses import dataclass
 
 from cobotwire_codegen.model import Command, Edition, Enum, Family, Value
 from cobotwire_codegen.render.parameters import (
@@ -15,52 +14,13 @@ from cobotwire_codegen.render.parameters import (
     result_type,
     results,
 )
+from cobotwire_codegen.render.way import BLOCKING, Way
 
 WIDTH = 100
 ACK_DOC = (
     "ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its "
     "bytes are written."
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Way:
-    """How a client is called: one description of the commands gives a client for each way."""
-
-    kind: str
-    folder: str
-    prefix: str
-    module: str
-    driver: str
-    async_: str
-    await_: str
-    block: str
-    moving_module: str
-
-
-BLOCKING = Way(
-    "blocking",
-    "commands",
-    "",
-    "cobotwire.driver",
-    "Driver",
-    "",
-    "",
-    "a ``with``",
-    "cobotwire.driver.moving",
-)
-ASYNCIO = Way(
-    "asyncio",
-    "aio",
-    "Async",
-    "cobotwire.driver.aio",
-    "AsyncDriver",
-    "async ",
-    "await ",
-    "an ``async with``",
-    "cobotwire.driver.aio_moving",
-)
-WAYS = (BLOCKING, ASYNCIO)
 
 
 def returns(command: Command) -> str:
