@@ -31,7 +31,7 @@ MAY_IMPORT: dict[str, set[str]] = {
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.
 ONE_IMPORTER = {
-    "serial": ["transport/serial.py"],
+    "serial": ["transport/serial/"],
     "click": ["cli/"],
     "rich": ["cli/"],
 }

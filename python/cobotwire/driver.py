@@ -20,8 +20,7 @@ from cobotwire.session import (
     SessionEvent,
 )
 from cobotwire.table import Table
-from cobotwire.transport import Transport
-from cobotwire.transport.serial import SerialTransport
+from cobotwire.transport import Transport, open_link
 
 # How long a call reads what came before it, if there is no end of that.
 CLEAR_SECONDS = 0.05
@@ -83,9 +82,7 @@ class Driver:
         self.codec = codec_.name
         self._link: Transport
         if isinstance(port, str):
-            self._link = SerialTransport(
-                port, self.table.baudrate if baudrate is None else baudrate
-            )
+            self._link = open_link(port, self.table.baudrate if baudrate is None else baudrate)
         elif isinstance(port, Transport):
             self._link = port
         else:

@@ -51,10 +51,12 @@ class LinkError(CobotwireError, OSError):
 
     Attributes:
         url: the port or URL in question.
+        written: how many bytes of a write that failed had been taken all the same.
     """
 
-    def __init__(self, url: str, detail: str) -> None:
+    def __init__(self, url: str, detail: str, written: int = 0) -> None:
         self.url = url
+        self.written = written
         super().__init__(f"{url}: {detail}")
 
 

@@ -92,7 +92,7 @@ def test_a_link_that_another_thread_closes_is_a_link_error(kind: str) -> None:
 
 
 def test_a_fault_of_the_terminal_itself_is_a_link_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    with ScriptedPeer() as peer, MyCobot(peer.url) as arm:
+    with ScriptedPeer() as peer, MyCobot(f"spy://{peer.url}") as arm:
 
         def fail(*arguments: object) -> int:
             raise termios.error(5, "Input/output error")

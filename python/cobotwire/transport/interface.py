@@ -1,4 +1,4 @@
-"""What a driver needs of a link."""
+"""What a driver needs of a link, and what the links of this package offer beyond it."""
 
 from __future__ import annotations
 
@@ -32,4 +32,57 @@ class Transport(Protocol):
 
     def close(self) -> None:
         """Give the link back. Closing twice is harmless."""
+        ...
+
+
+@runtime_checkable
+class Link(Transport, Protocol):
+    """A link that :func:`cobotwire.transport.open_link` opened.
+
+    One thread may read while another one writes. ``close`` from a third one ends both at once, with
+    a LinkError.
+    """
+
+    @property
+    def kind(self) -> str:
+        """``serial`` for a port, ``socket`` for TCP, else the URL's scheme (``rfc2217``, ``loop``).
+
+        It is there to tell people, and for what only one kind has, such as a latency timer.
+        """
+        ...
+
+    @property
+    def low_latency(self) -> bool:
+        """Whether the driver of the port was told not to hold short replies back, and agreed.
+
+        A USB bridge does so for up to 16 ms; TCP_NODELAY is the same thing for a socket.
+        """
+        ...
+
+    def fileno(self) -> int | None:
+        """What select(), poll() and asyncio's add_reader() wait for; None where there is nothing.
+
+        When it is readable, ``read(0)`` gives what has come, or the LinkError.
+
+        Raises:
+            LinkError: the link is closed.
+        """
+        ...
+
+    def offer(self, data: bytes) -> int:
+        """Give the link as much of ``data`` as it takes without waiting; gives the number of bytes.
+
+        Raises:
+            LinkError: the link is gone.
+        """
+        ...
+
+    def reopen(self) -> None:
+        """Close the link if it is open, and open the same thing again; ``fileno`` may change.
+
+        What was underway in either direction is lost. The controller is not reset.
+
+        Raises:
+            LinkError: it cannot be opened; it is closed now, and may be tried again.
+        """
         ...
