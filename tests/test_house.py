@@ -22,6 +22,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "codec": {"errors", "table", "_native"},
     "session": {"errors", "table", "codec"},
     "transport": {"errors"},
+    "capture": {"errors", "table", "codec"},
     "driver": {"errors", "table", "codec", "session", "transport"},
     "editions": {"errors", "table", "values", "driver"},
     "sim": {"errors", "table", "codec", "session"},

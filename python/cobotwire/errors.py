@@ -1,6 +1,6 @@
 """Everything that can go wrong, sorted by whose fault it is.
 
-One root, four branches, each also the built-in exception that a caller would expect. The
+One root, five branches, each also the built-in exception that a caller would expect. The
 attributes are data; the text is made from them here and nowhere else.
 """
 
@@ -75,6 +75,20 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         self.heard = heard
         meanwhile = "; ".join(heard) if heard else "nothing"
         super().__init__(f"no answer to {command} within {waited:.3f} s; heard: {meanwhile}")
+
+
+class CaptureError(CobotwireError, ValueError):
+    """A file's fault: a recording that is none, is damaged, or cannot be written on.
+
+    Attributes:
+        name: the file.
+        offset: where in it, in bytes; the beginning of the block in question.
+    """
+
+    def __init__(self, name: str, offset: int, detail: str) -> None:
+        self.name = name
+        self.offset = offset
+        super().__init__(f"{name}: {detail} (at byte {offset})")
 
 
 def _short(value: Any, limit: int = 80) -> str:
