@@ -99,6 +99,14 @@ def outcome(read: Callable[[bytes], int], data: bytes) -> str:
         return type(error).__name__
 
 
+def damaged(data: bytes) -> bytes:
+    """The capture with the length in front of its tenth frame (of pcapng, so far) set to 0."""
+    place = 0
+    for _ in range(10):
+        place = data.find(FRAME, place + 1)
+    return data if place < 0 else data[: place - 24] + bytes(4) + data[place - 20 :]
+
+
 def import_seconds(module: str) -> float:
     """How long importing it takes in a new interpreter, beyond what starting that takes."""
 
@@ -127,6 +135,7 @@ def main() -> None:
         size = len(whole) / FRAMES
         left = f"{len(killed)} bytes, {outcome(read, killed)}"
         print(f"{name:20}{load:10.0f}{cost:12.1f}{size:15.1f}  {left}")
+        print(f"{'':20}a length of 0 in the middle: {outcome(read, damaged(whole))}")
         started = time.perf_counter()
         read(whole)
         print(f"{'':20}reading: {(time.perf_counter() - started) / FRAMES * 1e6:.1f} us a frame")

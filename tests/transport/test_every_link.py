@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import select
 import signal
 import threading
@@ -140,7 +141,7 @@ def test_a_closed_link_says_so(line: Line) -> None:
     for use in (
         lambda: line.link.read(0),
         lambda: line.link.write(b"x"),
-        lambda: line.link.offer(b"x"),
+        lambda: line.link.write_some(b"x"),
         line.link.fileno,
     ):
         with pytest.raises(LinkError, match="it is closed"):
@@ -174,10 +175,29 @@ def test_a_write_that_waits_ends_at_once_when_the_link_is_closed(line: Line) -> 
     closing.join()
 
 
+def test_ctrl_c_in_a_write_finishes_the_frame_first(line: Line) -> None:
+    data = bytes(range(251)) * (400 if line.end.kind == "serial" else 40_000)
+    line.link._baudrate = 100_000  # type: ignore[attr-defined]  # so that there is time enough
+    heard: list[bytes] = []
+
+    def interrupt_and_hear() -> None:
+        time.sleep(0.1)
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.1)
+        heard.append(line.end.hear(len(data)))
+
+    hearing = threading.Thread(target=interrupt_and_hear)
+    hearing.start()
+    with pytest.raises(KeyboardInterrupt):
+        line.link.write(data)
+    hearing.join()
+    assert heard == [data]
+
+
 def test_an_offer_takes_what_fits_and_never_waits(line: Line) -> None:
     block = bytes(1_000_000)
     started = time.monotonic()
-    taken = [line.link.offer(block) for _ in range(200)]
+    taken = [line.link.write_some(block) for _ in range(200)]
     assert time.monotonic() - started < 3.0
     assert taken[0] > 0
     assert taken[-1] < len(block)

@@ -60,4 +60,4 @@ def test_pyserials_other_urls_are_opened_again_too() -> None:
     assert link.read(0.5).startswith(b"a")
     link.close()
     with pytest.raises(LinkError, match="it is closed"):
-        link.offer(b"x")
+        link.write_some(b"x")

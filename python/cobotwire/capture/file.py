@@ -6,7 +6,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Literal, Self
 
 from cobotwire.capture.recorder import Moment, Recorder
 from cobotwire.capture.writer import CaptureWriter
@@ -15,7 +15,11 @@ from cobotwire.errors import CaptureError, UsageError
 
 
 class Recording:
-    """A recorder with a file of its own, for a ``with`` block and as a driver's ``trace``."""
+    """A recorder with a file of its own.
+
+    ``TappedLink(open_link(url, baudrate), recording.record)`` gives it everything as it passes. As
+    the ``trace`` of a driver it has every byte too, but at the time when its frame was whole.
+    """
 
     def __init__(
         self,
@@ -52,6 +56,10 @@ class Recording:
     def __call__(self, moment: Moment) -> None:
         """Record what a driver tells."""
         self._recorder(moment)
+
+    def record(self, direction: Literal["sent", "heard"], data: bytes, at: float) -> None:
+        """Record a chunk as it was read or written at a ``time.monotonic()`` second."""
+        self._recorder.record(direction, data, at)
 
     def __enter__(self) -> Self:
         return self

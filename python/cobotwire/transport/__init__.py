@@ -2,5 +2,6 @@
 
 from cobotwire.transport.interface import Link, Transport
 from cobotwire.transport.opening import open_link
+from cobotwire.transport.tapped import TappedLink
 
-__all__ = ["Link", "Transport", "open_link"]
+__all__ = ["Link", "TappedLink", "Transport", "open_link"]

@@ -70,30 +70,40 @@ class DescriptorLink(ABC):
             return b""
 
     def write(self, data: bytes) -> None:
-        """Send all of ``data``; what was not taken is told by the LinkError's ``written``."""
+        """Send all of ``data``; what was taken of it is told by the LinkError's ``written``."""
+        with self._writing:
+            written = self.write_some(data)
+            if written < len(data):
+                self._write_rest(data, written)
+
+    def _write_rest(self, data: bytes, written: int) -> None:
         limit = write_limit(len(data), self._baudrate)
         deadline = time.monotonic() + limit
-        with self._writing:
-            written = self.offer(data)
-            while written < len(data):
-                try:
-                    ready = self._waiter.wait(
-                        self._descriptor(), deadline - time.monotonic(), writing=True
-                    )
-                except (OSError, ValueError) as error:
-                    self._fail("cannot be written", error, written)
-                if self._closed:
-                    self._fail("cannot be written", None, written)
-                if not ready or time.monotonic() >= deadline:
-                    taken = f"of {len(data)} bytes {written} were taken in {limit:.1f} s"
-                    raise LinkError(self.url, f"does not take what is written: {taken}", written)
-                try:
-                    written += self.offer(data[written:])
-                except LinkError as error:
-                    error.written += written
-                    raise
+        interrupt: KeyboardInterrupt | None = None
+        while written < len(data):
+            try:
+                self._wait_for_room(deadline)
+                written += self.write_some(data[written:])
+            except KeyboardInterrupt as error:
+                # The frame is finished first: behind half of one, the next would not be heard.
+                interrupt = error
+            except LinkError as error:
+                error.written += written
+                raise
+            if written < len(data) and time.monotonic() >= deadline:
+                taken = f"of {len(data)} bytes {written} were taken in {limit:.1f} s"
+                raise LinkError(self.url, f"does not take what is written: {taken}", written)
+        if interrupt is not None:
+            raise interrupt
 
-    def offer(self, data: bytes) -> int:
+    def _wait_for_room(self, deadline: float) -> None:
+        try:
+            self._waiter.wait(self._descriptor(), deadline - time.monotonic(), writing=True)
+        except (OSError, ValueError) as error:
+            self._fail("cannot be written", error)
+        self._must_be_open("cannot be written", "it was closed meanwhile")
+
+    def write_some(self, data: bytes) -> int:
         """As much of ``data`` as the link takes without waiting."""
         with self._writing:
             self._must_be_open("cannot be written")
@@ -131,10 +141,9 @@ class DescriptorLink(ABC):
         if self._closed:
             raise LinkError(self.url, f"{what}: {reason}")
 
-    def _fail(self, what: str, error: Exception | None, written: int = 0) -> NoReturn:
-        closed = self._closed or error is None
-        reason = "it was closed meanwhile" if closed else reason_of(error)
-        raise LinkError(self.url, f"{what}: {reason}", written) from error
+    def _fail(self, what: str, error: Exception) -> NoReturn:
+        reason = "it was closed meanwhile" if self._closed else reason_of(error)
+        raise LinkError(self.url, f"{what}: {reason}") from error
 
     def _end_of_data(self) -> str:
         """Why a link that has something to read reads as nothing."""

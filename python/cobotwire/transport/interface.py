@@ -1,4 +1,4 @@
-"""What a driver needs of a link, and what the links of this package offer beyond it."""
+"""What a driver needs of a link, and what the links of this package write_some beyond it."""
 
 from __future__ import annotations
 
@@ -60,17 +60,18 @@ class Link(Transport, Protocol):
         ...
 
     def fileno(self) -> int | None:
-        """What select(), poll() and asyncio's add_reader() wait for; None where there is nothing.
+        """What select(), poll() and asyncio's add_reader() wait for; None: there is no such thing.
 
-        When it is readable, ``read(0)`` gives what has come, or the LinkError.
+        When it is readable, ``read(0)`` gives what has come, or the LinkError. Without it, reading
+        and ``write_some`` may wait; they belong into a thread.
 
         Raises:
             LinkError: the link is closed.
         """
         ...
 
-    def offer(self, data: bytes) -> int:
-        """Give the link as much of ``data`` as it takes without waiting; gives the number of bytes.
+    def write_some(self, data: bytes) -> int:
+        """Send what is taken at once; gives how many bytes that was, perhaps 0.
 
         Raises:
             LinkError: the link is gone.

@@ -68,7 +68,7 @@ class UrlLink:
                 self._port.write_timeout = limit
             self._port.write(data)
 
-    def offer(self, data: bytes) -> int:
+    def write_some(self, data: bytes) -> int:
         """All of ``data``: these backends have no other way. It may take as long as a write."""
         self.write(data)
         return len(data)
@@ -96,9 +96,9 @@ class UrlLink:
                 return data
 
     def fileno(self) -> int | None:
-        """What select() waits for; None for most of these."""
+        """None: even where there is a descriptor, pyserial must read, since spy:// shows it."""
         with self._faults("cannot be waited for"):
-            return self._descriptor
+            return None
 
     def close(self) -> None:
         """Give the port back."""
