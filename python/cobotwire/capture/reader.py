@@ -61,6 +61,7 @@ class CaptureReader:
     """The packets of a capture, in the order of the file; see ``docs/captures.md`` for that order.
 
     Attributes:
+        name: the file's, for messages.
         interfaces: the lines that the blocks read so far introduce.
         application: what wrote the capture, in its own words.
         truncated_at: where the block begins in whose middle the file ends; None if it ends between
@@ -74,7 +75,8 @@ class CaptureReader:
         self.interfaces: list[Interface] = []
         self.application = ""
         self.truncated_at: int | None = None
-        self._file, self._name = file, name
+        self.name = name
+        self._file = file
         self._lines: list[_Line] = []
         self._finished: set[int] = set()
         self._endian: Literal["little", "big"] = "little"
@@ -109,8 +111,8 @@ class CaptureReader:
 
     def _read(self) -> Generator[Packet, None, None]:
         try:
-            for block in blocks_of(self._file, self._name):
-                fields = Fields(block, self._name)
+            for block in blocks_of(self._file, self.name):
+                fields = Fields(block, self.name)
                 if block.kind == blocks.PACKET:
                     yield self._packet(block, fields)
                 elif block.kind == blocks.SECTION:
@@ -175,7 +177,7 @@ class CaptureReader:
         return self._lines[index]
 
     def _refuse(self, block: Block, why: str) -> NoReturn:
-        raise CaptureError(self._name, block.offset, why)
+        raise CaptureError(self.name, block.offset, why)
 
 
 def _text(value: bytes) -> str:
