@@ -10,11 +10,19 @@
 
 from cobotwire.codec import chosen as codec_in_use
 from cobotwire.editions.mycobot import MyCobot
-from cobotwire.errors import CobotwireError, LinkError, ProtocolError, ReplyTimeout, UsageError
+from cobotwire.errors import (
+    CaptureError,
+    CobotwireError,
+    LinkError,
+    ProtocolError,
+    ReplyTimeout,
+    UsageError,
+)
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "CaptureError",
     "CobotwireError",
     "LinkError",
     "MyCobot",

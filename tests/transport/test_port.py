@@ -12,6 +12,7 @@ import termios
 from typing import Any
 
 import pytest
+from serial.tools import list_ports
 
 from cobotwire.errors import LinkError
 from cobotwire.transport import open_link
@@ -154,3 +155,21 @@ def test_a_baud_rate_that_no_table_lists_is_set() -> None:
     with Line("serial", baudrate=FAST + 1) as line:
         line.link.write(b"x")
         assert line.end.hear(1) == b"x"
+
+
+def test_a_port_may_be_named_by_its_hardware(monkeypatch: pytest.MonkeyPatch) -> None:
+    ends = [PtyEnd(), PtyEnd()]
+    plugged = ends[:1]
+    # No such hardware here; what pyserial finds is a pty, and after a while another one.
+    monkeypatch.setattr(list_ports, "grep", lambda text: [(end.url, "", "") for end in plugged])
+    link = open_link("hwgrep://1A86:55D4", FAST)
+    assert link.kind == "serial"
+    link.write(b"first")
+    assert ends[0].hear(5) == b"first"
+    plugged[:] = ends[1:]
+    link.reopen()
+    link.write(b"second")
+    assert ends[1].hear(6) == b"second"
+    link.close()
+    for end in ends:
+        end.unplug()

@@ -12,7 +12,8 @@ __all__ = ["open_serial"]
 
 def open_serial(url: str, baudrate: int) -> Link:
     """Open a port or URL; :func:`cobotwire.transport.open_link` says the rest."""
-    if "://" in url or os.name != "posix":
+    scheme, separator, _ = url.partition("://")
+    if os.name != "posix" or (separator and scheme.lower() != "hwgrep"):
         return UrlLink(url, baudrate)
     from cobotwire.transport.serial.port import PortLink
 

@@ -15,6 +15,7 @@ from cobotwire.transport.serial.opening import ask_low_latency, configure, openi
 
 DTR_AND_RTS = struct.pack("I", termios.TIOCM_DTR | termios.TIOCM_RTS)
 PSEUDO_TERMINALS = "/dev/pts/"
+HARDWARE = "hwgrep://"
 
 
 class _QuietPort(serial.Serial):
@@ -32,6 +33,8 @@ class _QuietPort(serial.Serial):
 
 class PortLink(DescriptorLink):
     """A serial port; see :class:`cobotwire.transport.interface.Link`.
+
+    The URL is a device, or ``hwgrep://TEXT`` for one whose name or USB ids hold the text.
 
     Reading and writing go past pyserial, which waits by select() for each chunk once more, and does
     not tell how much of a write was taken.
@@ -51,8 +54,9 @@ class PortLink(DescriptorLink):
 
     def _connect(self) -> None:
         with opening(self.url):
+            device = _device(self.url)
             port = _QuietPort()
-            port.port = self.url
+            port.port = device
             configure(port, self._baudrate)
             # Two processes on one port would mix their bytes into each other's frames.
             port.exclusive = True
@@ -61,7 +65,7 @@ class PortLink(DescriptorLink):
             self.low_latency = ask_low_latency(port)
             # The lock of pyserial keeps out only programs that ask for it. This keeps out all. A
             # pty that its server holds open would stay locked if this process died.
-            if not os.path.realpath(self.url).startswith(PSEUDO_TERMINALS):
+            if not os.path.realpath(device).startswith(PSEUDO_TERMINALS):
                 keep_others_out(port.fileno())
 
     def _release(self) -> None:
@@ -77,6 +81,13 @@ class PortLink(DescriptorLink):
 
     def _end_of_data(self) -> str:
         return "it is gone, or another program reads from it"
+
+
+def _device(url: str) -> str:
+    """The port; that of ``hwgrep://`` is looked for each time, as a plug may get another number."""
+    if not url.lower().startswith(HARDWARE):
+        return url
+    return str(serial.serial_for_url(url, do_not_open=True).port)
 
 
 def keep_others_out(descriptor: int) -> None:

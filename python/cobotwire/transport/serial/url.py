@@ -49,7 +49,7 @@ class UrlLink:
             port: Any = serial.serial_for_url(self.url, do_not_open=True)
             configure(port, self._baudrate)
             if os.name == "posix" and isinstance(port, serial.Serial):
-                # What stands behind spy:// and hwgrep:// is a port as any other.
+                # What stands behind spy:// is a port as any other.
                 port.exclusive = True
             port.open()
             self._port = port
