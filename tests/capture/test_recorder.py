@@ -11,14 +11,17 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
 
 from capture.lines import FRAMES, Chunk, chunks, line_bytes, reader
 from cobotwire import MyCobot
+from cobotwire import codec as codecs
 from cobotwire.capture import CaptureWriter, Packet, Recorder, Recording, read
 from cobotwire.codec.interface import Codec
+from cobotwire.editions.mycobot import TABLE
 from cobotwire.errors import CaptureError, UsageError
 from cobotwire.sim import PtyServer
 
@@ -50,9 +53,6 @@ def pieces_of(packets: list[Packet], way: str) -> list[tuple[int, int]]:
 def test_the_packets_of_a_direction_are_the_bytes_of_the_line(
     given_chunks: list[Chunk],
 ) -> None:
-    from cobotwire import codec as codecs
-    from cobotwire.editions.mycobot import TABLE
-
     for codec in (None, codecs.load(TABLE)):
         packets = recorded(codec, given_chunks)
         start = time.time_ns() - time.monotonic_ns()
@@ -109,15 +109,14 @@ def test_half_a_frame_is_not_kept_for_ever(codec: Codec) -> None:
 def test_a_drivers_traffic_is_recorded_as_it_goes(server: PtyServer, tmp_path: Path) -> None:
     traffic: list[Chunk] = []
     path = tmp_path / "arm.pcapng"
-    with MyCobot(server.url) as arm:
-        codec = arm._session._codec
-        with Recording(path, codec, url=server.url, baudrate=115200) as recording:
+    codec = codecs.load(TABLE)
+    with Recording(path, codec, url=server.url, baudrate=115200) as recording:
 
-            def trace(moment: Chunk) -> None:
-                traffic.append(moment)
-                recording(moment)
+        def trace(moment: Any) -> None:
+            traffic.append(Chunk(moment.time, moment.direction, moment.data))
+            recording(moment)
 
-            arm._trace = trace  # type: ignore[assignment]
+        with MyCobot(server.url, trace=trace) as arm:
             arm.power_on()
             arm.get_angles()
     with read(path) as capture:

@@ -1,4 +1,4 @@
-"""What a driver needs of a link, and what the links of this package write_some beyond it."""
+"""What a driver needs of a link, and what the links of this package offer beyond it."""
 
 from __future__ import annotations
 
