@@ -24,6 +24,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.errors import CaptureError, UsageError
 from cobotwire.sim import PtyServer
+from cobotwire.transport import TappedLink, open_link
 
 ASK, ANGLES = FRAMES[0], FRAMES[1]
 
@@ -166,13 +167,13 @@ def test_a_killed_process_leaves_every_whole_frame(tmp_path: Path) -> None:
 def test_a_full_disk_ends_the_recording_but_not_the_call(
     caplog: pytest.LogCaptureFixture, server: PtyServer
 ) -> None:
-    with open("/dev/full", "wb", buffering=0) as full, MyCobot(server.url) as arm:
+    with open("/dev/full", "wb", buffering=0) as full:
         good = io.BytesIO()
         writer = CaptureWriter(good)
-        recorder = Recorder(writer, arm._session._codec, name="full.pcapng")
+        recorder = Recorder(writer, codecs.load(TABLE), name="full.pcapng")
         writer._file = full
-        arm._trace = recorder
-        with caplog.at_level(logging.ERROR):
+        link = TappedLink(open_link(server.url, 115200), recorder.record)
+        with caplog.at_level(logging.ERROR), MyCobot(link) as arm:
             arm.power_on()
             arm.get_angles()
         assert caplog.text.count("recording to full.pcapng ended") == 1
