@@ -24,15 +24,19 @@ MAY_IMPORT: dict[str, set[str]] = {
     "transport": {"errors"},
     "limits": {"errors", "table"},
     "driver": {"errors", "table", "limits", "codec", "session", "transport"},
+    "capture": {"errors", "table", "codec"},
     "editions": {"errors", "table", "values", "driver"},
-    "sim": {"errors", "table", "codec", "session"},
+    "sim": {"errors", "table", "codec", "session", "capture"},
     "explain": {"errors", "table", "codec"},
     "demo": {"codec", "driver", "editions", "sim"},
-    "cli": {"errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"},
+    "cli": {
+        *("errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"),
+        *("capture", "transport"),
+    },
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.
 ONE_IMPORTER = {
-    "serial": ["transport/serial.py"],
+    "serial": ["transport/serial/"],
     "click": ["cli/"],
     "rich": ["cli/"],
 }

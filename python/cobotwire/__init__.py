@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from cobotwire.codec import chosen as codec_in_use
 from cobotwire.editions.mycobot import MyCobot
 from cobotwire.errors import (
+    CaptureError,
     CobotwireError,
     LinkError,
     MotionTimeout,
@@ -27,6 +28,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AsyncMyCobot",
+    "CaptureError",
     "CobotwireError",
     "Limits",
     "LinkError",

@@ -1,6 +1,6 @@
 """Everything that can go wrong, sorted by whose fault it is.
 
-One root, five branches, each also the built-in exception that a caller would expect. The
+One root, six branches, each also the built-in exception that a caller would expect. The
 attributes are data; the text is made from them here and nowhere else.
 """
 
@@ -52,11 +52,13 @@ class LinkError(CobotwireError, OSError):
     Attributes:
         url: the port or URL in question.
         detail: what went wrong with it.
+        written: how many bytes of a write that failed had been taken all the same.
     """
 
-    def __init__(self, url: str, detail: str) -> None:
+    def __init__(self, url: str, detail: str, written: int = 0) -> None:
         self.url = url
         self.detail = detail
+        self.written = written
         super().__init__(f"{url}: {detail}")
 
 
@@ -111,6 +113,20 @@ class MotionTimeout(CobotwireError, TimeoutError):
 
 def _often(tries: int) -> str:
     return {0: "not asked", 1: "asked once", 2: "asked twice"}.get(tries, f"asked {tries} times")
+
+
+class CaptureError(CobotwireError, ValueError):
+    """A file's fault: a recording that is none, is damaged, or cannot be written on.
+
+    Attributes:
+        name: the file.
+        offset: where in it, in bytes; the beginning of the block in question.
+    """
+
+    def __init__(self, name: str, offset: int, detail: str) -> None:
+        self.name = name
+        self.offset = offset
+        super().__init__(f"{name}: {detail} (at byte {offset})")
 
 
 def _short(value: Any, limit: int = 80) -> str:

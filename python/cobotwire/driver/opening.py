@@ -10,7 +10,7 @@ from cobotwire.errors import UsageError
 from cobotwire.limits import Limits, limited
 from cobotwire.session import RetryPolicy
 from cobotwire.table import Command, Table
-from cobotwire.transport import Transport
+from cobotwire.transport import Transport, open_link
 
 
 class Settings(NamedTuple):
@@ -79,7 +79,4 @@ def opened(port: str | Transport, table: Table, baudrate: int | None) -> Transpo
     check_port(port)
     if not isinstance(port, str):
         return port
-    # Here, not above: a program that brings its own transport need not load pyserial.
-    from cobotwire.transport.serial import SerialTransport
-
-    return SerialTransport(port, table.baudrate if baudrate is None else baudrate)
+    return open_link(port, table.baudrate if baudrate is None else baudrate)

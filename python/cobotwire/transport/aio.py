@@ -77,7 +77,7 @@ class PolledLink:
             self._end_writing(None)
 
     def _give_up(self) -> None:
-        detail = f"cannot be written: no byte was taken for {WRITE_TIMEOUT:.0f} s"
+        detail = f"does not take what is written: no byte was taken in {WRITE_TIMEOUT:.1f} s"
         self._end_writing(LinkError(self._transport.url, detail))
 
     def _end_writing(self, error: LinkError | None) -> None:

@@ -55,6 +55,41 @@ class PollableTransport(Transport, Protocol):
         ...
 
 
+@runtime_checkable
+class Link(PollableTransport, Protocol):
+    """A link that :func:`cobotwire.transport.open_link` opened.
+
+    One thread may read while another one writes. ``close`` from a third one ends both at once, with
+    a LinkError.
+    """
+
+    @property
+    def kind(self) -> str:
+        """``serial`` for a port, ``socket`` for TCP, else the URL's scheme (``rfc2217``, ``loop``).
+
+        It is there to tell people, and for what only one kind has, such as a latency timer.
+        """
+        ...
+
+    @property
+    def low_latency(self) -> bool:
+        """Whether the driver of the port was told not to hold short replies back, and agreed.
+
+        A USB bridge does so for up to 16 ms; TCP_NODELAY is the same thing for a socket.
+        """
+        ...
+
+    def reopen(self) -> None:
+        """Close the link if it is open, and open the same thing again; ``fileno`` may change.
+
+        What was underway in either direction is lost. The controller is not reset.
+
+        Raises:
+            LinkError: it cannot be opened; it is closed now, and may be tried again.
+        """
+        ...
+
+
 class AsyncLink(Protocol):
     """A link on an event loop. Every method is called in the loop's thread, and none waits."""
 
