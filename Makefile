@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUST_SOURCES := $(shell find rust -name '*.rs' -not -path '*/target/*') $(shell find rust -name Cargo.toml) Cargo.toml
 EXAMPLES ?= 100
 
-.PHONY: help demo test lint python-test rust-test gen bench clean
+.PHONY: help demo test lint python-test rust-test gen bench plots clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -33,9 +33,16 @@ python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
 
-bench: .venv/.tools .venv/.native ## how fast, beside the limits
+bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/driver.py
+	$(BIN)/python bench/resync.py
+
+plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
+	$(BIN)/python -m pip install --quiet --group bench
+	mkdir -p target
+	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
+	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 
 from hypothesis import strategies as st
 
+import line
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec
+from cobotwire.codec.interface import Codec, Listening
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
 from cobotwire.table import Case, Command, Direction, Field, Layout, Number, Table
@@ -142,30 +143,26 @@ def frame_of(codec: Codec, form: Form, values: tuple[Any, ...]) -> bytes:
     return codec.encode(form.command.name, form.direction, values, form=form.number)
 
 
-def line_noise() -> st.SearchStrategy[bytes]:
+def line_noise(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Noise as a line carries it: servo packets, text, NULs, half headers, and anything."""
-    known = [
-        b"\xff\xff\x01\x04\x02\x38\x02\xbe",
-        b"\xff\xff\x01\x04\x00\xff\x07\xf4",
-        b"cmd_len error\r\n",
-        b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited)",
-        bytes(7),
-        b"\xfe",
-        b"\xfe\xfe",
-        b"\xfe\xfe\xfe",
-        b"\xfe\xfe\x0e\x20",
-        b"\x78\x80\x78",
-    ]
-    return st.one_of(
-        st.sampled_from(known),
-        st.binary(max_size=12),
-        st.lists(st.sampled_from(b"\xfe\xfa\x02\x0e\x20\x00"), max_size=12).map(bytes),
+    return line.line_noise(table)
+
+
+def received(table: Table, listening: Listening) -> st.SearchStrategy[line.Received]:
+    """Frames of what is listened to as they come in over a bad line, and which came whole."""
+    codec = codec_of(table.edition, "reference")
+    heard = [form for form in forms_of(table) if listening in (form.direction, "both")]
+    frames = (
+        st.sampled_from(heard)
+        .flatmap(lambda form: st.tuples(st.just(form), legal_values(form.layout)))
+        .map(lambda message: frame_of(codec, *message))
     )
+    return line.received(frames, table)
 
 
 def streams(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """What may stand on a line: frames, near frames and noise in any order."""
-    pieces = st.one_of(real_frames(table), near_frames(table), line_noise())
+    pieces = st.one_of(real_frames(table), near_frames(table), line_noise(table))
     return st.lists(pieces, max_size=8).map(b"".join)
 
 

@@ -28,10 +28,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     "editions": {"errors", "table", "values", "driver"},
     "sim": {"errors", "table", "codec", "session", "capture"},
     "explain": {"errors", "table", "codec"},
+    "diagnose": {"errors", "table", "codec"},
     "demo": {"codec", "driver", "editions", "sim"},
     "cli": {
         *("errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"),
-        *("capture", "transport"),
+        *("capture", "transport", "diagnose"),
     },
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.
@@ -39,6 +40,8 @@ ONE_IMPORTER = {
     "serial": ["transport/serial/"],
     "click": ["cli/"],
     "rich": ["cli/"],
+    "numpy": ["codec/columns.py"],
+    "pyarrow": ["codec/arrow.py"],
 }
 
 

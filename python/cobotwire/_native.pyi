@@ -7,10 +7,13 @@ It reads a table's objects once, when a codec is made, and converts; what is leg
 from collections.abc import Sequence
 from typing import Any, Literal, final
 
-from cobotwire.codec.interface import Event, Listening, Message
+from typing_extensions import Buffer
+
+from cobotwire.codec.columns import Columns, Scan
+from cobotwire.codec.interface import Counters, Data, Event, Listening, Message
 from cobotwire.table import Direction, Table
 
-__all__ = ["NativeCodec", "NativeFramer"]
+__all__ = ["Memory", "NativeCodec", "NativeColumnReader", "NativeFrame", "NativeFramer"]
 
 @final
 class NativeCodec:
@@ -68,6 +71,39 @@ class NativeCodec:
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> NativeFramer:
         """A new framer; ``accept_unknown`` also takes ids that the edition lacks as frames."""
 
+    def scan(
+        self,
+        data: Data,
+        listening: Listening = "both",
+        *,
+        accept_unknown: bool = False,
+        out: Scan | None = None,
+    ) -> Scan:
+        """Where the frames of a whole stream are; see the interface.
+
+        Raises:
+            BufferError: ``out`` is still looked at, by a memoryview or an array.
+        """
+
+    def decode_columns(
+        self,
+        data: Data,
+        listening: Listening = "both",
+        *,
+        raw: bool = False,
+        out: Columns | None = None,
+    ) -> Columns:
+        """The values of a whole stream, as columns; see the interface.
+
+        Raises:
+            BufferError: ``out`` is still looked at, by a memoryview or an array.
+        """
+
+    def column_reader(
+        self, listening: Listening = "both", *, raw: bool = False
+    ) -> NativeColumnReader:
+        """A reader for a stream that comes in pieces, or is larger than memory."""
+
 @final
 class NativeFramer:
     """Cuts frames out of a byte stream; see :class:`cobotwire.codec.interface.Framer`.
@@ -75,7 +111,7 @@ class NativeFramer:
     Made by :meth:`NativeCodec.framer`. Not for use by two threads at once.
     """
 
-    def feed(self, data: bytes | bytearray | memoryview) -> list[Event]:
+    def feed(self, data: Data) -> list[Event]:
         """Take bytes; give what is certain by now, in the order of the stream."""
 
     def flush(self) -> list[Event]:
@@ -84,3 +120,67 @@ class NativeFramer:
     @property
     def pending(self) -> int:
         """Bytes fed that no event covers yet; less than the longest frame."""
+
+    @property
+    def counters(self) -> Counters:
+        """What came so far, in numbers."""
+
+@final
+class NativeFrame:
+    """A whole, legal frame; a kind of :class:`cobotwire.codec.events.Frame`.
+
+    It carries its bytes, and is decoded when it is first asked for its message or values.
+    """
+
+    @property
+    def offset(self) -> int:
+        """Where it starts in the stream."""
+
+    @property
+    def data(self) -> bytes:
+        """All of it, from header to check."""
+
+    @property
+    def command(self) -> int:
+        """Its command id."""
+
+    @property
+    def message(self) -> Message:
+        """What it says, as the first message that allows its values.
+
+        Raises:
+            ProtocolError: a field holds a value that the edition does not allow, or the edition
+                lacks its id.
+        """
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """The values of its message, one a field.
+
+        Raises:
+            ProtocolError: as ``message``.
+        """
+
+    def __eq__(self, value: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
+class NativeColumnReader:
+    """Decodes a stream into columns; see :class:`cobotwire.codec.interface.ColumnReader`.
+
+    Made by :meth:`NativeCodec.column_reader`. Not for use by two threads at once.
+    """
+
+    def feed(self, data: Data) -> Columns:
+        """Take bytes; give what is certain by now, and was not given before."""
+
+    def flush(self) -> Columns:
+        """Refute what still waits, and give the rest."""
+
+    @property
+    def pending(self) -> int:
+        """Bytes fed that are not accounted for yet; less than the longest frame."""
+
+@final
+class Memory(Buffer):
+    """Numbers in memory, for memoryviews, NumPy and Arrow; read-only."""

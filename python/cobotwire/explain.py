@@ -48,7 +48,7 @@ def explain(
     """Cut ``data`` into frames and noise, and read each frame in every direction that fits."""
     framer = codec.framer(directions[0] if len(directions) == 1 else "both")
     events = _join_noise([*framer.feed(data), *framer.flush()])
-    return [Explained(event, tuple(_readings(codec, event, directions))) for event in events]
+    return [Explained(event, readings(codec, event.data, directions)) for event in events]
 
 
 def _join_noise(events: list[Event]) -> list[Event]:
@@ -63,15 +63,20 @@ def _join_noise(events: list[Event]) -> list[Event]:
     return joined
 
 
-def _readings(codec: Codec, event: Event, directions: tuple[Direction, ...]) -> Iterator[Reading]:
-    """The messages that fit; if there are none, the reasons why not."""
-    if isinstance(event, Noise) and not event.data.startswith(codec.table.frame.header):
-        return
-    found = [_read(codec, event.data, direction) for direction in directions]
-    messages = [reading for reading in found if reading.message is not None]
+def readings(
+    codec: Codec, data: bytes, directions: tuple[Direction, ...] = DIRECTIONS
+) -> tuple[Reading, ...]:
+    """The messages that ``data`` is; if it is none, the reasons why not.
+
+    Nothing is said of bytes that do not start as a frame does.
+    """
+    if not data.startswith(codec.table.frame.header):
+        return ()
+    found = tuple(_read(codec, data, direction) for direction in directions)
+    messages = tuple(reading for reading in found if reading.message is not None)
     # A frame that fits one direction is not explained in the other, where it does not.
-    bad_values = [r for r in found if r.error is not None and r.error.reason == "bad-value"]
-    yield from messages or bad_values or found
+    bad_values = tuple(r for r in found if r.error is not None and r.error.reason == "bad-value")
+    return messages or bad_values or found
 
 
 def _read(codec: Codec, data: bytes, direction: Direction) -> Reading:

@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
-import json
-import re
+import os
 import sys
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Literal
 
 import click
+from rich.console import Console
+from rich.progress import Progress
 
 from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.cli.call import plain
-from cobotwire.codec.interface import Frame, Noise
-from cobotwire.errors import UsageError
-from cobotwire.explain import DIRECTIONS, Explained, Reading, explain, parts, summary
-from cobotwire.table import Direction, FrameFormat
+from cobotwire.cli import show
+from cobotwire.cli.source import Form, Source, open_source
+from cobotwire.cli.tally import Tally
+from cobotwire.codec.interface import Framer
+from cobotwire.diagnose import Diagnoser, Item
+from cobotwire.explain import DIRECTIONS
+from cobotwire.table import Direction
 
-_SEPARATORS = re.compile(r"0[xX]|[\s,;:]+")
+# A bar is worth its place where a file takes some seconds.
+LONG_FILE = 4 << 20
+# What a shell says of a process that SIGPIPE ended.
+READER_GONE = 141
 
 
 @click.command()
-@click.argument("hex_bytes", nargs=-1, required=True, metavar="HEX...")
+@click.argument("words", nargs=-1, required=True, metavar="HEX...|FILE|-")
+@click.option("--raw", "form", flag_value="raw", help="The one word is a FILE of raw bytes.")
+@click.option("--hex", "form", flag_value="hex", help="The one word is a FILE of hex text.")
 @click.option(
     "--direction",
     type=click.Choice(["request", "reply", "both"]),
@@ -29,68 +39,103 @@ _SEPARATORS = re.compile(r"0[xX]|[\s,;:]+")
     show_default=True,
     help="Which way the bytes went.",
 )
+@click.option("--accept-unknown", is_flag=True, help="Also take ids that the edition lacks.")
+@click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as for HEX words.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object a line.")
+@click.option("--summary", is_flag=True, help="Print counts at the end.")
+@click.option("--quiet", is_flag=True, help="Print no events, only what else is asked for.")
 @click.pass_obj
-def decode(edition: str, hex_bytes: tuple[str, ...], direction: str, as_json: bool) -> None:
-    """Explain bytes: HEX pairs with or without spaces, commas or 0x.
+def decode(
+    edition: str,
+    words: tuple[str, ...],
+    form: Form | None,
+    direction: Literal["request", "reply", "both"],
+    accept_unknown: bool,
+    each_byte: bool,
+    as_json: bool,
+    summary: bool,
+    quiet: bool,
+) -> None:
+    """Explain bytes: frames with what they say, noise with what it is.
 
-    Exit code 1 if there is anything among them that is no legal frame.
-    """
+    Words that are HEX (pairs of digits, with or without blanks, commas or 0x) are the bytes. Any
+    other single word is a FILE, and - is the standard input. A word that is hex and the name of a
+    file is refused: say ./NAME or 0xNAME.
+
+    A FILE or - holds raw bytes or hex text. It is hex if its first 512 bytes are nothing but hex;
+    other plain text is refused, so that it is not taken for raw bytes by mistake. --raw and --hex
+    say it without guessing.
+
+    \b
+      cobotwire decode FE FE 06 21 01 00 1D 14 FA
+      cobotwire decode capture.bin --summary
+      cat capture.hex | cobotwire decode - --hex --json
+
+    Exit code 1 if there is anything among the bytes that is no legal frame; 141 if whoever read
+    the output went away.
+    """  # noqa: D301  (\b is the control character by which click keeps the lines)
     table = editions.load(edition).TABLE
+    codec = codecs.load(table)
     directions: tuple[Direction, ...] = tuple(d for d in DIRECTIONS if direction in (d, "both"))
-    found = explain(codecs.load(table), _bytes(hex_bytes), directions)
-    for explained in found:
-        if as_json:
-            click.echo(json.dumps(_as_json(explained)))
-        else:
-            click.echo("\n".join(_lines(table.frame, explained)))
-    sys.exit(0 if all(explained.legal for explained in found) else 1)
-
-
-def _bytes(words: tuple[str, ...]) -> bytes:
-    text = _SEPARATORS.sub("", " ".join(words))
+    source = open_source(words, form)
+    read = show.reader(codec, directions)
+    shown = show.on_a_line(read, colour=_colour())
+    if as_json:
+        shown = show.as_json(read)
+    elif each_byte or source.words:
+        shown = show.byte_by_byte(read, table.frame)
+    framer = codec.framer(direction, accept_unknown=accept_unknown)
+    tally = Tally(read, framer)
     try:
-        return bytes.fromhex(text)
-    except ValueError:
-        raise UsageError("HEX", " ".join(words), "pairs of hex digits") from None
+        with _progress(source, quiet) as blocks:
+            for items in _diagnosed(framer, Diagnoser(codec, direction), blocks, tally):
+                if items and not quiet:
+                    _write("\n".join(map(shown, items)))
+    finally:
+        # Also what was counted until Ctrl-C.
+        if summary:
+            _write(tally.as_json() if as_json else tally.lines())
+    sys.exit(0 if tally.clean else 1)
 
 
-def _lines(frame: FrameFormat, explained: Explained) -> list[str]:
-    event = explained.event
-    if isinstance(event, Noise):
-        lines = [f"noise   {event.data.hex(' ').upper()}   {event.reason}"]
-        return lines + [f"  as a {r.direction}: {r.error}" for r in explained.readings]
-    lines = [f"frame   {event.data.hex(' ').upper()}"]
-    for reading in explained.readings:
-        lines.extend(_reading(frame, event, reading))
-    return lines
+def _diagnosed(
+    framer: Framer, diagnoser: Diagnoser, blocks: Iterator[bytes], tally: Tally
+) -> Iterator[list[Item]]:
+    """The frames and findings of each block, counted."""
+    for block in blocks:
+        yield tally.count(diagnoser.feed(framer.feed(block)))
+    yield tally.count(diagnoser.feed(framer.flush()) + diagnoser.flush())
 
 
-def _reading(frame: FrameFormat, event: Frame, reading: Reading) -> list[str]:
-    if reading.message is None:
-        return [f"  as a {reading.direction}: {reading.error}"]
-    lines = [f"  {reading.direction}: {summary(reading.message)}"]
-    for part in parts(frame, event.data, reading.message):
-        shown = part.data.hex(" ").upper()
-        lines.append(f"    {part.offset:>3}  {shown:<6} {part.name:<14} {part.meaning}")
-    return lines
+def _write(text: str) -> None:
+    try:
+        sys.stdout.write(text + "\n")
+        # A block at a time, so that a live line is seen as it comes.
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # Replaced, so that the flush at exit does not fail once more.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+        sys.exit(READER_GONE)
 
 
-def _as_json(explained: Explained) -> dict[str, Any]:
-    event = explained.event
-    common = {"offset": event.offset, "data": event.data.hex(" ").upper(), "legal": explained.legal}
-    readings = [_reading_json(reading) for reading in explained.readings]
-    if isinstance(event, Noise):
-        return {"kind": "noise", **common, "reason": event.reason, "readings": readings}
-    return {"kind": "frame", **common, "readings": readings}
+def _colour() -> bool:
+    return sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
-def _reading_json(reading: Reading) -> dict[str, Any]:
-    if reading.message is None:
-        return {"direction": reading.direction, "error": str(reading.error)}
-    fields = {name: plain(value) for name, value in reading.message.fields.items()}
-    return {
-        "direction": reading.direction,
-        "command": reading.message.command.name,
-        "fields": fields,
-    }
+@contextmanager
+def _progress(source: Source, quiet: bool) -> Iterator[Iterator[bytes]]:
+    """The blocks of the source, with a bar on a terminal that shows nothing else, if it is long."""
+    alone = quiet or not sys.stdout.isatty()
+    long = source.size is not None and source.size >= LONG_FILE
+    console = Console(stderr=True)
+    with Progress(console=console, disable=not (long and alone and console.is_terminal)) as bar:
+        task = bar.add_task("decoding", total=source.size)
+
+        def blocks() -> Iterator[bytes]:
+            for block, taken in source.blocks:
+                yield block
+                bar.advance(task, taken)
+
+        yield blocks()

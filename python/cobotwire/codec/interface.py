@@ -7,54 +7,39 @@ where it is not, a tuple of these for a ``many`` field.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal, NamedTuple, Protocol
+from mmap import mmap
+from typing import Any, Literal, Protocol
 
-from cobotwire.table import Command, Direction, Layout, Table
+from cobotwire.codec.columns import Columns, Rows, Scan
+from cobotwire.codec.events import Counters, Event, Frame, Message, Noise, NoiseReason
+from cobotwire.table import Direction, Table
 
-Listening = Literal["request", "reply", "both"]
-NoiseReason = Literal[
-    "no-header", "bad-address", "bad-length", "unknown-id", "bad-check", "truncated"
+__all__ = [
+    "Codec",
+    "ColumnReader",
+    "Columns",
+    "Counters",
+    "Data",
+    "Event",
+    "Frame",
+    "Framer",
+    "Listening",
+    "Message",
+    "Noise",
+    "NoiseReason",
+    "Rows",
+    "Scan",
 ]
 
+Data = bytes | bytearray | memoryview | mmap
 
-class Frame(NamedTuple):
-    """A whole, legal frame with its command id; ``offset`` is where it starts in the stream."""
-
-    offset: int
-    data: bytes
-    command: int
-
-
-class Noise(NamedTuple):
-    """Bytes that belong to no frame; every one of them was refuted for the same reason."""
-
-    offset: int
-    data: bytes
-    reason: NoiseReason
-
-
-Event = Frame | Noise
-
-
-class Message(NamedTuple):
-    """A decoded frame; ``address`` is its address byte, None where the format has none."""
-
-    command: Command
-    direction: Direction
-    layout: Layout
-    values: tuple[Any, ...]
-    address: int | None = None
-
-    @property
-    def fields(self) -> dict[str, Any]:
-        """The values by field name. A field that an optional form leaves out is not in it."""
-        return {field.name: value for field, value in zip(self.layout.fields, self.values)}
+Listening = Literal["request", "reply", "both"]
 
 
 class Framer(Protocol):
     """Cuts frames out of a byte stream; see the law of framing in ``docs/framing.md``."""
 
-    def feed(self, data: bytes | bytearray | memoryview) -> list[Event]:
+    def feed(self, data: Data) -> list[Event]:
         """Take bytes; give what is certain by now, in the order of the stream."""
         ...
 
@@ -65,6 +50,31 @@ class Framer(Protocol):
     @property
     def pending(self) -> int:
         """Bytes fed that no event covers yet; less than the longest frame."""
+        ...
+
+    @property
+    def counters(self) -> Counters:
+        """What came so far, in numbers."""
+        ...
+
+
+class ColumnReader(Protocol):
+    """Decodes a stream, chunk by chunk, into columns; the chunks do not show in the rows."""
+
+    def feed(self, data: Data) -> Columns:
+        """Take bytes; give what is certain by now, and was not given before.
+
+        A span of noise is given with the frame that ends it. The counters are of all that was fed.
+        """
+        ...
+
+    def flush(self) -> Columns:
+        """Refute what still waits, and give the rest."""
+        ...
+
+    @property
+    def pending(self) -> int:
+        """Bytes fed that are not accounted for yet; less than the longest frame."""
         ...
 
 
@@ -116,4 +126,44 @@ class Codec(Protocol):
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> Framer:
         """A new framer; ``accept_unknown`` also takes ids that the edition lacks as frames."""
+        ...
+
+    def scan(
+        self,
+        data: Data,
+        listening: Listening = "both",
+        *,
+        accept_unknown: bool = False,
+        out: Scan | None = None,
+    ) -> Scan:
+        """Where the frames of a whole stream are.
+
+        ``out``, an earlier result, may give its memory to the new one, and is then empty.
+
+        Raises:
+            BufferError: ``out`` is still looked at, by a memoryview or an array.
+        """
+        ...
+
+    def decode_columns(
+        self,
+        data: Data,
+        listening: Listening = "both",
+        *,
+        raw: bool = False,
+        out: Columns | None = None,
+    ) -> Columns:
+        """The values of a whole stream, as columns.
+
+        With ``raw`` they are the whole numbers of the wire, after the sign rule. A frame that can
+        be a request and a reply is taken for a request, unless only replies are listened to.
+        ``out``, an earlier result, may give its memory to the new one, and is then empty.
+
+        Raises:
+            BufferError: ``out`` is still looked at, by a memoryview or an array.
+        """
+        ...
+
+    def column_reader(self, listening: Listening = "both", *, raw: bool = False) -> ColumnReader:
+        """A reader for a stream that comes in pieces, or is larger than memory."""
         ...

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
-from cobotwire._native import NativeCodec
+from cobotwire._native import NativeCodec, NativeFrame
+from cobotwire.codec.events import Frame
 
 __all__ = ["NativeCodec"]
+
+Frame.register(NativeFrame)

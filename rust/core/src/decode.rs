@@ -33,11 +33,28 @@ pub fn decode(
 ) -> Result<Decoded, DecodeError> {
     let rules = table.rules(Listening::To(direction));
     let frame = whole_frame(table, rules, data, of)?;
+    let forms = rules.forms(frame).iter();
+    let named = forms.filter(|form| of.is_none_or(|of| of == form.command));
+    read_as(table, frame, named)
+}
+
+/// Read a frame that a framer with these rules gave: the first form that allows the values.
+///
+/// # Errors
+/// None does, or the table lacks the id and the rules believed it.
+pub fn read(table: &Table, rules: &Rules, frame: Frame<'_>) -> Result<Decoded, DecodeError> {
+    read_as(table, frame, rules.forms(frame).iter())
+}
+
+fn read_as<'a>(
+    table: &Table,
+    frame: Frame<'_>,
+    forms: impl Iterator<Item = &'a Form>,
+) -> Result<Decoded, DecodeError> {
     let mut refusal = None;
-    for form in rules.forms(frame) {
-        let layout = match table.layout(*form) {
-            Some(layout) if of.is_none_or(|of| of == form.command) => layout,
-            _ => continue,
+    for form in forms {
+        let Some(layout) = table.layout(*form) else {
+            continue;
         };
         let reader = Reader {
             form: *form,
@@ -56,8 +73,8 @@ pub fn decode(
             Err(bad) => refusal = refusal.or(Some(DecodeError::Raw(bad))),
         }
     }
-    // These rules believe no unknown id, so there was a form.
-    Err(refusal.unwrap_or_else(|| refuse(table.frame(), Reason::UnknownId, data)))
+    // Only of an id that was believed there is no form.
+    Err(refusal.unwrap_or_else(|| refuse(table.frame(), Reason::UnknownId, frame.bytes())))
 }
 
 fn whole_frame<'a>(

@@ -2,6 +2,7 @@
 //! codecs, so nothing here has a `Display`.
 
 use crate::given::Given;
+use crate::legal::Form;
 
 /// Why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,10 +114,8 @@ pub enum EncodeError<V: Given> {
 /// A number on the wire that the table does not allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BadRaw {
-    /// Index of the command.
-    pub command: usize,
-    /// Index of the form among the command's in that direction.
-    pub layout: usize,
+    /// The form that rules it out.
+    pub form: Form,
     /// Index of the field.
     pub field: usize,
     /// Index of the field's case.

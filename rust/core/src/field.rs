@@ -37,6 +37,18 @@ impl Number {
         (self.multiply, self.divide) != (1, 1)
     }
 
+    /// Whether whatever stands on the wire lies between the bounds.
+    pub(crate) fn takes_every_word(&self) -> bool {
+        let words = 1 << (8 * self.width);
+        let signed_at = self.signed_at.clamp(-1, words - 1);
+        let least = if signed_at < words - 1 {
+            signed_at + 1 - words
+        } else {
+            0
+        };
+        self.minimum <= least && signed_at <= self.maximum
+    }
+
     fn check(&self) -> Result<(), Misfit> {
         if !(1..=4).contains(&self.width) {
             return Err(Misfit::Width);
@@ -111,6 +123,23 @@ impl Field {
         } else {
             self.choices.contains(&whole)
         }
+    }
+
+    /// The smallest and the largest whole number that it allows in any case.
+    pub(crate) fn whole_range(&self) -> (i64, i64) {
+        let numbers = || self.cases.iter().flat_map(|case| &case.numbers);
+        let all = if self.choices.is_empty() {
+            (
+                numbers().map(|number| number.minimum).min(),
+                numbers().map(|number| number.maximum).max(),
+            )
+        } else {
+            (
+                self.choices.iter().min().copied(),
+                self.choices.iter().max().copied(),
+            )
+        };
+        (all.0.unwrap_or_default(), all.1.unwrap_or_default())
     }
 
     pub(crate) fn check(&self, fields: &[Self]) -> Result<(), Misfit> {

@@ -86,3 +86,57 @@ impl<'a> Frame<'a> {
         self.length
     }
 }
+
+/// A frame with its own bytes: those of an ordinary one in place, without an allocation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OwnedFrame {
+    length: u8,
+    id: u8,
+    bytes: Bytes,
+}
+
+/// So many bytes stand in place: more than the longest frame of the arms known today.
+const IN_PLACE: usize = 30;
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Bytes {
+    InPlace(u8, [u8; IN_PLACE]),
+    Apart(Box<[u8]>),
+}
+
+impl From<Frame<'_>> for OwnedFrame {
+    #[inline]
+    fn from(frame: Frame<'_>) -> Self {
+        let mut place = [0; IN_PLACE];
+        let size = u8::try_from(frame.bytes.len()).unwrap_or(u8::MAX);
+        let bytes = match place.get_mut(..frame.bytes.len()) {
+            Some(start) => {
+                start.copy_from_slice(frame.bytes);
+                Bytes::InPlace(size, place)
+            }
+            None => Bytes::Apart(frame.bytes.into()),
+        };
+        Self {
+            length: frame.length,
+            id: frame.id,
+            bytes,
+        }
+    }
+}
+
+impl OwnedFrame {
+    /// The frame.
+    #[inline]
+    #[must_use]
+    pub fn get(&self) -> Frame<'_> {
+        let bytes = match &self.bytes {
+            Bytes::InPlace(size, place) => place.get(..usize::from(*size)).unwrap_or_default(),
+            Bytes::Apart(bytes) => bytes,
+        };
+        Frame {
+            bytes,
+            length: self.length,
+            id: self.id,
+        }
+    }
+}

@@ -6,11 +6,12 @@
 //! most one look at the longest frame (for its CRC or sum, once all its bytes are there) and no
 //! position is refuted twice, so the work is linear whatever the input.
 
-use std::mem;
-
 use crate::error::Reason;
 use crate::frame::Frame;
-use crate::judge::{Rules, Verdict};
+use crate::judge::Rules;
+use crate::scan::{Sink, scan};
+use crate::seam::Seam;
+use crate::tally::Tally;
 
 /// A stretch of the stream; `offset` counts from its start, over all calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,9 +38,10 @@ pub enum Event<'a> {
 #[derive(Clone, Debug)]
 pub struct Framer {
     rules: Rules,
-    /// What still waits; its first byte stands at `offset` in the stream.
-    kept: Vec<u8>,
-    offset: u64,
+    seam: Seam,
+    tally: Tally,
+    /// Whether the last event was noise.
+    in_noise: bool,
 }
 
 impl Framer {
@@ -48,15 +50,22 @@ impl Framer {
     pub fn new(rules: Rules) -> Self {
         Self {
             rules,
-            kept: Vec::new(),
-            offset: 0,
+            seam: Seam::default(),
+            tally: Tally::default(),
+            in_noise: false,
         }
     }
 
     /// Bytes fed that no event covers yet.
     #[must_use]
     pub fn pending(&self) -> usize {
-        self.kept.len()
+        self.seam.pending()
+    }
+
+    /// What came so far.
+    #[must_use]
+    pub fn tally(&self) -> &Tally {
+        &self.tally
     }
 
     /// Take bytes; give what is certain by now.
@@ -69,106 +78,85 @@ impl Framer {
         self.cut(&[], true, sink);
     }
 
-    /// Positions are counted from the first kept byte, over the seam between `kept` and `chunk`.
     fn cut(&mut self, chunk: &[u8], at_end: bool, sink: impl FnMut(Event<'_>)) {
-        let mut kept = mem::take(&mut self.kept);
-        let seam = kept.len();
-        // Only what candidates that start before the seam can need; the chunk itself is scanned in
-        // place, however large it is.
-        let need = if seam == 0 {
-            0
-        } else {
-            self.rules.longest() - 1
-        };
-        kept.extend_from_slice(chunk.get(..need).unwrap_or(chunk));
-
-        let pieces = [kept.get(..seam).unwrap_or_default(), chunk];
+        self.tally.bytes += chunk.len() as u64;
+        let crossing = self.seam.cross(chunk, self.rules.longest());
+        let seam = crossing.seam;
         let mut pass = Pass {
-            rules: &self.rules,
-            at_end,
-            pieces,
-            offset: self.offset,
+            pieces: [crossing.data.get(..seam).unwrap_or_default(), chunk],
+            offset: crossing.offset,
+            base: 0,
             run: None,
+            tally: &mut self.tally,
+            in_noise: &mut self.in_noise,
             sink,
         };
-        let mut at = pass.scan(&kept, 0, 0, seam);
+        let mut at = scan(&self.rules, &crossing.data, 0, seam, at_end, &mut pass);
         if at >= seam {
-            at = pass.scan(chunk, seam, at, seam + chunk.len());
+            pass.base = seam;
+            let stop = chunk.len();
+            at = seam + scan(&self.rules, chunk, at - seam, stop, at_end, &mut pass);
         }
-        pass.close(at);
-
-        if at < seam {
-            kept.drain(..at);
-        } else {
-            kept.clear();
-            kept.extend_from_slice(chunk.get(at - seam..).unwrap_or_default());
-        }
-        self.kept = kept;
-        self.offset += at as u64;
+        pass.close();
+        self.seam.keep(crossing, chunk, at);
     }
 }
 
-/// One call's way through its bytes.
+/// One call's way through its bytes. Positions in `run` count over the seam, those that a scan
+/// gives from `base`.
 struct Pass<'a, S> {
-    rules: &'a Rules,
-    at_end: bool,
     pieces: [&'a [u8]; 2],
     offset: u64,
-    /// Where the current run of noise started, and its reason.
-    run: Option<(usize, Reason)>,
+    base: usize,
+    /// The current run of noise: from where, to where, why.
+    run: Option<(usize, usize, Reason)>,
+    tally: &'a mut Tally,
+    in_noise: &'a mut bool,
     sink: S,
 }
 
-impl<S: FnMut(Event<'_>)> Pass<'_, S> {
-    /// Judge the positions from `at` to `stop`; gives the first that waits, else where it ended.
-    /// The first byte of `data` is at position `base`.
-    fn scan(&mut self, data: &[u8], base: usize, mut at: usize, stop: usize) -> usize {
-        while at < stop {
-            let rest = data.get(at - base..).unwrap_or_default();
-            match self.rules.judge(rest) {
-                Verdict::Stands(frame) => {
-                    self.close(at);
-                    (self.sink)(Event::Frame {
-                        offset: self.offset + at as u64,
-                        frame,
-                    });
-                    at += frame.bytes().len();
-                }
-                Verdict::Refuted(reason) => {
-                    self.refute(at, reason);
-                    at += 1;
-                }
-                Verdict::Waits if self.at_end => {
-                    self.refute(at, Reason::Truncated);
-                    at += 1;
-                }
-                Verdict::Waits => break,
+impl<'a, S: FnMut(Event<'_>)> Sink<'a> for Pass<'_, S> {
+    #[inline]
+    fn frame(&mut self, at: usize, frame: Frame<'a>) {
+        self.close();
+        self.tally.add_frames(frame.id(), 1);
+        self.tally.resyncs += u64::from(*self.in_noise);
+        *self.in_noise = false;
+        (self.sink)(Event::Frame {
+            offset: self.offset + (self.base + at) as u64,
+            frame,
+        });
+    }
+
+    #[inline]
+    fn noise(&mut self, from: usize, to: usize, reason: Reason) {
+        let (from, to) = (self.base + from, self.base + to);
+        match &mut self.run {
+            // Only over the seam: the two scans each give their part.
+            Some((_, end, current)) if *current == reason => *end = to,
+            _ => {
+                self.close();
+                self.run = Some((from, to, reason));
             }
         }
-        at
     }
+}
 
-    /// The byte at `at` is noise.
+impl<S: FnMut(Event<'_>)> Pass<'_, S> {
+    /// The current run of noise, if there is one, is over.
     #[inline]
-    fn refute(&mut self, at: usize, reason: Reason) {
-        if self.run.is_none_or(|(_, current)| current != reason) {
-            self.close(at);
-            self.run = Some((at, reason));
-        }
-    }
-
-    /// The current run of noise, if there is one, ends before `end`.
-    #[inline]
-    fn close(&mut self, end: usize) {
-        let Some((start, reason)) = self.run.take() else {
+    fn close(&mut self) {
+        let Some((from, to, reason)) = self.run.take() else {
             return;
         };
+        self.tally.add_noise(reason, to - from);
+        *self.in_noise = true;
         let [kept, chunk] = self.pieces;
         let seam = kept.len();
-        let before = kept.get(start.min(seam)..end.min(seam));
-        let after = chunk.get(start.saturating_sub(seam)..end.saturating_sub(seam));
+        let before = kept.get(from.min(seam)..to.min(seam));
+        let after = chunk.get(from.saturating_sub(seam)..to.saturating_sub(seam));
         (self.sink)(Event::Noise {
-            offset: self.offset + start as u64,
+            offset: self.offset + from as u64,
             reason,
             data: [before.unwrap_or_default(), after.unwrap_or_default()],
         });

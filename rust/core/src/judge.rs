@@ -1,10 +1,8 @@
 //! Whether a frame stands at the start of some bytes: the one rule of framer and decoder.
 
-use std::sync::Arc;
-
 use crate::error::Reason;
 use crate::frame::{Frame, FrameFormat};
-use crate::legal::{Form, Legal, has, mark};
+use crate::legal::{Form, Heading, Legal};
 use crate::table::{Command, Direction};
 
 /// What the bytes at a position are.
@@ -29,49 +27,59 @@ pub(crate) struct Claim {
 #[derive(Clone, Debug)]
 pub struct Rules {
     frame: FrameFormat,
-    legal: Arc<Legal>,
-    accept_unknown: bool,
-    lengths: [bool; 256],
+    legal: Legal,
+    /// Whether LEN and id stand right behind the header, as in nearly all formats.
+    plain: bool,
 }
 
 impl Rules {
     /// The rules for listening to these directions; earlier ones have precedence.
     pub(crate) fn new(frame: &FrameFormat, commands: &[Command], all: &[Direction]) -> Self {
-        let legal = Legal::new(frame, commands, all);
         Self {
             frame: frame.clone(),
-            lengths: legal.lengths,
-            legal: Arc::new(legal),
-            accept_unknown: false,
+            legal: Legal::new(frame, commands, all),
+            plain: frame.addresses.is_empty(),
         }
     }
 
     /// The same, but an id that the table lacks is a frame with any LEN up to the edition's
     /// maximum: for sniffing unknown firmware.
     #[must_use]
-    pub fn accepting_unknown(mut self) -> Self {
-        self.accept_unknown = true;
+    pub fn accepting_unknown(self) -> Self {
         let most = usize::try_from(self.frame.maximum_length.min(255)).unwrap_or_default();
-        (self.frame.length(0)..=most).for_each(|length| mark(&mut self.lengths, length));
-        self
+        let legal = self.legal.believing(self.frame.length(0), most);
+        Self { legal, ..self }
     }
 
     /// Which messages a frame can be, those with precedence first; none if the table lacks its id.
     #[must_use]
     pub fn forms(&self, frame: Frame<'_>) -> &[Form] {
-        self.legal.forms(frame.id(), frame.length())
+        self.legal.forms(frame.length(), frame.id())
     }
 
     /// The same of a frame that is not yet known to be one.
     pub(crate) fn claimed(&self, claim: Claim) -> &[Form] {
-        self.legal.forms(claim.id, claim.length)
+        self.legal.forms(claim.length, claim.id)
+    }
+
+    pub(crate) fn legal(&self) -> &Legal {
+        &self.legal
+    }
+
+    /// Whether LEN and id stand right behind the header.
+    pub(crate) fn plain(&self) -> bool {
+        self.plain
+    }
+
+    pub(crate) fn frame(&self) -> &FrameFormat {
+        &self.frame
     }
 
     /// Bytes of the longest frame that can stand.
     #[must_use]
     pub fn longest(&self) -> usize {
-        let length = self.lengths.iter().rposition(|legal| *legal);
-        self.frame.overhead() + length.unwrap_or_default()
+        let most = self.legal.lengths().map_or(0, |(_, most)| most);
+        self.frame.overhead() + usize::from(most)
     }
 
     /// Whether a frame stands at the start of `rest`. Takes no longer than reading the longest
@@ -79,21 +87,35 @@ impl Rules {
     #[inline]
     #[must_use]
     pub fn judge<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
+        // The same as below in one look at four bytes, for the bulk of all bytes.
+        if let Some(&[first, second, length, id]) = rest.first_chunk()
+            && self.plain
+        {
+            return if [first, second] == self.frame.header {
+                self.judge_body(rest, 3, Claim { length, id })
+            } else {
+                Verdict::Refuted(Reason::NoHeader)
+            };
+        }
+        self.judge_stepwise(rest)
+    }
+
+    #[inline(never)]
+    fn judge_stepwise<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
         match self.claim(rest) {
             Err(reason) => Verdict::Refuted(reason),
             Ok(None) => Verdict::Waits,
-            Ok(Some(claim)) => self.judge_body(rest, claim),
+            Ok(Some(claim)) => self.judge_body(rest, self.frame.overhead(), claim),
         }
     }
 
     /// What a candidate there claims; `None`: so many bytes are not there yet.
-    #[inline]
     pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
         let [first, second] = self.frame.header;
         match rest {
             [byte, ..] if *byte != first => Err(Reason::NoHeader),
             [_, byte, ..] if *byte != second => Err(Reason::NoHeader),
-            [_, _, behind @ ..] if self.frame.addresses.is_empty() => self.claim_behind(behind),
+            [_, _, behind @ ..] if self.plain => self.claim_behind(behind),
             [_, _, address, ..] if !self.frame.addresses.contains(address) => {
                 Err(Reason::BadAddress)
             }
@@ -102,29 +124,24 @@ impl Rules {
         }
     }
 
-    #[inline]
     fn claim_behind(&self, behind: &[u8]) -> Result<Option<Claim>, Reason> {
         match *behind {
-            [length, ..] if !has(&self.lengths, length) => Err(Reason::BadLength),
+            [length, ..] if !self.legal.is_length(length) => Err(Reason::BadLength),
             [length, id, ..] => Ok(Some(Claim { length, id })),
             _ => Ok(None),
         }
     }
 
+    /// A candidate whose header and LEN are `start` bytes.
     #[inline]
-    fn judge_body<'a>(&self, rest: &'a [u8], claim: Claim) -> Verdict<'a> {
+    fn judge_body<'a>(&self, rest: &'a [u8], start: usize, claim: Claim) -> Verdict<'a> {
         let Claim { length, id } = claim;
-        if !self.legal.has(id, length) {
-            if has(&self.legal.ids, id) {
-                return Verdict::Refuted(Reason::BadLength);
-            }
-            if !self.accept_unknown {
-                return Verdict::Refuted(Reason::UnknownId);
-            }
+        if let Heading::Refuted(reason) = self.legal.heading(length, id) {
+            return Verdict::Refuted(reason);
         }
-        match rest.get(..self.frame.overhead() + usize::from(length)) {
+        match rest.get(..start + usize::from(length)) {
             None => Verdict::Waits,
-            Some(bytes) if self.frame.check.holds(bytes, self.frame.overhead()) => {
+            Some(bytes) if self.frame.check.holds(bytes, start) => {
                 Verdict::Stands(Frame::new(bytes, length, id))
             }
             Some(_) => Verdict::Refuted(Reason::BadCheck),

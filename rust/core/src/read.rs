@@ -31,24 +31,42 @@ impl Reader<'_> {
     pub(crate) fn values(&self) -> Result<Vec<Value>, BadRaw> {
         let mut values = Vec::with_capacity(self.layout.size() + self.layout.fields().len());
         for (index, field) in self.layout.fields().iter().enumerate() {
-            self.field(index, field, &mut values)?;
+            let case = self.case(field)?;
+            if field.many {
+                values.push(Value::Row(field.numbers(case).len()));
+            }
+            self.field(index, field, case, |number, whole| {
+                values.push(physical(number, whole));
+            })?;
         }
         Ok(values)
     }
 
-    fn field(&self, index: usize, field: &Field, values: &mut Vec<Value>) -> Result<(), BadRaw> {
-        let case = self.case(field)?;
-        let numbers = field.numbers(case);
-        if field.many {
-            values.push(Value::Row(numbers.len()));
+    /// Each number with the index of its field, whole and physical; or the first not allowed.
+    pub(crate) fn numbers(&self) -> Result<Vec<(usize, i64, Value)>, BadRaw> {
+        let mut values = Vec::with_capacity(self.layout.size());
+        for (index, field) in self.layout.fields().iter().enumerate() {
+            self.field(index, field, self.case(field)?, |number, whole| {
+                values.push((index, whole, physical(number, whole)));
+            })?;
         }
+        Ok(values)
+    }
+
+    fn field(
+        &self,
+        index: usize,
+        field: &Field,
+        case: usize,
+        mut take: impl FnMut(&Number, i64),
+    ) -> Result<(), BadRaw> {
         let mut start = self.layout.start(index);
-        for (element, number) in numbers.iter().enumerate() {
+        for (element, number) in field.numbers(case).iter().enumerate() {
             let whole = whole(number, self.data, start);
             if !field.allows(number, whole) {
                 return Err(self.refuse((index, case, element), whole, start));
             }
-            values.push(physical(number, whole));
+            take(number, whole);
             start += number.width;
         }
         Ok(())
@@ -68,13 +86,9 @@ impl Reader<'_> {
 
     fn refuse(&self, place: (usize, usize, usize), whole: i64, start: usize) -> BadRaw {
         let (field, case, element) = place;
-        let Form {
-            command, layout, ..
-        } = self.form;
         let offset = self.offset + start;
         BadRaw {
-            command,
-            layout,
+            form: self.form,
             field,
             case,
             element,
@@ -85,7 +99,7 @@ impl Reader<'_> {
 }
 
 /// The whole number that starts there, after the sign rule.
-fn whole(number: &Number, data: &[u8], start: usize) -> i64 {
+pub(crate) fn whole(number: &Number, data: &[u8], start: usize) -> i64 {
     let bytes = data
         .get(start..start + number.width)
         .unwrap_or_default()
@@ -103,7 +117,7 @@ fn whole(number: &Number, data: &[u8], start: usize) -> i64 {
 }
 
 /// One rounding, that of the division: both casts are exact, as the table is checked for.
-fn physical(number: &Number, whole: i64) -> Value {
+pub(crate) fn physical(number: &Number, whole: i64) -> Value {
     if number.scaled() {
         Value::Real((whole * number.multiply) as f64 / number.divide as f64)
     } else {

@@ -9,7 +9,7 @@ use crate::judge::Rules;
 use crate::legal::Form;
 
 /// Which way a message goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// To the arm.
     Request,
@@ -154,7 +154,9 @@ impl Table {
         &self.commands
     }
 
-    pub(crate) fn layout(&self, form: Form) -> Option<&Layout> {
+    /// The layout of a form.
+    #[must_use]
+    pub fn layout(&self, form: Form) -> Option<&Layout> {
         let command = self.commands.get(form.command)?;
         command.layouts(form.direction).get(form.layout)
     }

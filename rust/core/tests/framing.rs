@@ -11,8 +11,10 @@
 
 mod common;
 
+use std::sync::LazyLock;
+
 use cobotwire_core::{Direction, Event, Framer, Listening, Reason, Table};
-use common::{Owned, events, field, number, owned, table, word};
+use common::{Dice, Owned, events, field, number, owned, table, word};
 
 /// Replies 20: nothing, 21: a word, 22: six words.
 fn three() -> Table {
@@ -21,7 +23,8 @@ fn three() -> Table {
 }
 
 fn framer(accept_unknown: bool) -> Framer {
-    let rules = three().rules(Listening::To(Direction::Reply)).clone();
+    static TABLE: LazyLock<Table> = LazyLock::new(three);
+    let rules = TABLE.rules(Listening::To(Direction::Reply)).clone();
     Framer::new(if accept_unknown {
         rules.accepting_unknown()
     } else {
@@ -31,48 +34,6 @@ fn framer(accept_unknown: bool) -> Framer {
 
 fn cut(bytes: &[u8]) -> Vec<Owned> {
     events(&mut framer(false), [bytes])
-}
-
-/// A small generator of numbers, so that the tests need no crate for it.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, sides: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (self.0 >> 33) as usize % sides
-    }
-
-    /// A stream made of what makes framing hard.
-    fn stream(&mut self) -> Vec<u8> {
-        const PARTS: [&[u8]; 10] = [
-            &[0xFE],
-            &[0xFE, 0xFE],
-            &[0xFA],
-            &[0x00, 0x55],
-            &[0xFE, 0xFE, 0x02, 0x20, 0xFA],
-            &[0xFE, 0xFE, 0x04, 0x21, 0xFE, 0xFE, 0xFA],
-            &[0xFE, 0xFE, 0x04, 0x21, 0xFE, 0xFA],
-            &[0xFE, 0xFE, 0x0E, 0x22],
-            &[0xFE, 0xFE, 0x02, 0x99, 0xFA],
-            &[0xFE, 0xFE, 0x04, 0x20],
-        ];
-        (0..self.roll(12))
-            .flat_map(|_| PARTS[self.roll(PARTS.len())].to_vec())
-            .collect()
-    }
-
-    fn chunks<'a>(&mut self, mut bytes: &'a [u8]) -> Vec<&'a [u8]> {
-        let mut all = Vec::new();
-        while !bytes.is_empty() {
-            let (chunk, rest) = bytes.split_at(self.roll(bytes.len() + 1).max(1));
-            all.push(chunk);
-            bytes = rest;
-        }
-        all
-    }
 }
 
 #[test]

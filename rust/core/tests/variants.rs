@@ -185,7 +185,9 @@ fn values_tell_forms_apart_that_share_an_id_and_a_size() {
     assert_eq!(form(6, Some(2)), Ok((2, 0)));
     for (value, of, blamed) in [(10, None, 0), (10, Some(2), 2), (9, Some(2), 2)] {
         match form(value, of) {
-            Err(DecodeError::Raw(bad)) => assert_eq!((bad.command, bad.layout), (blamed, 0)),
+            Err(DecodeError::Raw(bad)) => {
+                assert_eq!((bad.form.command, bad.form.layout), (blamed, 0))
+            }
             other => panic!("it was not refused: {other:?}"),
         }
     }

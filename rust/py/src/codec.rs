@@ -1,39 +1,39 @@
 //! `NativeCodec`: the core behind `cobotwire.codec.interface.Codec`.
 
-use cobotwire_core::{
-    Choice, DecodeError, Decoded, Direction, EncodeError, Framer, Listening, Table,
-};
+use std::sync::Arc;
+
+use cobotwire_core::{Choice, EncodeError, Listening, Rules};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::bulk::{self, NativeColumnReader};
+use crate::edition::Edition;
+use crate::frame::Origin;
 use crate::framer::NativeFramer;
 use crate::given::Object;
-use crate::names::Names;
-use crate::objects::Commands;
 use crate::values::{objects, row};
 use crate::words::{one_way, word};
-use crate::{convert, errors, words};
+use crate::{errors, words};
 
 /// One edition's encoder, decoder and framer.
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeCodec {
-    /// The edition that it interprets.
-    #[pyo3(get)]
-    table: Py<PyAny>,
-    core: Table,
-    commands: Commands,
+    edition: Arc<Edition>,
 }
 
 #[pymethods]
 impl NativeCodec {
     #[new]
     fn new(table: Bound<'_, PyAny>) -> PyResult<Self> {
-        let (core, names) = convert::table(&table)?;
         Ok(Self {
-            commands: Commands::new(&table, names)?,
-            table: table.unbind(),
-            core,
+            edition: Arc::new(Edition::new(table)?),
         })
+    }
+
+    /// The edition that it interprets.
+    #[getter]
+    fn table<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        self.edition.table.bind(py).clone()
     }
 
     /// Which of the two codecs it is.
@@ -53,18 +53,24 @@ impl NativeCodec {
         address: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let py = command.py();
-        let index = self.commands.find(&self.table, command)?;
+        let Edition {
+            table,
+            core,
+            commands,
+            ..
+        } = &*self.edition;
+        let index = commands.find(table, command)?;
         let way = one_way(direction)?;
-        let objects = self.commands.get(index)?;
+        let objects = commands.get(index)?;
         let values = row(values)?;
-        let format = self.core.frame();
-        let address = address.map(|given| words::address(given, &self.table, &format.addresses));
+        let format = core.frame();
+        let address = address.map(|given| words::address(given, table, &format.addresses));
         let form = form.map(|given| words::form(given, objects.layouts(way).len()));
         let choice = Choice {
             address: address.transpose()?,
             form: form.transpose()?,
         };
-        let record = self.core.commands().get(index);
+        let record = core.commands().get(index);
         let encoded = record.map_or(Err(EncodeError::Form), |record| {
             cobotwire_core::encode::<Object<'_>>(format, record, way, &values, choice)
         });
@@ -91,7 +97,13 @@ impl NativeCodec {
         data: &Bound<'py, PyAny>,
         of: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let of = of.map(|name| self.commands.find(&self.table, name));
+        let Edition {
+            table,
+            core,
+            commands,
+            ..
+        } = &*self.edition;
+        let of = of.map(|name| commands.find(table, name));
         let of = of.transpose()?;
         let way = one_way(direction)?;
         let copy;
@@ -103,72 +115,90 @@ impl NativeCodec {
                 &copy
             }
         };
-        match cobotwire_core::decode(&self.core, way, data.as_bytes(), of) {
-            Ok(decoded) => self.message(direction, &decoded),
-            Err(error) => Err(self.refused(way, error, direction, data)?),
+        let py = direction.py();
+        match cobotwire_core::decode(core, way, data.as_bytes(), of) {
+            Ok(decoded) => {
+                let values = objects(py, &decoded.values)?;
+                let address = decoded.address;
+                self.edition.message(py, decoded.form, &values, address)
+            }
+            Err(error) => {
+                let data = data.as_bytes();
+                Err(self.edition.refused(py, error, Some(direction), data))
+            }
         }
     }
 
     /// A new framer; `accept_unknown` also takes ids that the edition lacks as frames.
     #[pyo3(signature = (listening, *, accept_unknown = false))]
     fn framer(&self, listening: &Bound<'_, PyAny>, accept_unknown: bool) -> PyResult<NativeFramer> {
-        let listening = match word(listening) {
-            Some("both") => Listening::Both,
-            _ => Listening::To(one_way(listening)?),
-        };
-        let rules = self.core.rules(listening).clone();
-        let rules = if accept_unknown {
-            rules.accepting_unknown()
-        } else {
-            rules
-        };
-        Ok(NativeFramer::new(Framer::new(rules)))
+        let rules = self.rules(Some(listening), accept_unknown)?;
+        let edition = Arc::clone(&self.edition);
+        Ok(NativeFramer::new(Origin { edition, rules }))
+    }
+
+    /// Where the frames of a whole stream are.
+    #[pyo3(
+        signature = (data, listening = None, *, accept_unknown = false, out = None),
+        text_signature = "($self, data, listening='both', *, accept_unknown=False, out=None)"
+    )]
+    fn scan<'py>(
+        &self,
+        data: &Bound<'py, PyAny>,
+        listening: Option<&Bound<'py, PyAny>>,
+        accept_unknown: bool,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        bulk::scan(self.rules(listening, accept_unknown)?, data, out)
+    }
+
+    /// The values of a whole stream, as columns.
+    #[pyo3(
+        signature = (data, listening = None, *, raw = false, out = None),
+        text_signature = "($self, data, listening='both', *, raw=False, out=None)"
+    )]
+    fn decode_columns<'py>(
+        &self,
+        data: &Bound<'py, PyAny>,
+        listening: Option<&Bound<'py, PyAny>>,
+        raw: bool,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let reader = NativeColumnReader::new(Arc::clone(&self.edition), listen(listening)?, raw);
+        reader.all_of(data, out)
+    }
+
+    /// A reader for a stream that comes in pieces, or is larger than memory.
+    #[pyo3(
+        signature = (listening = None, *, raw = false),
+        text_signature = "($self, listening='both', *, raw=False)"
+    )]
+    fn column_reader(
+        &self,
+        listening: Option<&Bound<'_, PyAny>>,
+        raw: bool,
+    ) -> PyResult<NativeColumnReader> {
+        let edition = Arc::clone(&self.edition);
+        Ok(NativeColumnReader::new(edition, listen(listening)?, raw))
     }
 }
 
 impl NativeCodec {
-    fn message<'py>(
-        &self,
-        direction: &Bound<'py, PyAny>,
-        decoded: &Decoded,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let py = direction.py();
-        let form = decoded.form;
-        let command = self.commands.get(form.command)?;
-        let layout = command.layout(py, form.direction, form.layout)?;
-        let items = (
-            command.object.bind(py),
-            direction,
-            layout,
-            objects(py, &decoded.values)?,
-            decoded.address,
-        );
-        let names = Names::get(py)?;
-        names.make(&names.message, items.into_pyobject(py)?)
+    fn rules(&self, listening: Option<&Bound<'_, PyAny>>, accept_unknown: bool) -> PyResult<Rules> {
+        let rules = self.edition.core.rules(listen(listening)?).clone();
+        Ok(if accept_unknown {
+            rules.accepting_unknown()
+        } else {
+            rules
+        })
     }
+}
 
-    /// The error to raise; failing to make it is another.
-    fn refused(
-        &self,
-        way: Direction,
-        error: DecodeError,
-        direction: &Bound<'_, PyAny>,
-        data: &Bound<'_, PyBytes>,
-    ) -> PyResult<PyErr> {
-        let py = data.py();
-        match error {
-            DecodeError::Frame { reason, offset } => Ok(errors::bad_frame(
-                self.table.bind(py),
-                direction,
-                reason,
-                offset,
-                data,
-            )),
-            DecodeError::Raw(bad) => {
-                let command = self.commands.get(bad.command)?;
-                let layout = command.layout(py, way, bad.layout)?;
-                Ok(errors::bad_raw(command.object.bind(py), layout, bad, data))
-            }
-        }
+/// The directions to listen to; both, if nothing is said.
+fn listen(given: Option<&Bound<'_, PyAny>>) -> PyResult<Listening> {
+    match given {
+        None => Ok(Listening::Both),
+        Some(given) if word(given) == Some("both") => Ok(Listening::Both),
+        Some(given) => Ok(Listening::To(one_way(given)?)),
     }
 }

@@ -1,22 +1,27 @@
 //! The core's events as Python's `Frame` and `Noise`.
 
+use std::sync::Arc;
+
 use cobotwire_core::{Event, Frame, Reason};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 
+use crate::frame::{NativeFrame, Origin};
 use crate::names::Names;
 
 /// Collects the events of one call.
-pub struct Events<'py> {
+pub struct Events<'py, 'a> {
     names: &'static Names,
+    origin: &'a Arc<Origin>,
     list: Bound<'py, PyList>,
     failed: Option<PyErr>,
 }
 
-impl<'py> Events<'py> {
-    pub fn new(py: Python<'py>) -> PyResult<Self> {
+impl<'py, 'a> Events<'py, 'a> {
+    pub fn new(py: Python<'py>, origin: &'a Arc<Origin>) -> PyResult<Self> {
         Ok(Self {
             names: Names::get(py)?,
+            origin,
             list: PyList::empty(py),
             failed: None,
         })
@@ -46,9 +51,8 @@ impl<'py> Events<'py> {
     }
 
     fn frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<Bound<'py, PyAny>> {
-        let py = self.list.py();
-        let items = (offset, PyBytes::new(py, frame.bytes()), frame.id()).into_pyobject(py)?;
-        self.names.make(&self.names.frame, items)
+        let frame = NativeFrame::new(Arc::clone(self.origin), offset, frame);
+        Ok(Bound::new(self.list.py(), frame)?.into_any())
     }
 
     fn noise(&self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<Bound<'py, PyAny>> {

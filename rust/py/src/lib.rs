@@ -5,21 +5,32 @@
 
 use pyo3::prelude::*;
 
+mod bulk;
 mod codec;
 mod convert;
+mod edition;
 mod errors;
 mod events;
+mod frame;
 mod framer;
 mod given;
+mod memory;
 mod names;
 mod objects;
+mod parts;
 mod values;
 mod words;
 
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use crate::bulk::NativeColumnReader;
+    #[pymodule_export]
     use crate::codec::NativeCodec;
     #[pymodule_export]
+    use crate::frame::NativeFrame;
+    #[pymodule_export]
     use crate::framer::NativeFramer;
+    #[pymodule_export]
+    use crate::memory::Memory;
 }

@@ -1,6 +1,6 @@
 //! The Python objects that the binding uses, looked up once.
 
-use cobotwire_core::Reason;
+use cobotwire_core::{Direction, Reason};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBool, PyByteArray, PyBytes, PyDict, PyFrozenSet, PySet, PyString, PyTuple};
@@ -8,9 +8,12 @@ use pyo3::types::{PyBool, PyByteArray, PyBytes, PyDict, PyFrozenSet, PySet, PySt
 static NAMES: PyOnceLock<Names> = PyOnceLock::new();
 
 pub struct Names {
-    pub frame: Py<PyAny>,
     pub noise: Py<PyAny>,
     pub message: Py<PyAny>,
+    pub counters: Py<PyAny>,
+    pub rows: Py<PyAny>,
+    pub columns: Py<PyAny>,
+    pub scan: Py<PyAny>,
     pub refuse_direction: Py<PyAny>,
     pub refuse_form: Py<PyAny>,
     pub refuse_address: Py<PyAny>,
@@ -28,6 +31,8 @@ pub struct Names {
     pub not_sequences: Py<PyTuple>,
     new_tuple: Py<PyAny>,
     reasons: Vec<Py<PyString>>,
+    request: Py<PyString>,
+    reply: Py<PyString>,
 }
 
 impl Names {
@@ -56,9 +61,12 @@ impl Names {
         ];
         let word = |reason: Reason| PyString::intern(py, reason.word()).unbind();
         Ok(Self {
-            frame: from("cobotwire.codec.interface", "Frame")?,
-            noise: from("cobotwire.codec.interface", "Noise")?,
-            message: from("cobotwire.codec.interface", "Message")?,
+            noise: from("cobotwire.codec.events", "Noise")?,
+            message: from("cobotwire.codec.events", "Message")?,
+            counters: from("cobotwire.codec.events", "Counters")?,
+            rows: from("cobotwire.codec.columns", "Rows")?,
+            columns: from("cobotwire.codec.columns", "Columns")?,
+            scan: from("cobotwire.codec.columns", "Scan")?,
             refuse_direction: from("cobotwire.codec.refusal", "refuse_direction")?,
             refuse_form: from("cobotwire.codec.refusal", "refuse_form")?,
             refuse_address: from("cobotwire.codec.refusal", "refuse_address")?,
@@ -73,6 +81,8 @@ impl Names {
             not_sequences: PyTuple::new(py, not_sequences)?.unbind(),
             new_tuple: py.get_type::<PyTuple>().getattr("__new__")?.unbind(),
             reasons: Reason::ALL.into_iter().map(word).collect(),
+            request: PyString::intern(py, "request").unbind(),
+            reply: PyString::intern(py, "reply").unbind(),
         })
     }
 
@@ -84,6 +94,14 @@ impl Names {
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = items.py();
         self.new_tuple.bind(py).call1((class.bind(py), items))
+    }
+
+    /// A direction's word.
+    pub fn direction<'py>(&self, py: Python<'py>, direction: Direction) -> &Bound<'py, PyString> {
+        match direction {
+            Direction::Request => self.request.bind(py),
+            Direction::Reply => self.reply.bind(py),
+        }
     }
 
     /// A reason's word.

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from cobotwire.codec.interface import Listening, Message
+from cobotwire.codec.columns import Columns, Scan
+from cobotwire.codec.interface import Data, Listening, Message
+from cobotwire.codec.reference.columns import ReferenceColumnReader, scan
 from cobotwire.codec.reference.decode import decode
 from cobotwire.codec.reference.encode import encode
 from cobotwire.codec.reference.framer import ReferenceFramer
@@ -52,6 +54,36 @@ class ReferenceCodec:
         )
         forms = [self._legal(direction) for direction in directions]
         return ReferenceFramer(self.table.frame, forms, accept_unknown)
+
+    def scan(
+        self,
+        data: Data,
+        listening: Listening = "both",
+        *,
+        accept_unknown: bool = False,
+        out: Scan | None = None,
+    ) -> Scan:
+        """Where the frames of a whole stream are; ``out`` keeps its memory."""
+        framer = self.framer(listening, accept_unknown=accept_unknown)
+        return scan([*framer.feed(data), *framer.flush()], framer)
+
+    def decode_columns(
+        self,
+        data: Data,
+        listening: Listening = "both",
+        *,
+        raw: bool = False,
+        out: Columns | None = None,
+    ) -> Columns:
+        """The values of a whole stream, as columns; ``out`` keeps its memory."""
+        framer = self.framer(listening)
+        return ReferenceColumnReader(self.table, framer, raw).all_of(data)
+
+    def column_reader(
+        self, listening: Listening = "both", *, raw: bool = False
+    ) -> ReferenceColumnReader:
+        """A reader for a stream that comes in pieces."""
+        return ReferenceColumnReader(self.table, self.framer(listening), raw)
 
     def _legal(self, direction: Direction) -> Forms:
         if direction not in self._forms:

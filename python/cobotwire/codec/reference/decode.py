@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from cobotwire.codec.interface import Message
+from collections.abc import Sequence
+
+from cobotwire.codec.events import Message
 from cobotwire.codec.reference.check import check
 from cobotwire.codec.reference.legal import Form, Forms
 from cobotwire.codec.refusal import physical, refuse_frame, refuse_raw
 from cobotwire.errors import ProtocolError
-from cobotwire.table import Case, Command, Direction, Field, Layout, Number
+from cobotwire.table import Case, Command, Direction, Field, FrameFormat, Layout, Number
 
 
 def decode(forms: Forms, direction: Direction, data: bytes, of: Command | None) -> Message:
@@ -25,6 +27,21 @@ def decode(forms: Forms, direction: Direction, data: bytes, of: Command | None) 
         return Message(command, direction, layout, values, address)
     assert refusal is not None, "a legal frame has a form"
     raise refusal
+
+
+def read(forms: Sequence[Forms], data: bytes) -> Message:
+    """Read a frame that a framer gave: in the first direction that allows its values."""
+    table = forms[0].table
+    length, id = data[table.frame.length_at], data[table.frame.overhead]
+    refusal: ProtocolError | None = None
+    for each in forms:
+        if each.find(id, length):
+            try:
+                return decode(each, each.direction, data, None)
+            except ProtocolError as error:
+                refusal = refusal or error
+    at = table.frame.overhead
+    raise refusal or refuse_frame(table, forms[0].direction, "unknown-id", at, data)
 
 
 def _forms(forms: Forms, direction: Direction, data: bytes, of: Command | None) -> list[Form]:
@@ -107,6 +124,29 @@ def _numbers(
         values.append(physical(number, read))
         offset += number.width
     return tuple(values)
+
+
+def whole_numbers(frame: FrameFormat, layout: Layout, data: bytes) -> list[tuple[int, ...]]:
+    """Each field's numbers of a frame that was decoded as this form, before their scale."""
+    found, offset = [], frame.overhead + 1
+    for field in layout.fields:
+        numbers = []
+        # All cases take the same bytes; which one it is decides how they are cut.
+        for number in picked_case(frame, layout, field, data).numbers:
+            numbers.append(whole(number, data, offset))
+            offset += number.width
+        found.append(tuple(numbers))
+    return found
+
+
+def picked_case(frame: FrameFormat, layout: Layout, field: Field, data: bytes) -> Case:
+    """The case that a field's selector picks in a frame that was decoded."""
+    if field.selector < 0:
+        return field.cases[0]
+    before = sum(other.size for other in layout.fields[: field.selector])
+    number = layout.fields[field.selector].cases[0].numbers[0]
+    picked = whole(number, data, frame.overhead + 1 + before)
+    return next(case for case in field.cases if picked in case.when)
 
 
 def whole(number: Number, data: bytes, offset: int) -> int:

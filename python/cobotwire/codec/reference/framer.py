@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cobotwire.codec.interface import Event, Frame, Noise, NoiseReason
+from cobotwire.codec.events import Counters, Event, Frame, Message, Noise, NoiseReason
+from cobotwire.codec.interface import Data
 from cobotwire.codec.reference.check import check
+from cobotwire.codec.reference.decode import read
 from cobotwire.codec.reference.legal import Forms
 from cobotwire.table import FrameFormat
 
@@ -27,15 +29,26 @@ class ReferenceFramer:
             self._lengths |= set(range(frame.length(0), frame.maximum_length + 1))
         self._waiting = bytearray()
         self._offset = 0
+        self._counters = Counters(0, {}, {}, 0)
+        self._in_noise = False
 
     @property
     def pending(self) -> int:
         """Bytes fed that no event covers yet."""
         return len(self._waiting)
 
-    def feed(self, data: bytes | bytearray | memoryview) -> list[Event]:
+    @property
+    def counters(self) -> Counters:
+        """What came so far, in numbers."""
+        counters = self._counters
+        return counters._replace(frames=dict(counters.frames), noise=dict(counters.noise))
+
+    def feed(self, data: Data) -> list[Event]:
         """Take bytes; give what is certain by now."""
+        before = len(self._waiting)
         self._waiting += data
+        fed = len(self._waiting) - before
+        self._counters = self._counters._replace(bytes=self._counters.bytes + fed)
         return self._cut(at_end=False)
 
     def flush(self) -> list[Event]:
@@ -49,7 +62,8 @@ class ReferenceFramer:
             verdict = self._judge(data, start)
             if isinstance(verdict, int):
                 frame = data[start : start + verdict]
-                events.append(Frame(self._offset + start, frame, frame[self._frame.overhead]))
+                id = frame[self._frame.overhead]
+                events.append(Frame(self._offset + start, frame, id, self._read))
                 start += verdict
             elif verdict == "truncated" and not at_end:
                 break
@@ -58,7 +72,22 @@ class ReferenceFramer:
                 start += 1
         del self._waiting[:start]
         self._offset += start
+        self._count(events)
         return events
+
+    def _read(self, data: bytes) -> Message:
+        return read(self._forms, data)
+
+    def _count(self, events: list[Event]) -> None:
+        _, frames, noise, resyncs = self._counters
+        for event in events:
+            if isinstance(event, Frame):
+                frames[event.command] = frames.get(event.command, 0) + 1
+                resyncs += self._in_noise
+            else:
+                noise[event.reason] = noise.get(event.reason, 0) + len(event.data)
+            self._in_noise = isinstance(event, Noise)
+        self._counters = self._counters._replace(resyncs=resyncs)
 
     def _judge(self, data: bytes, start: int) -> int | NoiseReason:
         """The size of the frame at ``start``, or why there is none (``truncated``: not yet)."""

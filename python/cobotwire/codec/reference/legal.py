@@ -12,6 +12,7 @@ class Forms:
 
     def __init__(self, table: Table, direction: Direction) -> None:
         self.table = table
+        self.direction: Direction = direction
         self.by_id: dict[int, dict[int, list[Form]]] = {}
         for command in table.commands:
             for layout in command.layouts(direction):

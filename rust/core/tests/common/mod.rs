@@ -166,3 +166,49 @@ pub fn events<'a>(framer: &mut Framer, chunks: impl IntoIterator<Item = &'a [u8]
     framer.flush(&mut add);
     all
 }
+
+/// A small generator of numbers, so that the tests need no crate for it.
+pub struct Dice(pub u64);
+
+impl Dice {
+    pub fn roll(&mut self, sides: usize) -> usize {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (self.0 >> 33) as usize % sides
+    }
+
+    pub fn byte(&mut self) -> u8 {
+        self.roll(256) as u8
+    }
+
+    /// A stream made of what makes framing hard.
+    pub fn stream(&mut self) -> Vec<u8> {
+        const PARTS: [&[u8]; 10] = [
+            &[0xFE],
+            &[0xFE, 0xFE],
+            &[0xFA],
+            &[0x00, 0x55],
+            &[0xFE, 0xFE, 0x02, 0x20, 0xFA],
+            &[0xFE, 0xFE, 0x04, 0x21, 0xFE, 0xFE, 0xFA],
+            &[0xFE, 0xFE, 0x04, 0x21, 0xFE, 0xFA],
+            &[0xFE, 0xFE, 0x0E, 0x22],
+            &[0xFE, 0xFE, 0x02, 0x99, 0xFA],
+            &[0xFE, 0xFE, 0x04, 0x20],
+        ];
+        (0..self.roll(12))
+            .flat_map(|_| PARTS[self.roll(PARTS.len())].to_vec())
+            .collect()
+    }
+
+    pub fn chunks<'a>(&mut self, mut bytes: &'a [u8]) -> Vec<&'a [u8]> {
+        let mut all = Vec::new();
+        while !bytes.is_empty() {
+            let (chunk, rest) = bytes.split_at(self.roll(bytes.len() + 1).max(1));
+            all.push(chunk);
+            bytes = rest;
+        }
+        all
+    }
+}

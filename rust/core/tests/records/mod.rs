@@ -1,5 +1,8 @@
 //! Reads the generator's JSON: the records of Python's `cobotwire.table`, attribute by attribute.
 
+// Each test file compiles this by itself and uses a part of it.
+#![allow(dead_code)]
+
 use cobotwire_core::{
     Case, Check, Command, Direction, Field, FrameFormat, Layout, Number, Order, Table,
 };

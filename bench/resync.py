@@ -1,0 +1,162 @@
+"""The resync report: what each reader makes of damaged lines, frame by frame.
+
+Every undamaged frame must be recovered, unless a false frame that is legal by the table covers it;
+these are counted and shown one by one. Any other loss, or two codecs that differ, ends with 1.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import readers
+import resync_table
+import streams
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Listening
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.editions.mycobot280 import TABLE as TABLE_280
+from cobotwire.table import Table
+from damage import KINDS, damage, noisy
+from judge import ideal_distances, judge, spread, told
+from readers import Reader
+from streams import Line
+
+TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
+# Rarer damage needs a longer line to happen at all: so many times --frames.
+LENGTHS = {1e-4: 2.0, 1e-3: 1.0, 1e-2: 0.5}
+BYTE_BY_BYTE = 100_000
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One row: which stream of which edition, and what happens to it."""
+
+    edition: str
+    stream: str
+    listening: Listening
+    kind: str
+    rate: float
+
+    def line(self, frames: int, seed: int) -> Line:
+        """The damaged stream."""
+        table, count = TABLES[self.edition], int(frames * LENGTHS.get(self.rate, 1.0))
+        clean = (
+            streams.stream_a(table, count, seed=seed)
+            if self.stream == "A"
+            else streams.catalogue(table, count, self.listening, seed=seed)
+        )
+        if self.kind == "line noise":
+            return noisy(table, clean, share=self.rate, seed=seed + 1)
+        return damage(table, clean, self.kind, self.rate, seed=seed + 1)
+
+
+def scenarios() -> Iterator[Scenario]:
+    """Replies with each kind of damage; a shared line and stream A with all of them at once."""
+    for edition in TABLES:
+        for rate in LENGTHS:
+            for kind in KINDS:
+                yield Scenario(edition, "catalogue", "reply", kind, rate)
+            yield Scenario(edition, "catalogue", "both", "mixed", rate)
+            yield Scenario(edition, "A", "reply", "mixed", rate)
+        yield Scenario(edition, "catalogue", "reply", "line noise", 0.1)
+        yield Scenario(edition, "A", "reply", "line noise", 0.1)
+
+
+def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) -> dict[str, Any]:
+    """One row of the report."""
+    table = TABLES[scenario.edition]
+    line = scenario.line(frames, seed)
+    read = {
+        "cobotwire": readers.ours(table, "native", scenario.listening)(line.data),
+        "any LEN to 64": readers.any_length(64)(line.data),
+        "textbook": readers.textbook(table)(line.data),
+        "pymycobot": readers.pymycobot()(line.data),
+        "pymycobot asked": readers.pymycobot_asked(line),
+    }
+    verdicts = {
+        name: judge(table, scenario.listening, line, frames) for name, frames in read.items()
+    }
+    return {
+        **asdict(scenario),
+        "bytes": len(line.data),
+        "sent": line.frames,
+        "undamaged": int(line.whole.sum()),
+        "damages": len(line.sites),
+        "ideal": spread(ideal_distances(line)),
+        "readers": {name: told(verdict) for name, verdict in verdicts.items()},
+        "covered": [
+            {"frame_at": c.start, "by_false_at": c.false_start, "false": c.false_frame.hex(" ")}
+            for c in verdicts["cobotwire"].covered
+        ],
+        "unexplained": verdicts["cobotwire"].unexplained,
+        "late": _late(table, scenario.listening, line.data[:BYTE_BY_BYTE]),
+        "codecs_agree": _agree(table, scenario.listening, line.data[:reference_bytes]),
+    }
+
+
+def bounded(edition: str, frames: int, seed: int) -> list[dict[str, Any]]:
+    """What the table is worth: the same scan with any id and any LEN up to a bound."""
+    table = TABLES[edition]
+    line = Scenario(edition, "A", "reply", "line noise", 0.1).line(frames, 1000 * seed)
+    asked: dict[str, Reader] = {"the table": readers.ours(table, "native", "reply")}
+    # FE as LEN, 254, is a case of its own: FE FE FE is then a header.
+    lengths = {"longest": table.frame.maximum_length, "64": 64, "128": 128, "253": 253, "255": 255}
+    for name, longest in lengths.items():
+        asked[name] = readers.any_length(longest)
+    return [
+        {"edition": edition, "bound": name, **told(judge(table, "reply", line, read(line.data)))}
+        for name, read in asked.items()
+    ]
+
+
+def _agree(table: Table, listening: Listening, data: bytes) -> bool:
+    native, reference = (
+        readers.ours(table, name, listening)(data) for name in ("native", "reference")
+    )
+    return native == reference
+
+
+def _late(table: Table, listening: Listening, data: bytes) -> dict[str, int]:
+    """How many bytes behind its last one a frame is delivered, fed byte by byte."""
+    framer = codecs.load(table, "native").framer(listening)
+    late = []
+    for fed, byte in enumerate(memoryview(data).cast("c"), start=1):
+        late += [fed - frame.end for frame in readers.accepted(framer.feed(byte))]
+    return {"frames": len(late), "late": sum(map(bool, late)), "most": max(late, default=0)}
+
+
+def main() -> int:
+    """Measure all rows, print them, and tell whether each lost frame is explained."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--frames", type=int, default=20_000, help="sent in a row, on average")
+    parser.add_argument("--reference-bytes", type=int, default=20_000, help="for both codecs")
+    parser.add_argument("--seed", type=int, default=4)
+    parser.add_argument("--show", type=int, default=12, help="how many lost frames to show")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all of it there")
+    options = parser.parse_args()
+    started = time.monotonic()
+    print(resync_table.HEAD, resync_table.COLUMNS, sep="\n")
+    rows = []
+    for number, scenario in enumerate(scenarios()):
+        seed = 1000 * options.seed + 2 * number
+        rows.append(measure(scenario, options.frames, seed, options.reference_bytes))
+        print(resync_table.row(rows[-1]), flush=True)
+    print(resync_table.summary(rows, options.show))
+    bounds = [each for edition in TABLES for each in bounded(edition, options.frames, options.seed)]
+    print(resync_table.bounds(bounds))
+    print(f"{len(rows)} rows in {time.monotonic() - started:.0f} s")
+    if options.json:
+        report = {"frames": options.frames, "rows": rows, "bounds": bounds}
+        options.json.write_text(json.dumps(report, indent=1))
+    return int(any(row["unexplained"] or not row["codecs_agree"] for row in rows))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,223 @@
+"""How fast the native codec is, as ratios to others on the same input in the same run.
+
+Each round runs everything once, one after the other; a ratio is the median over the rounds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import threading
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+import speed_peers as peers
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec, Columns, Frame, Scan
+from cobotwire.editions.mycobot280 import TABLE
+from damage import noisy
+from speed_table import Asked, Ratio, Timed, Told, measure, ratios, show, write_json
+from streams import stream_a
+
+ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
+CHUNK = 4096
+# What pymycobot and the textbook decoder read in a round; the time is that of a whole stream.
+SLOW, SLOWEST = 100_000, 2_000
+MIB = 1 << 20
+
+
+def main() -> None:
+    """Measure, print, and say with the exit code whether all was met."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--frames", type=int, default=1_000_000, help="of stream A")
+    parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--json", type=Path, help="write the ratios to this file")
+    parser.add_argument("--strict", action="store_true", help="exit 1 if a row is not met")
+    options = parser.parse_args()
+    codec = codecs.load(TABLE, "native")
+    console = Console(width=118)
+    found: list[Ratio] = []
+    for title, part in PARTS.items():
+        timed, asked = part(codec, options.frames)
+        measure(timed, options.rounds)
+        rows = ratios(timed, asked)
+        show(title, rows, console)
+        found += rows
+    if options.json:
+        write_json(options.json, found)
+    sys.exit(1 if options.strict and not all(row.met for row in found) else 0)
+
+
+class Reused:
+    """Calls with ``out=`` the result of the call before, as one who reads many captures does."""
+
+    def __init__(self, call: Any) -> None:
+        self.call = call
+        self.last: Scan | Columns | None = None
+
+    def __call__(self) -> object:
+        """Once more."""
+        self.last = self.call(out=self.last)
+        return self.last
+
+
+def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
+    """Scans and columns of stream A, and of one with 10 % noise."""
+    line = stream_a(TABLE, frames)
+    clean, bad = line.data, noisy(TABLE, line).data
+    few = stream_a(TABLE, SLOWEST).data
+    timed = {
+        "memcpy": Timed(peers.memcpy(clean)),
+        "memcpy of the noisy one": Timed(peers.memcpy(bad)),
+        "scan": Timed(Reused(partial(codec.scan, clean, "reply"))),
+        "noisy scan": Timed(Reused(partial(codec.scan, bad, "reply"))),
+        "fresh": Timed(partial(codec.decode_columns, clean, "reply")),
+        "reused": Timed(Reused(partial(codec.decode_columns, clean, "reply"))),
+        "raw": Timed(Reused(partial(codec.decode_columns, clean, "reply", raw=True))),
+        "noisy raw": Timed(Reused(partial(codec.decode_columns, bad, "reply", raw=True))),
+        "NumPy": Timed(partial(peers.numpy_columns, clean)),
+        "pymycobot": Timed(peers.pymycobot_reads(few, SLOWEST), scale=frames / SLOWEST),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few), scale=frames / SLOWEST),
+    }
+    return timed, [
+        Asked("framing scan to offsets", "scan", "memcpy", 1.6),
+        Asked("the same, 10 % noise", "noisy scan", "memcpy of the noisy one", 2.5),
+        Asked("float64 columns, out=", "reused", "memcpy", 6.5),
+        Asked("float64 columns, fresh", "fresh", "memcpy", 8),
+        Asked("float64 columns, fresh", "fresh", "NumPy", 10, faster=True),
+        Asked("float64 columns, fresh", "fresh", "pymycobot", 3000, faster=True),
+        Told("float64 columns, fresh", "fresh", "pymycobot, no port"),
+        Asked("raw columns, out=", "raw", "memcpy", 2.5),
+        Asked("the same, 10 % noise", "noisy raw", "memcpy of the noisy one", 3),
+    ]
+
+
+def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
+    """Messages as Python objects."""
+    data = stream_a(TABLE, frames).data
+    some, few = stream_a(TABLE, SLOW).data, stream_a(TABLE, SLOWEST).data
+
+    def iterated() -> None:
+        for frame in _frames(codec, data):
+            frame.values  # noqa: B018  (reading it is the work)
+
+    def in_chunks() -> None:
+        framer = codec.framer("reply")
+        for start in range(0, len(data), CHUNK):
+            framer.feed(data[start : start + CHUNK])
+
+    def eager() -> list[Any]:
+        return [frame.values for frame in codec.framer("reply").feed(data)]  # type: ignore[union-attr]
+
+    timed = {
+        "find": Timed(lambda: peers.FindDecoder(TABLE).feed(some), scale=frames / SLOW),
+        "pymycobot": Timed(peers.pymycobot_reads(few, SLOWEST), scale=frames / SLOWEST),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few), scale=frames / SLOWEST),
+        "list": Timed(lambda: codec.framer("reply").feed(data)),
+        "iterated": Timed(iterated),
+        "chunks": Timed(in_chunks),
+        "eager": Timed(eager),
+    }
+    return timed, [
+        Asked("lazy messages, a list", "list", "find", 35, faster=True),
+        Asked("lazy messages, each value read once", "iterated", "find", 12, faster=True),
+        Asked("lazy messages in 4 KiB chunks", "chunks", "pymycobot", 400, faster=True),
+        Told("lazy messages in 4 KiB chunks", "chunks", "pymycobot, no port"),
+        Asked("eager values, held in a list", "eager", "find", 7, faster=True),
+        Asked("eager values, held in a list", "eager", "pymycobot", 60, faster=True),
+    ]
+
+
+def _frames(codec: Codec, data: bytes) -> Any:
+    """All frames of a buffer, block by block: what is not kept takes no memory."""
+    framer = codec.framer("reply")
+    for start in range(0, len(data), 1 << 16):
+        for event in framer.feed(data[start : start + (1 << 16)]):
+            if isinstance(event, Frame):
+                yield event
+
+
+def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
+    """One frame at a time."""
+    frame = codec.encode("get_angles", "reply", (ANGLES,))
+    framer = codec.framer("reply")
+    textbook = peers.FindDecoder(TABLE)
+    values = (ANGLES, 30)
+    many = 20_000
+    timed = {
+        "a no-op call": Timed(lambda: None, many),
+        "find": Timed(lambda: textbook.feed(frame), many),
+        "pymycobot": Timed(peers.pymycobot_reads(frame * SLOWEST, SLOWEST), scale=1 / SLOWEST),
+        "feed": Timed(lambda: [event.values for event in framer.feed(frame)], many),  # type: ignore[union-attr]
+        "encode": Timed(lambda: codec.encode("send_angles", "request", values), many),
+        "struct": Timed(lambda: peers.struct_send_angles(ANGLES, 30), many),
+        "pymycobot's building": Timed(peers.pymycobot_send_angles(ANGLES, 30), 1000),
+    }
+    return timed, [
+        Asked("feed() of one frame, eager", "feed", "find", 7, faster=True),
+        Asked("feed() of one frame, eager", "feed", "pymycobot", 90, faster=True),
+        Asked("feed() of one frame, eager", "feed", "a no-op call", 10),
+        Asked("encode send_angles", "encode", "struct", 8, faster=True),
+        Asked("encode send_angles", "encode", "pymycobot's building", 50, faster=True),
+    ]
+
+
+def adversarial(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
+    """64 MiB made to be slow, and half of it."""
+    longest = TABLE.frame.maximum_length
+    header = codec.encode("get_angles", "reply", (ANGLES,))[:4]
+    patterns = {
+        "all FE": b"\xfe",
+        "FE FE FF": b"\xfe\xfe\xff",
+        "FE FE and the longest LEN": bytes([0xFE, 0xFE, longest]),
+        "a legal header every 4 bytes": header,
+    }
+    timed = {"memcpy": Timed(peers.memcpy(bytes(64 * MIB)))}
+    asked = []
+    for name, pattern in patterns.items():
+        for size in (64, 32):
+            data = pattern * (size * MIB // len(pattern))
+            timed[f"{name}, {size}"] = Timed(partial(codec.scan, data))
+        asked.append(Asked(f"64 MiB of {name}", f"{name}, 64", "memcpy", 12))
+        asked.append(Asked("  and twice the input", f"{name}, 64", f"{name}, 32", 2.5))
+    return timed, asked
+
+
+def threads(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
+    """Two captures in two threads, against one after the other."""
+    data = stream_a(TABLE, 4 * frames).data
+    out: list[Columns | None] = [None, None]
+
+    def read(place: int) -> None:
+        out[place] = codec.decode_columns(data, "reply", out=out[place])
+
+    def together() -> None:
+        both = [threading.Thread(target=read, args=(place,)) for place in (0, 1)]
+        for thread in both:
+            thread.start()
+        for thread in both:
+            thread.join()
+
+    def in_turn() -> None:
+        read(0)
+        read(1)
+
+    timed = {"one thread": Timed(in_turn), "two": Timed(together)}
+    return timed, [Asked("two captures in two threads", "two", "one thread", 1.8, faster=True)]
+
+
+PARTS = {
+    "Bulk": bulk,
+    "Messages": objects,
+    "One frame": single,
+    "Input made to be slow": adversarial,
+    "Threads": threads,
+}
+
+if __name__ == "__main__":
+    np.seterr(all="ignore")
+    main()

@@ -1,0 +1,169 @@
+"""The others on the speed bench: memcpy, a textbook decoder, NumPy, pymycobot."""
+
+from __future__ import annotations
+
+import itertools
+import struct
+from collections.abc import Callable
+from functools import partial
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+from unittest import mock
+
+import numpy as np
+import serial
+
+from cobotwire.table import Table
+from readers import pymycobot_peer
+
+ANGLES, COORDS = 0x20, 0x23
+
+
+def memcpy(data: bytes) -> Callable[[], object]:
+    """Copies the input into memory that is there."""
+    source = np.frombuffer(data, np.uint8)
+    target = np.empty_like(source)
+    return lambda: np.copyto(target, source)
+
+
+class Found(NamedTuple):
+    """What the textbook decoder gives."""
+
+    offset: int
+    name: str
+    values: tuple[float, ...]
+
+
+class FindDecoder:
+    """What a careful person writes in Python: ``bytes.find`` and ``struct`` over a kept buffer.
+
+    It knows the replies by id and LEN, keeps what is not whole, and scans on at the next byte
+    where a candidate fails.
+    """
+
+    def __init__(self, table: Table) -> None:
+        self.buffer = b""
+        self.offset = 0
+        self.kinds: dict[tuple[int, int], tuple[str, struct.Struct, list[float]]] = {}
+        for command in table.commands:
+            for form in command.reply:
+                numbers = [n for part in form.fields for n in part.cases[0].numbers]
+                codes = "".join({1: "B", 2: "h", 4: "i"}[number.width] for number in numbers)
+                key = command.id, table.frame.length(form.size)
+                scales = [number.divide / number.multiply for number in numbers]
+                self.kinds.setdefault(key, (command.name, struct.Struct(">" + codes), scales))
+
+    def feed(self, data: bytes) -> list[Found]:
+        """Take bytes; give the messages in them."""
+        data = self.buffer + data
+        found = []
+        at = data.find(b"\xfe\xfe")
+        size = len(data)
+        while at >= 0 and at + 4 < size:
+            end = at + 3 + data[at + 2]
+            kind = self.kinds.get((data[at + 3], data[at + 2]))
+            if kind is None or (end <= size and data[end - 1] != 0xFA):
+                at = data.find(b"\xfe\xfe", at + 1)
+                continue
+            if end > size:
+                break
+            name, unpacker, scales = kind
+            words = unpacker.unpack_from(data, at + 4)
+            values = tuple([word / scale for word, scale in zip(words, scales)])
+            found.append(Found(self.offset + at, name, values))
+            at = data.find(b"\xfe\xfe", end)
+        keep = at if at >= 0 else size - data.endswith(b"\xfe")
+        self.offset += keep
+        self.buffer = data[keep:]
+        return found
+
+
+def numpy_columns(data: bytes) -> dict[int, tuple[Any, Any]]:
+    """A vectorised scan: offsets and float64 values of angles and coordinates, by id.
+
+    It takes each place where header, LEN and footer fit for a frame, and so is right only where no
+    frame holds what looks like one; it does not look at any other message.
+    """
+    bytes_ = np.frombuffer(data, np.uint8)
+    starts = np.flatnonzero((bytes_[:-16] == 0xFE) & (bytes_[1:-15] == 0xFE))
+    whole = (bytes_[starts + 2] == 14) & (bytes_[starts + 16] == 0xFA)
+    starts = starts[whole]
+    ids = bytes_[starts + 3]
+    found = {}
+    for id, scale in [(ANGLES, [100.0] * 6), (COORDS, [10.0] * 3 + [100.0] * 3)]:
+        mine = starts[ids == id]
+        rows = bytes_[mine[:, None] + np.arange(4, 16)]
+        words = rows.reshape(-1, 6, 2).view(">i2")[:, :, 0]
+        found[id] = mine, words / np.array(scale)
+    return found
+
+
+def pymycobot_reads(data: bytes, count: int) -> Callable[[], list[Any]]:
+    """Pymycobot's own ``_read`` and ``_process_received`` on pyserial, as its users run them.
+
+    The port is pyserial's own ``loop://``: no operating system, no cable, and no waiting.
+    """
+    _, peer = pymycobot_peer()
+    peer._serial_port = serial.serial_for_url("loop://", timeout=0.1)
+    peer._serial_port.baudrate = 2_000_000_000  # else loop:// takes as long as a cable
+
+    def read() -> list[Any]:
+        peer._serial_port.write(data)
+        return [_pymycobot_values(peer, peer._read(0x20)) for _ in range(count)]
+
+    return read
+
+
+def pymycobot_reads_memory(data: bytes) -> Callable[[], list[Any]]:
+    """The same without pyserial: each byte from a list, by the fastest call that there is."""
+    common, peer = pymycobot_peer()
+    clock = SimpleNamespace(time=lambda: 0.0)
+
+    def read() -> list[Any]:
+        line = iter([data[at : at + 1] for at in range(len(data))])
+        peer._serial_port = SimpleNamespace(read=partial(next, line))
+        found = []
+        with mock.patch.object(common, "time", clock):
+            for _ in itertools.count():
+                try:
+                    frame = peer._read(0x20)
+                except StopIteration:
+                    break  # the line is over; to wait for more is not what is timed
+                found.append(_pymycobot_values(peer, frame))
+        return found
+
+    return read
+
+
+def _pymycobot_values(peer: Any, frame: Any) -> Any:
+    id = frame[3]
+    try:
+        words = peer._process_received(frame, id)
+    except struct.error:
+        return None  # its users meet this error: some short replies are shorter than it expects
+    if id == ANGLES:
+        return [peer._int2angle(word) for word in words]
+    if id == COORDS:
+        return [peer._int2coord(w) for w in words[:3]] + [peer._int2angle(w) for w in words[3:]]
+    return words
+
+
+def struct_send_angles(angles: list[float], speed: int) -> bytes:
+    """A frame by ``struct`` and ``round``, unchecked."""
+    words = [round(angle * 100) for angle in angles]
+    return struct.pack(">4B6hBB", 0xFE, 0xFE, 15, 0x22, *words, speed, 0xFA)
+
+
+def pymycobot_send_angles(angles: list[float], speed: int) -> Callable[[], list[int]]:
+    """Pymycobot's building of the frame: its conversion, ``_mesg`` and ``_flatten``; no port."""
+    _, peer = pymycobot_peer()
+    from pymycobot import MyCobot280
+    from pymycobot.common import ProtocolCode
+
+    def build() -> list[int]:
+        words = [peer._angle2int(angle) for angle in angles]
+        command, _, _ = super(MyCobot280, peer)._mesg(ProtocolCode.SEND_ANGLES, words, speed)
+        flat: list[int] = peer._flatten(command)
+        return flat
+
+    return build

@@ -1,0 +1,93 @@
+"""The noise of a stream with the frames taken out, as far as no finding covers it yet."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from enum import Enum
+from itertools import pairwise
+
+from cobotwire.codec.interface import Noise, NoiseReason
+from cobotwire.diagnose.findings import Finding, Span
+
+
+class Wait(Enum):
+    """What a recogniser says if bytes that may still come decide."""
+
+    WAIT = 0
+
+
+# A finding that starts just there; or nothing does; or that cannot be told yet.
+Verdict = Finding | Wait | None
+
+
+class Residue:
+    """Bytes in a row, with marks where frames stood between them.
+
+    A packet or a line of text may go on behind a frame, and sees all of ``data``. For everything
+    else a mark is an end: it sees a :meth:`stretch`.
+    """
+
+    def __init__(self) -> None:
+        self.data = b""
+        # Nothing comes behind ``data`` that could belong to it.
+        self.closed = False
+        self._marks: list[int] = []
+        self._starts: list[int] = []
+        self._pieces: list[tuple[int, NoiseReason]] = []
+        self._added: list[bytes] = []
+        self._size = 0
+
+    def __bool__(self) -> bool:
+        return self._size > 0
+
+    def add(self, noise: Noise) -> None:
+        """More noise; :meth:`join` makes it visible."""
+        self._starts.append(self._size)
+        self._pieces.append((noise.offset, noise.reason))
+        self._added.append(noise.data)
+        self._size += len(noise.data)
+
+    def mark(self) -> None:
+        """A frame stands here."""
+        if self._size and self._marks[-1:] != [self._size]:
+            self._marks.append(self._size)
+
+    def join(self) -> None:
+        """Put what was added behind ``data``."""
+        self.data = b"".join((self.data, *self._added))
+        self._added.clear()
+
+    def stretch(self, at: int) -> tuple[int, bool]:
+        """Where the bytes at ``at`` end before the next frame; whether that is known for good."""
+        index = bisect_right(self._marks, at)
+        if index < len(self._marks):
+            return self._marks[index], True
+        return len(self.data), self.closed
+
+    def reason(self, at: int) -> NoiseReason:
+        """The framer's reason for the byte at ``at``."""
+        return self._pieces[bisect_right(self._starts, at) - 1][1]
+
+    def spans(self, start: int, end: int) -> tuple[Span, ...]:
+        """Where the bytes from ``start`` to ``end`` stand in the stream."""
+        first, last = bisect_right(self._marks, start), bisect_right(self._marks, end - 1)
+        cuts = [start, *self._marks[first:last], end]
+        return tuple(Span(self._offset(a), self.data[a:b]) for a, b in pairwise(cuts))
+
+    def _offset(self, at: int) -> int:
+        index = bisect_right(self._starts, at) - 1
+        return self._pieces[index][0] + at - self._starts[index]
+
+    def drop(self, count: int) -> None:
+        """Forget the first ``count`` bytes: findings cover them."""
+        if not count:
+            return
+        first = bisect_right(self._starts, count) - 1
+        head = (self._offset(count), self._pieces[first][1])
+        self._starts = [0, *(start - count for start in self._starts[first + 1 :])]
+        self._pieces = [head, *self._pieces[first + 1 :]]
+        self._marks = [mark - count for mark in self._marks if mark > count]
+        self.data = self.data[count:]
+        self._size -= count
+        if not self._size:
+            self._starts, self._pieces = [], []

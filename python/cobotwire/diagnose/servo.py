@@ -1,0 +1,128 @@
+"""Packets of the Feetech servo bus that leak onto the line.
+
+``FF FF ID LEN INSTRUCTION|ERROR PARAMETERS CHECKSUM``: LEN counts what follows it, and the checksum
+is the inverted low byte of the sum of ID to PARAMETERS. Instructions and error bits are those of
+Feetech's "SCS servo communication protocol" and STS memory table (wiki.aifitlab.com,
+wiki.juxitech.com). Requests and replies look alike: only the byte behind LEN tells them apart, and
+an error byte may have the value of an instruction.
+"""
+
+from __future__ import annotations
+
+from cobotwire.diagnose.findings import ServoPacket
+from cobotwire.diagnose.registers import register_name
+from cobotwire.diagnose.residue import Residue, Verdict, Wait
+
+HEADER = b"\xff\xff"
+BROADCAST = 0xFE
+# Header, id and LEN, which LEN does not count.
+OVERHEAD = 4
+LONGEST = OVERHEAD + 255
+INSTRUCTIONS = {
+    0x01: "ping",
+    0x02: "read",
+    0x03: "write",
+    0x04: "reg write",
+    0x05: "action",
+    0x06: "reset",
+    0x82: "sync read",
+    0x83: "sync write",
+}
+# Voltage, sensor, temperature, current, overload; other bits are never set.
+ERROR_BITS = 0x2F
+
+
+def size_of(packet: bytes) -> int | None:
+    """Bytes of the packet that starts ``packet``, 6..259; 0: none does; None: not told yet."""
+    if not packet.startswith(HEADER[: len(packet)]):
+        return 0
+    if len(packet) > 2 and packet[2] > BROADCAST:
+        return 0
+    if len(packet) < OVERHEAD:
+        return None
+    size = OVERHEAD + packet[3]
+    if packet[3] < 2:
+        return 0
+    if len(packet) < size:
+        return None
+    return size if ~sum(packet[2 : size - 1]) & 0xFF == packet[size - 1] else 0
+
+
+class ServoBus:
+    """Recognises packets; remembers who was asked for what, as a status reply does not say it."""
+
+    def __init__(self) -> None:
+        # Servo id to the register and number of bytes that its next status reply tells.
+        self._asked: dict[int, tuple[int | None, int]] = {}
+
+    def recognise(self, residue: Residue, at: int) -> Verdict:
+        """The packet at ``at``. It may go on behind a frame, as the checksum holds it together."""
+        size = size_of(residue.data[at : at + LONGEST])
+        if size is None:
+            return None if residue.closed else Wait.WAIT
+        return self._packet(residue, at, at + size) if size else None
+
+    def _packet(self, residue: Residue, start: int, end: int) -> ServoPacket:
+        packet = residue.data[start:end]
+        servo, code, parameters = packet[2], packet[4], packet[5:-1]
+        register, count, servos = _targets(code, parameters)
+        # A reply with the error bits of an instruction's value is rare: an instruction, if it fits.
+        is_instruction = fits_instruction(servo, code, parameters)
+        role_is_status = not is_instruction and fits_status(servo, code)
+        if role_is_status:
+            register, count = self._asked.get(servo, (None, -1))
+            if count != len(parameters):
+                register = None
+            count, servos = None, ()
+        return ServoPacket(
+            spans=residue.spans(start, end),
+            reason=residue.reason(start),
+            servo=servo,
+            role="status" if role_is_status else "instruction",
+            ambiguous=is_instruction and fits_status(servo, code),
+            instruction=None if role_is_status else INSTRUCTIONS.get(code, f"0x{code:02X}"),
+            error=code if role_is_status else None,
+            register=register,
+            register_name=None if register is None else register_name(register),
+            count=count,
+            servos=servos,
+            parameters=parameters,
+        )
+
+    def heard(self, packet: ServoPacket) -> None:
+        """Remember what ``packet`` asks for."""
+        if packet.role == "status":
+            self._asked.pop(packet.servo, None)
+        elif packet.instruction == "sync read":
+            count = packet.count or 0
+            self._asked = {servo: (packet.register, count) for servo in packet.servos}
+        elif packet.instruction == "read":
+            self._asked = {packet.servo: (packet.register, packet.count or 0)}
+        else:
+            self._asked = {} if packet.servo == BROADCAST else {packet.servo: (None, 0)}
+
+
+def fits_instruction(servo: int, code: int, parameters: bytes) -> bool:
+    """Whether the packet has the form of an instruction."""
+    size = len(parameters)
+    if code in (0x82, 0x83):
+        return servo == BROADCAST and size >= 3
+    forms = {0x01: size == 0, 0x02: size == 2, 0x03: size >= 2, 0x04: size >= 2}
+    return forms.get(code, code in INSTRUCTIONS and size == 0)
+
+
+def fits_status(servo: int, code: int) -> bool:
+    """Whether it can be a status reply: servos answer with their own id and set few error bits."""
+    return servo != BROADCAST and not code & ~ERROR_BITS
+
+
+def _targets(code: int, parameters: bytes) -> tuple[int | None, int | None, tuple[int, ...]]:
+    """The register, the number of bytes and the servos that an instruction names."""
+    if code not in (0x02, 0x03, 0x04, 0x82, 0x83) or len(parameters) < 2:
+        return None, None, ()
+    register, count, rest = parameters[0], parameters[1], parameters[2:]
+    if code == 0x82:
+        return register, count, tuple(rest)
+    if code == 0x83:
+        return register, count, tuple(rest[:: count + 1])
+    return register, count if code == 0x02 else len(parameters) - 1, ()

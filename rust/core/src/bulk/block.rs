@@ -1,0 +1,109 @@
+//! A block of a stream, and the one quick look at a position in it.
+//!
+//! A position is 16 bits and the block has a margin behind the last one, so that no frame that
+//! starts in it can reach beyond its array: the compiler then needs no check of bounds.
+
+use super::window::{Pattern, SEEN, Window};
+use crate::check::Check;
+use crate::error::Reason;
+use crate::judge::Rules;
+use crate::legal::{BELIEVED, Headings, UNKNOWN_ID};
+
+/// Positions of a block.
+pub(crate) const BLOCK: usize = 1 << 16;
+/// More than the longest frame that LEN can say.
+pub(crate) const MARGIN: usize = 260;
+/// More than the frames that can start in it: the shortest has header, LEN, id and check.
+pub(crate) const MOST: usize = BLOCK / 4;
+/// The bytes of a block.
+pub(crate) type Block = [u8; BLOCK + MARGIN];
+
+/// A frame in a block: where it starts, and its group in the table of legal frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Found(u32);
+
+impl Found {
+    #[inline]
+    pub(crate) fn new(at: u16, group: u16) -> Self {
+        Self(u32::from(at) | u32::from(group) << 16)
+    }
+
+    /// Where it starts.
+    #[inline]
+    pub(crate) fn at(self) -> u16 {
+        self.0 as u16
+    }
+
+    /// Which messages it can be: the index of a group, or that of none if its id is unknown.
+    #[inline]
+    pub(crate) fn group(self) -> u16 {
+        (self.0 >> 16) as u16
+    }
+}
+
+/// The rules of a plain format with a footer, in few words.
+#[derive(Clone, Copy)]
+pub(crate) struct Quick<'a> {
+    header: [u8; 2],
+    footer: u8,
+    headings: &'a Headings,
+    pattern: Pattern,
+}
+
+/// What stands at a position of a block whose bytes are all there.
+pub(crate) enum Look {
+    /// A frame of that size and group.
+    Frame(u16, u16),
+    /// None, for this reason.
+    Noise(Reason),
+}
+
+impl<'a> Quick<'a> {
+    /// The rules, if they are that simple.
+    pub(crate) fn new(rules: &'a Rules) -> Option<Self> {
+        let Check::Footer(footer) = rules.frame().check else {
+            return None;
+        };
+        let (least, most) = rules.legal().lengths()?;
+        rules.plain().then(|| Self {
+            header: rules.frame().header,
+            footer,
+            headings: rules.legal().headings(),
+            pattern: Pattern::new(rules.frame().header, least, most),
+        })
+    }
+
+    /// A first look at several positions.
+    #[inline(always)]
+    pub(crate) fn window(self, data: &Block, at: u16) -> Window {
+        let seen = data.get(usize::from(at)..).and_then(<[u8]>::first_chunk);
+        self.pattern.look(seen.unwrap_or(&[0; SEEN])) // never so: there is the margin
+    }
+
+    #[inline(always)]
+    #[allow(clippy::indexing_slicing)] // in bounds by their types; see above
+    pub(crate) fn look(self, data: &Block, at: u16) -> Look {
+        let start = usize::from(at);
+        let (length, id) = (data[start + 2], data[start + 3]);
+        if [data[start], data[start + 1]] != self.header {
+            return Look::Noise(Reason::NoHeader);
+        }
+        let group = self.headings[usize::from(u16::from_le_bytes([length, id]))];
+        if group > BELIEVED {
+            return Look::Noise(refutation(group));
+        }
+        if data[start + 2 + usize::from(length)] != self.footer {
+            return Look::Noise(Reason::BadCheck);
+        }
+        Look::Frame(3 + u16::from(length), group)
+    }
+}
+
+#[inline]
+fn refutation(cell: u16) -> Reason {
+    if cell == UNKNOWN_ID {
+        Reason::UnknownId
+    } else {
+        Reason::BadLength
+    }
+}

@@ -1,0 +1,128 @@
+//! Where the frames of a stream are, and nothing else of them.
+
+use super::block::{Block, Found};
+use super::cells::{Advise, reserve};
+use super::sample::expected;
+use super::spans::Spans;
+use super::stream::{Collect, Stream};
+use crate::judge::Rules;
+use crate::tally::Tally;
+
+/// The frames of a stretch of a stream.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Offsets {
+    /// Where each frame starts.
+    pub frames: Vec<u64>,
+    /// The noise between them.
+    pub noise: Spans,
+}
+
+/// Finds the frames of a stream.
+#[derive(Clone)]
+pub struct OffsetReader {
+    stream: Stream,
+    collected: Collected,
+}
+
+#[derive(Clone)]
+struct Collected {
+    frames: Vec<u64>,
+    counts: Counts,
+    /// Where the id stands in a frame.
+    id_at: usize,
+}
+
+impl OffsetReader {
+    /// A reader at the start of a stream, with the memory of what an earlier one found, if any.
+    #[must_use]
+    pub fn new(rules: Rules, old: Option<Offsets>) -> Self {
+        let id_at = rules.frame().overhead();
+        let mut frames = old.map(|old| old.frames).unwrap_or_default();
+        frames.clear();
+        Self {
+            stream: Stream::new(rules),
+            collected: Collected {
+                frames,
+                counts: Counts::default(),
+                id_at,
+            },
+        }
+    }
+
+    /// Ask for the memory that the frames of `data` will need, as far as a look at parts of it tells.
+    pub fn expect(&mut self, data: &[u8], advise: Advise) {
+        let rules = self.stream.rules();
+        let counts = expected(rules, rules.legal().groups().len(), data);
+        reserve(&mut self.collected.frames, counts.iter().sum(), advise);
+    }
+
+    /// Take bytes; the frames that are certain are kept for [`OffsetReader::take`].
+    pub fn feed(&mut self, chunk: &[u8]) {
+        self.stream.feed(chunk, &mut self.collected);
+    }
+
+    /// Refute what still waits.
+    pub fn flush(&mut self) {
+        self.stream.flush(&mut self.collected);
+    }
+
+    /// What was found since the last time.
+    pub fn take(&mut self) -> Offsets {
+        Offsets {
+            frames: std::mem::take(&mut self.collected.frames),
+            noise: self.stream.take_noise(),
+        }
+    }
+
+    /// What came so far.
+    #[must_use]
+    pub fn tally(&self) -> &Tally {
+        self.stream.tally()
+    }
+
+    /// Bytes fed that are not accounted for yet.
+    #[must_use]
+    pub fn pending(&self) -> usize {
+        self.stream.pending()
+    }
+}
+
+impl Collect for Collected {
+    #[inline]
+    fn take(&mut self, offset: u64, block: &Block, found: &[Found], tally: &mut Tally) {
+        let offsets = found.iter().map(|frame| offset + u64::from(frame.at()));
+        self.frames.extend(offsets);
+        self.counts.add(block, found, self.id_at, tally);
+    }
+}
+
+/// Counts frames by id. In turn in several places: adding to one again and again is slow.
+#[derive(Clone)]
+struct Counts([[u32; 256]; 4]);
+
+impl Default for Counts {
+    fn default() -> Self {
+        Self([[0; 256]; 4])
+    }
+}
+
+impl Counts {
+    #[allow(clippy::indexing_slicing)] // in bounds: ids are bytes, and the block has a margin
+    fn add(&mut self, block: &Block, found: &[Found], id_at: usize, tally: &mut Tally) {
+        let id = |frame: &Found| usize::from(block[usize::from(frame.at()) + id_at]);
+        let (quads, rest) = found.as_chunks::<4>();
+        for quad in quads {
+            for (counts, frame) in self.0.iter_mut().zip(quad) {
+                counts[id(frame)] += 1;
+            }
+        }
+        for frame in rest {
+            self.0[0][id(frame)] += 1;
+        }
+        for counts in &mut self.0 {
+            for (total, count) in tally.frames.iter_mut().zip(counts) {
+                *total += u64::from(std::mem::take(count));
+            }
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! How much a capture will give, from a part of it: so that memory is asked for once.
+
+use super::block::{Block, Found};
+use super::stream::{Collect, Stream};
+use crate::judge::Rules;
+use crate::tally::Tally;
+
+/// Smaller input is not worth it.
+const WORTH: usize = 1 << 20;
+/// So many looks of so many bytes are taken.
+const LOOKS: usize = 16;
+const LOOK: usize = 1 << 14;
+
+/// About how many frames of each group are in `data`, rather too many than too few.
+pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> {
+    if data.len() < WORTH {
+        return Vec::new();
+    }
+    let mut stream = Stream::new(rules.clone());
+    let mut seen = Seen(vec![0; groups]);
+    for look in data.chunks(data.len() / LOOKS) {
+        stream.feed(look.get(..LOOK).unwrap_or(look), &mut seen);
+        stream.flush(&mut seen);
+    }
+    let looked_at = (LOOKS * LOOK) as u64;
+    let estimate = |count: u64| {
+        // What a sixteenth does not show is a few frames, or none.
+        let all = (count + count / 16) * data.len() as u64 / looked_at;
+        usize::try_from(all).unwrap_or_default()
+    };
+    seen.0.into_iter().map(estimate).collect()
+}
+
+struct Seen(Vec<u64>);
+
+impl Collect for Seen {
+    fn take(&mut self, _: u64, _: &Block, found: &[Found], _: &mut Tally) {
+        for frame in found {
+            if let Some(count) = self.0.get_mut(usize::from(frame.group())) {
+                *count += 1;
+            }
+        }
+    }
+}

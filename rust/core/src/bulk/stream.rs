@@ -1,0 +1,177 @@
+//! A stream in bulk: over the seam between two calls, and block by block through a chunk.
+
+use super::block::{BLOCK, Block, Found, MARGIN, Quick};
+use super::lanes::Lanes;
+use super::spans::{Noise, Runs, Spans};
+use crate::error::Reason;
+use crate::frame::Frame;
+use crate::judge::Rules;
+use crate::legal::{BELIEVED, Heading};
+use crate::scan::{Sink, scan};
+use crate::seam::Seam;
+use crate::tally::Tally;
+
+/// Takes the frames of a stream, in order, in portions.
+pub(crate) trait Collect {
+    /// Frames whose positions count from the start of `block`, which is at `offset` in the stream.
+    fn take(&mut self, offset: u64, block: &Block, found: &[Found], tally: &mut Tally);
+}
+
+/// Finds the frames of a stream and accounts for the rest.
+#[derive(Clone)]
+pub(crate) struct Stream {
+    rules: Rules,
+    seam: Seam,
+    tally: Tally,
+    noise: Noise,
+    lanes: Option<Lanes>,
+    scratch: Scratch,
+}
+
+/// What a scan of less than a block needs.
+#[derive(Clone)]
+struct Scratch {
+    block: Box<Block>,
+    found: Vec<Found>,
+    runs: Runs,
+}
+
+impl Stream {
+    pub(crate) fn new(rules: Rules) -> Self {
+        Self {
+            rules,
+            seam: Seam::default(),
+            tally: Tally::default(),
+            noise: Noise::default(),
+            lanes: None,
+            scratch: Scratch {
+                block: Box::new([0; BLOCK + MARGIN]),
+                found: Vec::new(),
+                runs: Runs::default(),
+            },
+        }
+    }
+
+    pub(crate) fn pending(&self) -> usize {
+        self.seam.pending()
+    }
+
+    pub(crate) fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    pub(crate) fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    /// The noise that is over by now.
+    pub(crate) fn take_noise(&mut self) -> Spans {
+        self.noise.take()
+    }
+
+    pub(crate) fn feed(&mut self, chunk: &[u8], collect: &mut impl Collect) {
+        self.cut(chunk, false, collect);
+    }
+
+    pub(crate) fn flush(&mut self, collect: &mut impl Collect) {
+        self.cut(&[], true, collect);
+        self.noise.end();
+    }
+
+    fn cut(&mut self, chunk: &[u8], at_end: bool, collect: &mut impl Collect) {
+        self.tally.bytes += chunk.len() as u64;
+        let crossing = self.seam.cross(chunk, self.rules.longest());
+        let (seam, offset) = (crossing.seam, crossing.offset);
+        let mut at = self.scan(offset, &crossing.data, seam, at_end, collect);
+        if at >= seam {
+            at += self.blocks(
+                offset + at as u64,
+                chunk.get(at - seam..).unwrap_or_default(),
+                collect,
+            );
+            // What is left is less than a block, or has to be scanned piece by piece.
+            while let Some(rest) = chunk.get(at - seam..).filter(|rest| !rest.is_empty()) {
+                let passed = self.scan(offset + at as u64, rest, rest.len(), at_end, collect);
+                at += passed;
+                if passed == 0 {
+                    break;
+                }
+            }
+        }
+        self.noise.settle(offset + at as u64, &mut self.tally);
+        self.seam.keep(crossing, chunk, at);
+    }
+
+    /// Whole blocks at the start of `data`; gives where the last one ended.
+    fn blocks(&mut self, offset: u64, data: &[u8], collect: &mut impl Collect) -> usize {
+        let Some(quick) = Quick::new(&self.rules) else {
+            return 0;
+        };
+        let mut at = 0;
+        while let Some(block) = data.get(at..).and_then(<[u8]>::first_chunk) {
+            let lanes = self.lanes.get_or_insert_with(Lanes::new);
+            let (lanes, end) = lanes.run(quick, block);
+            let start = offset + at as u64;
+            for lane in lanes {
+                collect.take(start, block, lane.found(), &mut self.tally);
+                self.noise.add(start, lane.noise(), &mut self.tally);
+            }
+            at += end;
+        }
+        at
+    }
+
+    /// The positions of `data` up to `stop`, or as many as a block has. Gives the first that was
+    /// not passed.
+    fn scan(
+        &mut self,
+        offset: u64,
+        data: &[u8],
+        stop: usize,
+        at_end: bool,
+        collect: &mut impl Collect,
+    ) -> usize {
+        let stop = stop.min(BLOCK);
+        if stop == 0 {
+            return 0;
+        }
+        let Scratch { block, found, runs } = &mut self.scratch;
+        found.clear();
+        runs.clear();
+        let mut finds = Finds {
+            rules: &self.rules,
+            found,
+            runs,
+        };
+        let at = scan(&self.rules, data, 0, stop, at_end, &mut finds);
+        let bytes = data.get(..at).unwrap_or_default();
+        if let Some(start) = block.get_mut(..bytes.len()) {
+            start.copy_from_slice(bytes);
+        }
+        collect.take(offset, block, found, &mut self.tally);
+        self.noise.add(offset, runs, &mut self.tally);
+        at
+    }
+}
+
+/// What a scan finds, as a lane gives it.
+struct Finds<'a> {
+    rules: &'a Rules,
+    found: &'a mut Vec<Found>,
+    runs: &'a mut Runs,
+}
+
+impl<'a> Sink<'a> for Finds<'_> {
+    fn frame(&mut self, at: usize, frame: Frame<'a>) {
+        let group = match self.rules.legal().heading(frame.length(), frame.id()) {
+            Heading::Group(group) => group,
+            _ => BELIEVED,
+        };
+        self.found.push(Found::new(at as u16, group));
+    }
+
+    fn noise(&mut self, from: usize, to: usize, reason: Reason) {
+        self.runs.span(from, to);
+        self.runs.count(reason, to - from);
+    }
+}

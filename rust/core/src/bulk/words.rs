@@ -1,0 +1,146 @@
+//! Fields whose numbers are bytes or big-endian words of two, as nearly all are.
+
+use super::block::Block;
+use super::cells::Cell;
+use super::scale::Scale;
+use crate::field::{Number, Order};
+
+/// How many numbers such a field may have at most.
+const MOST: usize = 6;
+
+/// The rules of such a field: up to six numbers of one width.
+#[derive(Clone, Debug)]
+pub(crate) struct Words {
+    width: usize,
+    count: usize,
+    /// Added before a word is cut to its width, and taken off after: that is the sign rule.
+    bias: [i32; MOST],
+    scales: [Scale; MOST],
+}
+
+impl Words {
+    /// The rules, if these numbers are such a field.
+    pub(crate) fn new(numbers: &[Number]) -> Option<Self> {
+        let width = numbers.first()?.width;
+        let alike = |number: &Number| {
+            number.width == width && (width == 1 || width == 2 && number.order == Order::Big)
+        };
+        if !matches!(numbers.len(), 1 | 2 | 3 | MOST) || !numbers.iter().all(alike) {
+            return None;
+        }
+        let most = (1 << (8 * width)) - 1;
+        let mut words = Self {
+            width,
+            count: numbers.len(),
+            bias: [0; MOST],
+            scales: [Scale::ONE; MOST],
+        };
+        let places = words.bias.iter_mut().zip(&mut words.scales);
+        for (number, (bias, scale)) in numbers.iter().zip(places) {
+            // A sign rule beyond the word is none: nothing is negative, or all is.
+            *bias = i32::try_from(most - number.signed_at.clamp(-1, most)).ok()?;
+            *scale = Scale::new(number);
+        }
+        Some(words)
+    }
+
+    /// Append a row of physical values for each frame.
+    pub(crate) fn physical(&self, block: &Block, frames: &[u16], start: u16, out: &mut Vec<f64>) {
+        let all = Task {
+            words: self,
+            block,
+            frames,
+            start,
+        };
+        match (self.width, self.count) {
+            (1, 1) => all.physical::<1, 1>(out),
+            (1, 2) => all.physical::<1, 2>(out),
+            (1, 3) => all.physical::<1, 3>(out),
+            (1, _) => all.physical::<1, MOST>(out),
+            (_, 1) => all.physical::<2, 1>(out),
+            (_, 2) => all.physical::<2, 2>(out),
+            (_, 3) => all.physical::<2, 3>(out),
+            (_, _) => all.physical::<2, MOST>(out),
+        }
+    }
+
+    /// Append a row of whole numbers for each frame.
+    pub(crate) fn raw<T: Cell>(&self, block: &Block, frames: &[u16], start: u16, out: &mut Vec<T>) {
+        let all = Task {
+            words: self,
+            block,
+            frames,
+            start,
+        };
+        match (self.width, self.count) {
+            (1, 1) => all.raw::<1, 1, T>(out),
+            (1, 2) => all.raw::<1, 2, T>(out),
+            (1, 3) => all.raw::<1, 3, T>(out),
+            (1, _) => all.raw::<1, MOST, T>(out),
+            (_, 1) => all.raw::<2, 1, T>(out),
+            (_, 2) => all.raw::<2, 2, T>(out),
+            (_, 3) => all.raw::<2, 3, T>(out),
+            (_, _) => all.raw::<2, MOST, T>(out),
+        }
+    }
+}
+
+/// One field of some frames.
+struct Task<'a> {
+    words: &'a Words,
+    block: &'a Block,
+    frames: &'a [u16],
+    start: u16,
+}
+
+impl Task<'_> {
+    #[inline(never)]
+    #[allow(clippy::indexing_slicing)] // in bounds: N is at most MOST
+    fn physical<const WIDTH: usize, const N: usize>(&self, out: &mut Vec<f64>) {
+        let scales: [Scale; N] = std::array::from_fn(|index| self.words.scales[index]);
+        if scales.iter().all(|scale| scale.exact) {
+            self.rows::<WIDTH, N, f64>(out, |index, whole| scales[index].multiplied(whole));
+        } else {
+            self.rows::<WIDTH, N, f64>(out, |index, whole| scales[index].divided(whole));
+        }
+    }
+
+    #[inline(never)]
+    fn raw<const WIDTH: usize, const N: usize, T: Cell>(&self, out: &mut Vec<T>) {
+        self.rows::<WIDTH, N, T>(out, |_, whole| T::of(whole));
+    }
+
+    #[inline(always)]
+    #[allow(clippy::indexing_slicing)] // in bounds: N is at most MOST
+    fn rows<const WIDTH: usize, const N: usize, T: Copy + Default>(
+        &self,
+        out: &mut Vec<T>,
+        value: impl Fn(usize, i32) -> T,
+    ) {
+        let bias: [i32; N] = std::array::from_fn(|index| self.words.bias[index]);
+        let before = out.len();
+        out.resize(before + self.frames.len() * N, T::default());
+        let rows = out.get_mut(before..).unwrap_or_default();
+        for (row, at) in rows.as_chunks_mut::<N>().0.iter_mut().zip(self.frames) {
+            let words = read::<WIDTH, N>(self.block, *at, self.start);
+            *row = std::array::from_fn(|index| {
+                let cut = (words[index] + bias[index]) & ((1 << (8 * WIDTH)) - 1);
+                value(index, cut - bias[index])
+            });
+        }
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::indexing_slicing)] // in bounds: a frame that starts in the block ends in its margin
+fn read<const WIDTH: usize, const N: usize>(block: &Block, at: u16, start: u16) -> [i32; N] {
+    let from = usize::from(at) + usize::from(start);
+    let bytes = &block[from..from + WIDTH * N];
+    std::array::from_fn(|index| {
+        if WIDTH == 1 {
+            i32::from(bytes[index])
+        } else {
+            i32::from(u16::from_be_bytes([bytes[2 * index], bytes[2 * index + 1]]))
+        }
+    })
+}

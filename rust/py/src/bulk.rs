@@ -1,0 +1,211 @@
+//! Whole streams: `NativeColumnReader`, and the scan for offsets.
+//!
+//! Large input is read without the interpreter's lock.
+
+use std::sync::Arc;
+
+use cobotwire_core::{
+    Advise, ColumnReader, Columns, Listening, Numbers, OffsetReader, Offsets, Rows, Rules,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyList, PyMemoryView, PySlice, PyTuple};
+
+use crate::edition::Edition;
+use crate::framer::{copied, counters};
+use crate::memory::{Memory, large_pages};
+use crate::names::Names;
+use crate::parts::{old_columns, old_offsets, spans};
+
+/// From so many bytes on the lock is released.
+const LARGE: usize = 1 << 16;
+/// Bytes that another thread could change meanwhile are copied in pieces of this size.
+const PIECE: usize = 1 << 18;
+
+/// Something that a stream is fed to.
+trait Reader: Send {
+    fn feed(&mut self, chunk: &[u8]);
+    fn expect(&mut self, data: &[u8], advise: Advise);
+}
+
+impl Reader for ColumnReader {
+    fn feed(&mut self, chunk: &[u8]) {
+        self.feed(chunk);
+    }
+
+    fn expect(&mut self, data: &[u8], advise: Advise) {
+        self.expect(data, advise);
+    }
+}
+
+impl Reader for OffsetReader {
+    fn feed(&mut self, chunk: &[u8]) {
+        self.feed(chunk);
+    }
+
+    fn expect(&mut self, data: &[u8], advise: Advise) {
+        self.expect(data, advise);
+    }
+}
+
+/// Feed all of a buffer.
+fn feed(reader: &mut impl Reader, data: &Bound<'_, PyAny>) -> PyResult<()> {
+    if let Ok(bytes) = data.cast::<PyBytes>() {
+        feed_bytes(reader, bytes, true);
+        return Ok(());
+    }
+    let flat = PyMemoryView::from(data).and_then(|view| view.call_method1("cast", ("B",)));
+    let Ok(flat) = flat else {
+        reader.feed(&copied(data)?);
+        return Ok(());
+    };
+    let end = isize::try_from(flat.len()?)?;
+    for start in (0..end).step_by(PIECE) {
+        let part = PySlice::new(data.py(), start, end.min(start + PIECE as isize), 1);
+        let piece = flat.get_item(part)?.call_method0("tobytes")?;
+        feed_bytes(reader, piece.cast()?, false);
+    }
+    Ok(())
+}
+
+/// Feed bytes, which nobody can change: so nobody has to wait while many are read.
+fn feed_bytes(reader: &mut impl Reader, bytes: &Bound<'_, PyBytes>, all: bool) {
+    let data = bytes.as_bytes();
+    if data.len() < LARGE {
+        reader.feed(data);
+        return;
+    }
+    bytes.py().detach(|| {
+        if all {
+            reader.expect(data, large_pages);
+        }
+        reader.feed(data);
+    });
+}
+
+/// Where the frames of a whole stream are, as Python's `Scan`.
+pub fn scan<'py>(
+    rules: Rules,
+    data: &Bound<'py, PyAny>,
+    out: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = data.py();
+    let old = out.map(old_offsets).transpose()?;
+    let mut reader = OffsetReader::new(rules, old);
+    feed(&mut reader, data)?;
+    reader.flush();
+    let Offsets { frames, noise } = reader.take();
+    let frames = Bound::new(py, Memory::offsets(frames))?;
+    let items = (frames, spans(py, noise)?, counters(py, reader.tally())?);
+    Names::get(py)?.scan.bind(py).call1(items)
+}
+
+/// Decodes a stream, chunk by chunk, into columns.
+#[pyclass(module = "cobotwire._native")]
+pub struct NativeColumnReader {
+    edition: Arc<Edition>,
+    listening: Listening,
+    numbers: Numbers,
+    core: ColumnReader,
+}
+
+impl NativeColumnReader {
+    pub fn new(edition: Arc<Edition>, listening: Listening, raw: bool) -> Self {
+        let numbers = if raw { Numbers::Raw } else { Numbers::Physical };
+        Self {
+            core: Self::reader(&edition, listening, numbers, None),
+            edition,
+            listening,
+            numbers,
+        }
+    }
+
+    fn reader(
+        edition: &Edition,
+        listening: Listening,
+        numbers: Numbers,
+        old: Option<Columns>,
+    ) -> ColumnReader {
+        let plans = Arc::clone(edition.plans(listening));
+        ColumnReader::new(Arc::clone(&edition.core), plans, numbers, old)
+    }
+
+    /// The columns of a whole stream.
+    pub fn all_of<'py>(
+        mut self,
+        data: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if let Some(out) = out {
+            let old = old_columns(&self.edition, out)?;
+            self.core = Self::reader(&self.edition, self.listening, self.numbers, Some(old));
+        }
+        feed(&mut self.core, data)?;
+        self.core.flush();
+        self.given(data.py())
+    }
+
+    /// What was found since the last time, as Python's `Columns`.
+    fn given<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let names = Names::get(py)?;
+        let Columns {
+            mut rows,
+            refused,
+            noise,
+        } = self.core.take();
+        rows.retain(|rows| !rows.offsets.is_empty());
+        // In the order of the table, as the reference gives them.
+        rows.sort_by_key(|rows| {
+            let form = rows.form;
+            (form.command, form.direction as u8, form.layout)
+        });
+        let all = PyList::empty(py);
+        for rows in rows {
+            all.append(self.rows(py, names, rows)?)?;
+        }
+        let table = self.edition.table.bind(py);
+        let refused = Bound::new(py, Memory::offsets(refused))?;
+        let tally = counters(py, self.core.tally())?;
+        names
+            .columns
+            .bind(py)
+            .call1((table, all, refused, spans(py, noise)?, tally))
+    }
+
+    fn rows<'py>(&self, py: Python<'py>, names: &Names, rows: Rows) -> PyResult<Bound<'py, PyAny>> {
+        let command = self.edition.commands.get(rows.form.command)?;
+        let layout = self.edition.core.layout(rows.form);
+        let fields = layout.map_or(&[][..], |layout| layout.fields());
+        let mut columns = Vec::with_capacity(fields.len());
+        for (field, cells) in fields.iter().zip(rows.fields) {
+            columns.push(Bound::new(py, Memory::cells(cells, field))?);
+        }
+        names.rows.bind(py).call1((
+            command.object.bind(py),
+            names.direction(py, rows.form.direction),
+            rows.form.layout,
+            Memory::offsets(rows.offsets),
+            PyTuple::new(py, columns)?,
+        ))
+    }
+}
+
+#[pymethods]
+impl NativeColumnReader {
+    /// Take bytes; give what is certain by now, and was not given before.
+    fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        feed(&mut self.core, data)?;
+        self.given(data.py())
+    }
+
+    /// Refute what still waits, and give the rest.
+    fn flush<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.core.flush();
+        self.given(py)
+    }
+
+    /// Bytes fed that are not accounted for yet.
+    #[getter]
+    fn pending(&self) -> usize {
+        self.core.pending()
+    }
+}

@@ -1,0 +1,201 @@
+//! `Memory`: a column behind Python's buffer protocol. The one place with unsafe code.
+
+#![allow(unsafe_code)] // the buffer protocol and `madvise` are C's
+
+use std::ffi::{CStr, c_int, c_void};
+use std::ptr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use cobotwire_core::{Cells, Field};
+use pyo3::exceptions::PyBufferError;
+use pyo3::ffi;
+use pyo3::prelude::*;
+
+/// What a column holds: offsets, or the numbers of a field.
+pub enum Column {
+    Offsets(Vec<u64>),
+    Cells(Cells),
+}
+
+/// Numbers in memory that NumPy, Arrow and memoryviews use as it is.
+#[pyclass(frozen, module = "cobotwire._native")]
+pub struct Memory {
+    held: Mutex<Held>,
+}
+
+struct Held {
+    column: Column,
+    /// How many there are in a row; 0: the column has one dimension.
+    across: isize,
+    /// How many views there are. While there is one, the column neither moves nor changes.
+    views: usize,
+}
+
+/// What a view needs as long as it lives.
+struct Shape {
+    shape: [isize; 2],
+    strides: [isize; 2],
+}
+
+impl Memory {
+    /// Offsets in a stream, or sizes.
+    pub fn offsets(all: Vec<u64>) -> Self {
+        Self::new(Column::Offsets(all), 0)
+    }
+
+    /// The numbers of a field: of two dimensions, where it has several.
+    pub fn cells(cells: Cells, field: &Field) -> Self {
+        let numbers = field.cases.first().map_or(0, |case| case.numbers.len());
+        let across = if field.many { numbers as isize } else { 0 };
+        Self::new(Column::Cells(cells), across)
+    }
+
+    fn new(column: Column, across: isize) -> Self {
+        Self {
+            held: Mutex::new(Held {
+                column,
+                across,
+                views: 0,
+            }),
+        }
+    }
+
+    fn held(&self) -> MutexGuard<'_, Held> {
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Fails while somebody looks at it.
+    pub fn check_unviewed(&self) -> PyResult<()> {
+        if self.held().views == 0 {
+            return Ok(());
+        }
+        let text = "out is still looked at, by a memoryview or an array";
+        Err(PyBufferError::new_err(text))
+    }
+
+    /// Take the column out, and leave an empty one.
+    pub fn take(&self) -> PyResult<Column> {
+        self.check_unviewed()?;
+        let empty = Column::Offsets(Vec::new());
+        Ok(std::mem::replace(&mut self.held().column, empty))
+    }
+}
+
+impl Column {
+    /// The numbers of a field.
+    pub fn into_cells(self) -> Cells {
+        match self {
+            Self::Cells(cells) => cells,
+            Self::Offsets(_) => Cells::F64(Vec::new()),
+        }
+    }
+
+    /// Where it starts, how many numbers it has, their size, and their type as `struct` has it.
+    fn parts(&mut self) -> (*mut c_void, usize, usize, &'static CStr) {
+        fn of<T>(
+            all: &mut Vec<T>,
+            format: &'static CStr,
+        ) -> (*mut c_void, usize, usize, &'static CStr) {
+            (all.as_mut_ptr().cast(), all.len(), size_of::<T>(), format)
+        }
+        match self {
+            Self::Offsets(all) => of(all, c"Q"),
+            Self::Cells(Cells::F64(all)) => of(all, c"d"),
+            Self::Cells(Cells::U8(all)) => of(all, c"B"),
+            Self::Cells(Cells::I8(all)) => of(all, c"b"),
+            Self::Cells(Cells::U16(all)) => of(all, c"H"),
+            Self::Cells(Cells::I16(all)) => of(all, c"h"),
+            Self::Cells(Cells::U32(all)) => of(all, c"I"),
+            Self::Cells(Cells::I32(all)) => of(all, c"i"),
+            Self::Cells(Cells::I64(all)) => of(all, c"q"),
+        }
+    }
+}
+
+#[pymethods]
+impl Memory {
+    unsafe fn __getbuffer__(
+        slf: Bound<'_, Self>,
+        view: *mut ffi::Py_buffer,
+        flags: c_int,
+    ) -> PyResult<()> {
+        if view.is_null() || flags & ffi::PyBUF_WRITABLE == ffi::PyBUF_WRITABLE {
+            return Err(PyBufferError::new_err("a column cannot be written to"));
+        }
+        let mut held = slf.get().held();
+        let across = held.across;
+        let (start, count, size, format) = held.column.parts();
+        // No vector is longer than isize::MAX bytes.
+        let (count, size) = (count as isize, size as isize);
+        let (rows, dimensions) = if across == 0 {
+            (count, 1)
+        } else {
+            (count / across, 2)
+        };
+        let shape = Box::new(Shape {
+            shape: [rows, across],
+            strides: [size * across.max(1), size],
+        });
+        let wanted = |flag: c_int| flags & flag == flag;
+        held.views += 1;
+        drop(held);
+        // SAFETY: the caller gives a view to fill. The column's memory stays where it is while
+        // `views` counts this one, and the shape is freed with the view, which holds this object.
+        unsafe {
+            let shape = Box::into_raw(shape);
+            (*view).buf = start;
+            (*view).len = count * size;
+            (*view).readonly = 1;
+            (*view).itemsize = size;
+            (*view).format = if wanted(ffi::PyBUF_FORMAT) {
+                format.as_ptr().cast_mut()
+            } else {
+                ptr::null_mut()
+            };
+            (*view).ndim = dimensions;
+            (*view).shape = if wanted(ffi::PyBUF_ND) {
+                (&raw mut (*shape).shape).cast()
+            } else {
+                ptr::null_mut()
+            };
+            (*view).strides = if wanted(ffi::PyBUF_STRIDES) {
+                (&raw mut (*shape).strides).cast()
+            } else {
+                ptr::null_mut()
+            };
+            (*view).suboffsets = ptr::null_mut();
+            (*view).internal = shape.cast();
+            (*view).obj = slf.into_ptr();
+        }
+        Ok(())
+    }
+
+    unsafe fn __releasebuffer__(&self, view: *mut ffi::Py_buffer) {
+        self.held().views -= 1;
+        // SAFETY: `__getbuffer__` put it there, and a view is released once.
+        drop(unsafe { Box::from_raw((*view).internal.cast::<Shape>()) });
+    }
+}
+
+/// Smaller pieces of memory gain nothing.
+const LARGE: usize = 4 << 20;
+
+/// Ask for large pages for memory that is about to be filled: the first touch of a small page costs
+/// more than all the decoding of what goes into it.
+pub fn large_pages(start: *const u8, size: usize) {
+    #[cfg(target_os = "linux")]
+    if size >= LARGE {
+        const PAGE: usize = 4096;
+        let inside = start.align_offset(PAGE);
+        // SAFETY: advice on pages that lie within memory of ours changes none of its contents.
+        unsafe {
+            libc::madvise(
+                start.wrapping_add(inside).cast_mut().cast(),
+                (size - inside) / PAGE * PAGE,
+                libc::MADV_HUGEPAGE,
+            );
+        }
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = (start, size);
+}

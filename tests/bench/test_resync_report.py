@@ -1,0 +1,112 @@
+"""The resync report tells good readers from bad ones, and loses no loss."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+import readers
+import resync
+from cobotwire.editions.mycobot280 import TABLE
+from damage import damage
+from judge import Verdict, judge
+from readers import Accepted
+from streams import Line, catalogue
+
+NO_LOSS = "lost without a legal false frame over them: 0"
+
+
+def _line(kind: str = "false header") -> Line:
+    return damage(TABLE, catalogue(TABLE, 4000, "reply"), kind, 1e-2)
+
+
+def _judged(line: Line, read: Sequence[Accepted]) -> Verdict:
+    return judge(TABLE, "reply", line, read)
+
+
+def test_each_frame_that_the_codec_loses_is_explained_by_the_table() -> None:
+    line = _line()
+    verdict = _judged(line, readers.ours(TABLE, "native", "reply")(line.data))
+    assert verdict.covered
+    assert verdict.unexplained == []
+    assert verdict.recovered + len(verdict.covered) == verdict.undamaged
+
+
+@pytest.mark.parametrize("reader", [readers.textbook(TABLE), readers.pymycobot()])
+def test_a_reader_that_consumes_on_failure_has_no_such_excuse(reader: readers.Reader) -> None:
+    line = _line()
+    verdict = _judged(line, reader(line.data))
+    assert len(verdict.unexplained) > len(verdict.covered)
+
+
+def test_a_perfect_reader_of_a_damaged_line_loses_nothing_and_one_frame_less_shows() -> None:
+    line = _line("mixed")
+    whole = [
+        Accepted(start, end, line.data[start:end])
+        for start, end, ok in zip(line.starts.tolist(), line.ends.tolist(), line.whole.tolist())
+        if ok
+    ]
+    verdict = _judged(line, whole)
+    assert (verdict.share, verdict.phantoms, verdict.altered) == (1.0, 0, 0)
+    missing = _judged(line, whole[:100] + whole[101:])
+    assert missing.unexplained == [whole[100].start]
+
+
+def test_wrong_frames_are_counted_by_what_they_were() -> None:
+    frame = bytes.fromhex("FE FE 03 12 01 FA")
+    clean = catalogue(TABLE, 4000, "reply")
+    line = damage(TABLE, clean, "flip", 1e-2)
+    read = readers.ours(TABLE, "native", "reply")(line.data)
+    verdict = _judged(line, read)
+    assert verdict.altered > 0
+    nowhere = Accepted(len(line.data), len(line.data) + len(frame), frame)
+    assert _judged(line, [*read, nowhere]).phantoms == verdict.phantoms + 1
+
+
+def test_pymycobots_own_reader_reads_a_clean_line_whole() -> None:
+    line = catalogue(TABLE, 500, "reply")
+    found = readers.pymycobot()(line.data)
+    assert [frame.data for frame in found] == [line.original(i) for i in range(line.frames)]
+
+
+def test_pymycobot_asked_for_a_reply_throws_it_away_for_an_ack_in_front_of_it() -> None:
+    line = _line("ack")
+    verdict = _judged(line, readers.pymycobot_asked(line))
+    assert verdict.undamaged - verdict.recovered == len(line.acks) > 0
+
+
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    few = [resync.Scenario("mycobot280", "catalogue", "reply", "false header", 1e-2)]
+    monkeypatch.setattr(resync, "scenarios", lambda: few)
+    monkeypatch.setattr("sys.argv", ["resync.py", "--frames", "2000"])
+
+
+@pytest.mark.usefixtures("short")
+def test_the_report_ends_with_1_if_a_frame_is_lost_without_excuse(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert resync.main() == 0
+    assert NO_LOSS in capsys.readouterr().out
+    monkeypatch.setattr(readers, "ours", lambda table, name, listening: readers.textbook(table))
+    assert resync.main() == 1
+    assert NO_LOSS not in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("short")
+def test_the_report_ends_with_1_if_the_codecs_differ(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ours = readers.ours
+    monkeypatch.setattr(
+        readers,
+        "ours",
+        lambda table, name, listening: (
+            ours(table, name, listening) if name == "native" else readers.textbook(table)
+        ),
+    )
+    assert resync.main() == 1
+    out = capsys.readouterr().out
+    assert NO_LOSS in out
+    assert "THE CODECS DIFFER" in out

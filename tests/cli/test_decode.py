@@ -1,0 +1,178 @@
+"""``cobotwire decode`` of files and pipes, as another process."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from decoding import COMMAND, FIELD, capture_in, run
+from diagnosing import ANGLES, FRAME
+
+KINDS = ["frame", "servo", "frame", "cmd-len-error", "panic", "nuls", "frame", "unrecognised"]
+
+
+@pytest.fixture
+def capture(tmp_path: Path) -> str:
+    return capture_in(tmp_path)
+
+
+def test_a_file_is_shown_an_event_a_line(capture: str) -> None:
+    code, out, err = run(capture)
+    assert (code, err) == (1, "")
+    lines = out.splitlines()
+    kinds = [line.split()[1] for line in lines]
+    assert kinds == KINDS
+    assert "get_angles(angles=(0.01, 5.15" in lines[2]
+    assert lines[1].startswith("       6  servo           FF FF 01 04 02 38 02 BE  servo bus: read")
+    assert "panic LoadProhibited on core 1 at 0x400d15f4, backtrace of 3, rebooting" in out
+    assert "\x1b[" not in out
+
+
+def test_json_holds_every_byte_once(capture: str) -> None:
+    _, out, _ = run(capture, "--json")
+    events = [json.loads(line) for line in out.splitlines()]
+    assert b"".join(bytes.fromhex(event["data"]) for event in events) == FIELD
+    servo = events[1]
+    assert (servo["kind"], servo["finding"], servo["offset"]) == ("noise", "servo", 6)
+    assert servo["facts"]["register_name"] == "present position"
+    assert servo["pieces"] == [[6, 8]]
+    assert events[0]["readings"][0]["command"] == "is_power_on"
+
+
+def test_the_exit_code_says_whether_all_was_legal(tmp_path: Path) -> None:
+    path = tmp_path / "clean.bin"
+    path.write_bytes(ANGLES * 3)
+    assert run(str(path))[0] == 0
+    assert run(str(path), "--direction", "request")[0] == 1
+    assert run("-", stdin=b"")[0] == 0
+
+
+def test_direction_and_unknown_ids(tmp_path: Path) -> None:
+    path = tmp_path / "some.bin"
+    path.write_bytes(bytes.fromhex("FE FE 02 20 FA FE FE 04 E0 01 02 FA"))
+    assert "a request, get_angles: an echo" in run(str(path), "--direction", "reply")[1]
+    assert "unlisted-frame" in run(str(path))[1]
+    accepted = run(str(path), "--accept-unknown")[1].splitlines()
+    assert [line.split()[1] for line in accepted] == ["frame", "frame"]
+
+
+def test_each_byte_of_a_file_on_request(capture: str) -> None:
+    _, out, _ = run(capture, "--bytes")
+    assert "LEN            14: 14 bytes follow" in out
+    assert "noise   FF FF 01 04 02 38 02 BE   no-header\n  servo bus: read 2 bytes" in out
+
+
+def test_the_summary_counts(capture: str) -> None:
+    code, out, _ = run(capture, "--quiet", "--summary", "--json")
+    counts = json.loads(out)
+    noise = len(FIELD) - len(ANGLES) - 2 * len(FRAME)
+    assert code == 1
+    assert counts["bytes"] == len(FIELD)
+    assert counts["frames"] == {"0x12 is_power_on": 2, "0x20 get_angles": 1}
+    assert counts["noise"] == {"no-header": noise}
+    assert counts["findings"] == dict.fromkeys(
+        ["servo", "cmd-len-error", "panic", "nuls", "unrecognised"], 1
+    )
+    assert counts["resyncs"] == 2
+    assert counts["diagnosis"].startswith("the controller rebooted: panic LoadProhibited; ")
+    _, words, _ = run(capture, "--summary")
+    assert len(words.splitlines()) > 8
+    assert f"{len(FIELD)} bytes, 3 frames, 2 resyncs" in words
+
+
+def test_a_reader_that_goes_away_is_no_failure(tmp_path: Path) -> None:
+    path = tmp_path / "long.bin"
+    path.write_bytes(FIELD * 2000)
+    process = subprocess.Popen(
+        [*COMMAND, str(path), "--summary"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert process.stdout is not None
+    assert process.stderr is not None
+    assert process.stdout.readline()
+    process.stdout.close()
+    assert process.wait(timeout=60) == 141
+    assert process.stderr.read() == b""
+    process.stderr.close()
+
+
+def test_ctrl_c_ends_with_the_counts_so_far() -> None:
+    process = subprocess.Popen(
+        [*COMMAND, "-", "--summary"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write(ANGLES * 2)
+    process.stdin.flush()
+    # A live line is shown as it comes, though the pipe stays open.
+    assert b"get_angles" in process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert b"34 bytes, 2 frames, 0 resyncs" in out
+    assert b"Traceback" not in err
+
+
+def test_memory_does_not_grow_with_the_file(tmp_path: Path) -> None:
+    peaks = []
+    for times in (1, 40):
+        path = tmp_path / f"{times}.bin"
+        with path.open("wb") as file:
+            file.write((FIELD * 80 + b"~" * 5000) * times)
+            # A hole: NULs that take no room on the disk.
+            file.truncate(file.tell() + times * 500_000)
+        script = (
+            "import resource, sys\n"
+            "from cobotwire.cli import main\n"
+            "try: main()\n"
+            "except SystemExit: pass\n"
+            "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)"
+        )
+        command = [sys.executable, "-c", script, "decode", str(path), "--summary"]
+        with subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        ) as process:
+            assert process.stderr is not None
+            peaks.append(int(process.stderr.read()))
+    small, large = peaks
+    # KiB; the files have 0.6 and 23 MB.
+    assert large < small + 6_000
+
+
+def _on_a_terminal(command: list[str], stdout: int | None) -> str:
+    """What a command writes to a terminal, its errors or (``stdout`` None) all it says."""
+    master, slave = pty.openpty()
+    with subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=slave if stdout is None else stdout,
+        stderr=slave,
+        env={**os.environ, "TERM": "xterm", "COLUMNS": "80"},
+    ):
+        os.close(slave)
+        said = b""
+        try:
+            while block := os.read(master, 4096):
+                said += block
+        except OSError:
+            pass  # this is how a pty says that the other side is closed
+        os.close(master)
+    return said.decode()
+
+
+def test_a_terminal_gets_colour_and_a_bar_for_long_files_only(tmp_path: Path, capture: str) -> None:
+    path = tmp_path / "long.bin"
+    with path.open("wb") as file:
+        file.truncate(8_000_000)
+    assert "\x1b[32mframe" in _on_a_terminal([*COMMAND, capture], None)
+    assert "decoding" in _on_a_terminal([*COMMAND, str(path)], subprocess.DEVNULL)
+    assert "decoding" not in _on_a_terminal([*COMMAND, capture], subprocess.DEVNULL)

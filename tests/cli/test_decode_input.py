@@ -1,0 +1,89 @@
+"""What ``cobotwire decode`` takes: hex words, files, pipes; raw bytes or hex text."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from decoding import FIELD, capture_in, run
+from diagnosing import ANGLES, READ
+
+
+@pytest.fixture
+def capture(tmp_path: Path) -> str:
+    return capture_in(tmp_path)
+
+
+@pytest.mark.parametrize("form", [["--raw"], []])
+def test_the_standard_input_reads_as_a_file_does(capture: str, form: list[str]) -> None:
+    assert run("-", *form, stdin=FIELD) == run(capture, *form)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        FIELD.hex(),
+        FIELD.hex(" ").upper(),
+        FIELD.hex("\n"),
+        ", ".join(f"0x{byte:02X}" for byte in FIELD),
+        "".join(f"0x{byte:02x}" for byte in FIELD),
+    ],
+)
+def test_hex_text_reads_as_the_bytes_do(tmp_path: Path, capture: str, text: str) -> None:
+    path = tmp_path / "capture.hex"
+    path.write_text(text)
+    guessed, said = run(str(path)), run(str(path), "--hex")
+    assert guessed[:2] == said[:2] == run(capture)[:2]
+    assert "as hex text" in guessed[2]
+    assert said[2] == ""
+
+
+def test_hex_text_of_many_blocks(tmp_path: Path) -> None:
+    path = tmp_path / "long.hex"
+    data = (ANGLES + READ) * 8000
+    path.write_text(" 0x".join(["", *(f"{byte:02x}" for byte in data)]))
+    _, out, _ = run(str(path), "--quiet", "--summary", "--json")
+    assert json.loads(out)["bytes"] == len(data)
+    assert json.loads(out)["frames"] == {"0x20 get_angles": 8000}
+
+
+@pytest.mark.parametrize(
+    ("content", "words", "message"),
+    [
+        (b"12:30:01 RX fe fe 02 20 fa\n", [], "this is other text"),
+        (b"fe fe 02 20 f", [], "pairs of hex digits"),
+        (b"fe fe 02 20 fa zz", ["--hex"], "byte 15 of"),
+        (FIELD, ["--hex"], "byte 0 of"),
+        (b"fe " * 400 + b"xx", [], "byte 1200 of"),
+        (b"\xef\xbb\xbffe fe 02 20 fa", [], "Unicode"),
+        ("fe fe 02 20 fa".encode("utf-16"), [], "Unicode"),
+    ],
+)
+def test_what_may_be_misread_is_refused(
+    tmp_path: Path, content: bytes, words: list[str], message: str
+) -> None:
+    path = tmp_path / "odd"
+    path.write_bytes(content)
+    code, _, err = run(str(path), *words)
+    assert code == 2
+    assert message in err
+    assert run(str(path), "--raw")[0] in (0, 1)
+
+
+def test_a_word_that_is_hex_and_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "FEFE0220FA").write_bytes(ANGLES)
+    code, _, err = run("FEFE0220FA", cwd=tmp_path)
+    assert code == 2
+    assert "./FEFE0220FA for the file" in err
+    assert "reply: -> get_angles" in run("./FEFE0220FA", cwd=tmp_path)[1]
+    assert "request: get_angles()" in run("0xFEFE0220FA", cwd=tmp_path)[1]
+    assert "reply: -> get_angles" in run("FEFE0220FA", "--raw", cwd=tmp_path)[1]
+
+
+@pytest.mark.parametrize(
+    "words", [["nosuch.bin"], ["a.bin", "b.bin"], ["FE", "F"], ["."], ["-", "FE"]]
+)
+def test_what_is_neither_hex_nor_a_file_is_refused(words: list[str]) -> None:
+    assert run(*words)[0] == 2

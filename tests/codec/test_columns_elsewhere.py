@@ -1,0 +1,116 @@
+"""Columns in other people's tools: NumPy and all that takes Arrow, on the same memory."""
+
+from __future__ import annotations
+
+import mmap
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import numpy as np
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pytest
+
+from cobotwire.codec.interface import Codec, Rows
+
+ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
+VALUES = [1.0, 2.0, 3.0, 4.0, 5.0, 6.5]
+
+
+@pytest.fixture
+def rows(codec: Codec) -> Rows:
+    return codec.decode_columns(b"\0" + ANGLES * 3, "reply").rows("get_angles")
+
+
+def test_numpy_looks_at_the_same_memory(rows: Rows) -> None:
+    arrays = rows.to_numpy()
+    assert arrays["angles"].dtype == np.float64
+    assert arrays["angles"].shape == (3, 6)
+    assert arrays["angles"].tolist() == [VALUES] * 3
+    assert arrays["offset"].tolist() == [1, 18, 35]
+    assert np.shares_memory(arrays["angles"], np.asarray(rows["angles"]))
+
+
+def test_arrow_looks_at_the_same_memory(rows: Rows) -> None:
+    table = pa.table(rows)
+    assert table.column_names == ["offset", "angles"]
+    assert table["angles"].to_pylist() == [VALUES] * 3
+    assert table.schema.field("angles").metadata == {b"unit": b"degree"}
+    assert table.schema.metadata[b"command"] == b"get_angles"
+    address = table["angles"].chunk(0).values.buffers()[1].address
+    assert address == rows.to_numpy()["angles"].__array_interface__["data"][0]
+
+
+def test_polars_duckdb_and_pandas_take_rows_as_they_are(rows: Rows) -> None:
+    frame = pl.DataFrame(rows)
+    assert frame["angles"].to_list() == [VALUES] * 3
+    assert frame["offset"].to_list() == [1, 18, 35]
+    messages = rows  # DuckDB finds it by its name
+    query: Any = duckdb.sql('select "offset", angles[6] from messages order by 1 desc')
+    assert messages is rows
+    assert query.fetchall() == [(35, 6.5), (18, 6.5), (1, 6.5)]
+    assert pd.DataFrame.from_arrow(rows)["offset"].tolist() == [1, 18, 35]
+
+
+def test_what_did_not_come_is_an_empty_table(codec: Codec) -> None:
+    rows = codec.decode_columns(ANGLES, "reply").rows("get_coords")
+    assert pa.table(rows).num_rows == 0
+    assert rows.to_numpy()["offset"].tolist() == []
+
+
+def test_memory_outlives_everything_else(codec: Codec) -> None:
+    array = codec.decode_columns(ANGLES * 1000, "reply").rows("get_angles").to_numpy()["angles"]
+    others = [codec.decode_columns(ANGLES * 1000, "reply") for _ in range(20)]
+    assert array.tolist() == [VALUES] * 1000
+    assert len(others) == 20
+
+
+def test_a_mapped_file_is_read_without_being_loaded(codec: Codec, tmp_path: Path) -> None:
+    path = tmp_path / "capture.bin"
+    path.write_bytes(ANGLES * 20_000)
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as mapped:
+        assert len(codec.decode_columns(mapped, "reply").rows("get_angles")) == 20_000
+
+
+def test_another_thread_may_write_to_the_buffer_meanwhile() -> None:
+    """What it writes may be seen or not; nothing else can come of it."""
+    from cobotwire import codec as codecs
+    from cobotwire.editions.mycobot import TABLE
+
+    codec = codecs.load(TABLE, "native")
+    buffer = bytearray(ANGLES * 100_000)
+    stop = threading.Event()
+
+    def scribble() -> None:
+        while not stop.is_set():
+            buffer[4::17] = bytes([1]) * 100_000
+            buffer[4::17] = bytes([2]) * 100_000
+
+    thread = threading.Thread(target=scribble)
+    thread.start()
+    try:
+        for _ in range(5):
+            angles = codec.decode_columns(buffer, "reply").rows("get_angles").to_numpy()["angles"]
+            assert angles.shape == (100_000, 6)
+            assert set(np.unique(angles[:, 0])) <= {1.0, 3.56, 6.12}
+    finally:
+        stop.set()
+        thread.join()
+
+
+def test_the_extras_are_imported_when_they_are_used_and_not_before() -> None:
+    import subprocess
+
+    script = (
+        "import sys\nfrom cobotwire import codec\nfrom cobotwire.editions.mycobot import TABLE\n"
+        f"codec.load(TABLE).decode_columns({ANGLES!r})\n"
+        "print([name for name in ('numpy', 'pyarrow') if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "[]\n"

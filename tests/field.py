@@ -1,0 +1,91 @@
+"""Strategies of what the field's lines carry: servo leaks, firmware text, reboots, damage."""
+
+from __future__ import annotations
+
+from hypothesis import strategies as st
+
+import strategies
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.table import Table
+
+
+def servo_packet(body: bytes) -> bytes:
+    """A packet of the servo bus: ``body`` is ID, LEN, instruction or error, and parameters."""
+    return b"\xff\xff" + body + bytes([~sum(body) & 0xFF])
+
+
+def servo_packets() -> st.SearchStrategy[bytes]:
+    """A servo packet with a right checksum."""
+    codes = st.sampled_from([0, 1, 2, 3, 4, 5, 0x20, 0x82, 0x83]) | st.integers(0, 255)
+    return st.builds(
+        lambda id, code, rest: servo_packet(bytes([id, len(rest) + 2, code]) + rest),
+        st.sampled_from([1, 2, 7, 0xFE]) | st.integers(0, 0xFE),
+        codes,
+        st.binary(max_size=12),
+    )
+
+
+PANIC = (
+    b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n\r\n"
+    b"Core  1 register dump:\r\n"
+    b"PC      : 0x400d15f4  PS      : 0x00060b30  A0      : 0x800d0b5c  A1      : 0x3ffb1f60\r\n"
+    b"EXCVADDR: 0x00000004  LBEG    : 0x4000c2e0  LEND    : 0x4000c2f6  LCOUNT  : 0x00000000\r\n"
+    b"\r\nBacktrace: 0x400d15f1:0x3ffb1f60 0x400d0b59:0x3ffb1f90 0x40088b9d:0x3ffb1fb0\r\n\r\n"
+    b"Rebooting...\r\n"
+)
+
+
+def spoilt_panics() -> st.SearchStrategy[bytes]:
+    """A panic with some bytes in its middle that are no text."""
+    return st.builds(
+        lambda cut, bad: PANIC[:cut] + bad + PANIC[cut:],
+        st.integers(21, len(PANIC)),
+        st.lists(st.integers(0x80, 0xFF), max_size=6).map(bytes),
+    )
+
+
+def damaged_replies() -> st.SearchStrategy[bytes]:
+    """The beginning of a get_angles reply, with or without a footer at the wrong place."""
+    return st.builds(
+        lambda size, footer: (b"\xfe\xfe\x0e\x20" + bytes(range(16)))[:size] + footer,
+        st.integers(1, 19),
+        st.sampled_from([b"", b"\xfa", b"\xfb"]),
+    )
+
+
+def noise() -> st.SearchStrategy[bytes]:
+    """What firmware, servos and bad lines say, whole or broken off, short and long."""
+    whole = st.one_of(
+        servo_packets(),
+        st.sampled_from(
+            [PANIC, b"cmd_len error\r\n", b"cmd_len error", b"ets Jul 29 2019 12:21:46\r\n\r\n"]
+        ),
+        st.sampled_from([1, 3, 4, 63, 64, 277, 5000]).map(bytes),
+        st.integers(1, 3000).map(lambda size: b"~" * size),
+        st.binary(max_size=300),
+        strategies.line_noise(),
+        spoilt_panics(),
+        # A message at a line's limit, and right behind a frame that breaks off.
+        st.integers(1000, 1050).map(lambda size: b"x" * size + b"cmd_len error"),
+        st.builds(
+            lambda parts, behind: b"".join(parts) + behind,
+            st.lists(damaged_replies(), min_size=1, max_size=4),
+            st.sampled_from([b"", b"cmd_len error\r\n", PANIC]) | servo_packets(),
+        ),
+    )
+    return st.one_of(
+        whole, st.builds(lambda data, cut: data[: cut % (len(data) + 1)], whole, st.integers(0))
+    )
+
+
+@st.composite
+def streams(draw: st.DrawFn, table: Table = TABLE) -> bytes:
+    """Frames and field noise; sometimes a frame stands in the middle of a piece of noise."""
+    stream = b""
+    pieces = noise() | strategies.real_frames(table) | strategies.near_frames(table)
+    for piece in draw(st.lists(pieces, max_size=6)):
+        cut = draw(st.integers(0, len(piece))) if draw(st.booleans()) else len(piece)
+        stream += piece[:cut]
+        if cut < len(piece):
+            stream += draw(strategies.real_frames(table)) + piece[cut:]
+    return stream
