@@ -20,7 +20,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "values": set(),
     "table": {"errors"},
     "codec": {"errors", "table", "_native"},
-    "session": {"errors", "table", "codec"},
+    "session": {"errors", "table", "codec", "diagnose"},
     "transport": {"errors"},
     "limits": {"errors", "table"},
     "driver": {"errors", "table", "limits", "codec", "session", "transport"},

@@ -89,9 +89,16 @@ def test_a_timeout_tells_what_was_heard_meanwhile(open_arm: Opener, peer_on: Any
         with pytest.raises(ReplyTimeout) as caught:
             arm.get_angles()
     assert caught.value.heard == (
-        "noise (no-header) FF FF 01 04 02 38 02 BE",
+        "noise (no-header) FF FF 01 04 02 38 02 BE: servo bus leak: "
+        "read 2 bytes at register 0x38 (present position) of servo 1",
         "frame FE FE 03 12 01 FA",
     )
+
+
+def test_a_timeout_tells_that_the_controller_rebooted(open_arm: Opener, peer_on: Any) -> None:
+    with peer_on([PANIC]) as peer, open_arm(peer.url, timeout=0.1) as arm:
+        with pytest.raises(ReplyTimeout, match="the controller rebooted: panic LoadProhibited"):
+            arm.get_angles()
 
 
 def test_a_reply_for_another_joint_is_not_taken(open_arm: Opener, peer_on: Any) -> None:

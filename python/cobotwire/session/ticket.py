@@ -59,13 +59,15 @@ class Ticket:
             return self._fields
         if isinstance(error, LinkError):
             # One fault of the link may end many tickets: each thread raises an error of its own.
-            raise LinkError(error.url, error.detail) from error
+            raise LinkError(error.url, error.detail, error.written) from error
         raise error
 
     def silence(self, codec: Codec, waited: float, tries: int) -> ReplyTimeout:
         """That nothing came: what was asked, how often, and what was heard meanwhile."""
         words = in_words(self.request, codec)
-        return ReplyTimeout(self.request.command.name, waited, self.heard.lines(), tries, words)
+        # Most calls that hear nothing have made none.
+        heard = () if self._heard is None else self._heard.lines(codec, self.request.frame)
+        return ReplyTimeout(self.request.command.name, waited, heard, tries, words)
 
     def _end(self) -> None:
         self.done = True
