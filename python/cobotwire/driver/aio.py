@@ -50,7 +50,7 @@ class AsyncDriver:
         self._port = port
         self._baudrate = baudrate
         self._conversation = Conversation(self._settings.codec)
-        self._watchers = Watchers(trace)
+        self._watchers = Watchers(trace, port if isinstance(port, str) else port.url)
         self._line: AsyncLine | None = None
 
     async def open(self) -> None:

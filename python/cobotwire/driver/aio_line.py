@@ -61,7 +61,7 @@ class AsyncLine:
     def close(self) -> None:
         """Give the link back; whoever waits hears of it."""
         self._link.close()
-        self._break(LinkError(self._url, "it is closed"))
+        self._end(LinkError(self._url, "it is closed"))
 
     async def _await(self, ticket: Ticket) -> dict[str, Any]:
         if not ticket.done:
@@ -83,7 +83,8 @@ class AsyncLine:
         try:
             data = b"" if self._lost is not None else self._link.read()
         except LinkError as error:
-            self._break(error)
+            self._watchers.lost(error)
+            self._end(error)
             return
         now = time.monotonic()
         events = conversation.receive(data, now) if data else []
@@ -127,7 +128,7 @@ class AsyncLine:
         self._timer = None
         self._turn()
 
-    def _break(self, error: LinkError) -> None:
+    def _end(self, error: LinkError) -> None:
         """The link is gone, and everybody hears of it at once."""
         if self._lost is None:
             self._lost = error

@@ -60,8 +60,8 @@ class Driver:
         self._settings = settings(self.table, timeout, retry, codec, limits)
         self.codec = self._settings.codec.name
         self._conversation = Conversation(self._settings.codec)
-        self._watchers = Watchers(trace)
         self._link = opened(port, self.table, baudrate)
+        self._watchers = Watchers(trace, self._link.url)
         self._line = SharedLine(self._link, self._conversation, self._watchers)
 
     def __enter__(self) -> Self:

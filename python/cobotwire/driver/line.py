@@ -160,6 +160,7 @@ class SharedLine:
         with self._state:
             self._conversation.fail(error)
         self._wake_followers()
+        self._watchers.lost(error)
 
     def _follow(self, ticket: Ticket) -> None:
         """Wait until the reading thread has something, or none reads."""

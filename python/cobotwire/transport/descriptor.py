@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import logging
 import os
 import threading
 import time
@@ -17,6 +18,8 @@ READ_SIZE = 4096
 WRITE_SECONDS = 1.0
 # Start bit, eight data bits, stop bit.
 BITS_A_BYTE = 10
+
+_log = logging.getLogger("cobotwire.link")
 
 
 def write_limit(size: int, baudrate: int) -> float:
@@ -136,6 +139,7 @@ class DescriptorLink(ABC):
             self._connect()
             self._waiter = Waiter()
             self._closed = False
+        _log.info("%s: opened", self.url)
 
     def _must_be_open(self, what: str, reason: str = "it is closed") -> None:
         if self._closed:

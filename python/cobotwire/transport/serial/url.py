@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import time
 from collections.abc import Iterator
@@ -17,6 +18,8 @@ from cobotwire.transport.waiting import Waiter
 
 # A backend without a descriptor is read in slices of this length.
 SLICE_SECONDS = 0.01
+
+_log = logging.getLogger("cobotwire.link")
 
 
 class UrlLink:
@@ -59,6 +62,7 @@ class UrlLink:
             self.low_latency = ask_low_latency(port)
         self._waiter = Waiter()
         self._closed = False
+        _log.info("%s: opened", self.url)
 
     def write(self, data: bytes) -> None:
         """Send all of ``data``. If it fails, pyserial does not tell how much was taken."""
