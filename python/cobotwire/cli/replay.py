@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import json
-from functools import lru_cache
 from typing import Any
 
 import click
 
-from cobotwire import codec as codecs
-from cobotwire import editions
 from cobotwire.capture import CaptureReader, Packet, read
+from cobotwire.cli.recorded import ARROWS, codec_of, tell_the_end
 from cobotwire.cli.serving import say, serve
 from cobotwire.codec.interface import Codec
 from cobotwire.errors import ProtocolError, UsageError
 from cobotwire.explain import summary
 from cobotwire.sim import Heard, PtyPort, ReplayedArm
 from cobotwire.table import Direction
-
-ARROWS = {"sent": ">", "heard": "<", "unknown": "?"}
 
 
 @click.command()
@@ -38,10 +34,10 @@ def replay(edition: str, file: str, as_arm: bool, speed: float, line: int, as_js
     with read(file) as capture:
         if not as_arm:
             _timeline(capture, edition, as_json)
-            _tell_the_end(capture)
+            tell_the_end(capture)
             return
         arm = _arm(capture, edition, speed, line)
-        _tell_the_end(capture)
+        tell_the_end(capture)
     serve(PtyPort(arm))
 
 
@@ -51,7 +47,7 @@ def _arm(capture: CaptureReader, edition: str, speed: float, line: int) -> Repla
     packets = [packet for packet in capture if packet.interface == line]
     if not 0 <= line < len(capture.interfaces):
         raise UsageError("line", line, f"0..{len(capture.interfaces) - 1}")
-    arm = ReplayedArm(packets, _codec(capture, line, edition), speed=speed, watch=_show)
+    arm = ReplayedArm(packets, codec_of(capture, line, edition), speed=speed, watch=_show)
     if not arm.requests:
         raise UsageError("FILE", capture.name, "a recording in which something is sent")
     return arm
@@ -66,7 +62,7 @@ def _timeline(capture: CaptureReader, edition: str, as_json: bool) -> None:
     start: int | None = None
     for packet in capture:
         start = packet.time_ns if start is None else start
-        meaning = _meaning(packet, _codec(capture, packet.interface, edition))
+        meaning = _meaning(packet, codec_of(capture, packet.interface, edition))
         after = (packet.time_ns - start) / 1e9
         if as_json:
             say(json.dumps(_as_json(capture, packet, after, meaning)))
@@ -74,16 +70,6 @@ def _timeline(capture: CaptureReader, edition: str, as_json: bool) -> None:
         several = f" line {packet.interface}" if len(capture.interfaces) > 1 else ""
         data = packet.data.hex(" ").upper()
         say(f"{after:10.6f}{several} {ARROWS[packet.direction]} {data}   {meaning}{_late(packet)}")
-
-
-def _codec(capture: CaptureReader, line: int, edition: str) -> Codec:
-    return _loaded(capture.interfaces[line].edition, edition)
-
-
-@lru_cache
-def _loaded(recorded: str, edition: str) -> Codec:
-    name = recorded if recorded in editions.names() else edition
-    return codecs.load(editions.load(name).TABLE)
 
 
 def _meaning(packet: Packet, codec: Codec) -> str:
@@ -124,12 +110,3 @@ def _as_json(capture: CaptureReader, packet: Packet, after: float, meaning: str)
         "meaning": meaning,
         "pieces": pieces,
     }
-
-
-def _tell_the_end(capture: CaptureReader) -> None:
-    """That something may be missing is said where it does not mix with what is there."""
-    if capture.truncated_at is not None:
-        whole = f"what comes before byte {capture.truncated_at} is whole"
-        click.echo(f"cobotwire: {capture.name} ends in the middle of a packet; {whole}", err=True)
-    elif not capture.finished:
-        click.echo(f"cobotwire: the recording {capture.name} was not ended in order", err=True)
