@@ -24,6 +24,9 @@ Role = Literal[
     "reached",
     "moving",
     "stop",
+    "joints",
+    "coordinates",
+    "powered",
 ]
 FieldKind = Literal["number", "flag", "enum"]
 Check = Literal["footer", "crc16-modbus", "sum"]

@@ -31,6 +31,18 @@ def _told_by_flag(forms: tuple[Form, ...]) -> bool:
     return bool(forms) and all(len(form) == 1 and isinstance(form[0].type, Flag) for form in forms)
 
 
+def _asks_a_flag(command: Command) -> bool:
+    return command.requests == ((),) and _told_by_flag(command.replies)
+
+
+def _asks_row(parts: int) -> Callable[[Command], bool]:
+    def asks(command: Command) -> bool:
+        rows = all(len(form) == 1 and _parts(form[0]) == parts for form in command.replies)
+        return command.requests == ((),) and bool(command.replies) and rows
+
+    return asks
+
+
 def _reached(command: Command) -> bool:
     if not _told_by_flag(command.replies) or len(command.requests[0]) != 2:
         return False
@@ -49,10 +61,10 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             "it takes a target and its kind, ANGLES or COORDS, and answers yes or no",
             _reached,
         ),
-        "moving": (
-            "it takes no arguments and answers yes or no",
-            lambda command: command.requests == ((),) and _told_by_flag(command.replies),
-        ),
+        "moving": ("it takes no arguments and answers yes or no", _asks_a_flag),
+        "powered": ("it takes no arguments and answers yes or no", _asks_a_flag),
+        "joints": ("it takes no arguments and answers a number a joint", _asks_row(edition.joints)),
+        "coordinates": ("it takes no arguments and answers six coordinates", _asks_row(6)),
         "stop": ("it takes no arguments", lambda command: command.requests == ((),)),
     }
 

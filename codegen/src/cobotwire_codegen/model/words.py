@@ -12,6 +12,9 @@ ROLES = (
     "reached",
     "moving",
     "stop",
+    "joints",
+    "coordinates",
+    "powered",
 )
 UNITS = (
     "degree",

@@ -53,6 +53,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="joints",
     ),
     Command(
         id=0x21,

@@ -33,6 +33,7 @@ COMMANDS = (
         notes=(
             "Disputed: x, y and z are carried in tenths of a millimetre. Read: x10, as the formula divides (confidence high).",
         ),
+        role="coordinates",
     ),
     Command(
         id=0x24,

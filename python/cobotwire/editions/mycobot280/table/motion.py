@@ -67,6 +67,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="joints",
     ),
     Command(
         id=0x21,
