@@ -29,10 +29,13 @@ MAY_IMPORT: dict[str, set[str]] = {
     "sim": {"errors", "table", "codec", "session", "capture"},
     "explain": {"errors", "table", "codec"},
     "diagnose": {"errors", "table", "codec"},
+    "health": {
+        *("errors", "table", "codec", "diagnose", "session", "transport", "driver"),
+    },
     "demo": {"codec", "driver", "editions", "sim"},
     "cli": {
         *("errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"),
-        *("capture", "transport", "diagnose"),
+        *("capture", "transport", "diagnose", "health"),
     },
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.

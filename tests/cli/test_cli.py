@@ -56,7 +56,7 @@ def test_the_demo_fails_when_an_answer_is_wrong() -> None:
 def test_help_names_the_verbs_and_the_exit_codes() -> None:
     result = run("--help")
     assert result.returncode == 0
-    for word in ("demo", "ports", "call", "decode", "sim", "replay", "commands", "Exit codes"):
+    for word in ("demo", "ports", "doctor", "monitor", "call", "decode", "sim", "replay", "Exit codes"):
         assert word in result.stdout
 
 

@@ -49,7 +49,7 @@ def call(
     if as_json:
         click.echo(json.dumps({"command": name, "result": plain(result)}))
     elif result is not None:
-        click.echo(_words(result))
+        click.echo(in_words(result))
 
 
 def plain(value: Any) -> Any:
@@ -61,7 +61,8 @@ def plain(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _words(value: Any) -> str:
+def in_words(value: Any) -> str:
+    """A result for people, on one line."""
     if hasattr(value, "_asdict"):
         return "  ".join(f"{name}={part}" for name, part in value._asdict().items())
     return value.name if isinstance(value, IntEnum) else str(value)
