@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUST_SOURCES := $(shell find rust -name '*.rs' -not -path '*/target/*') $(shell find rust -name Cargo.toml) Cargo.toml
 EXAMPLES ?= 100
 
-.PHONY: help demo test lint python-test rust-test gen bench clean
+.PHONY: help demo test lint python-test rust-test gen bench table clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -36,6 +36,9 @@ gen: .venv/.tools ## write the generated files from spec/
 bench: .venv/.tools .venv/.native ## how fast, beside the limits
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/driver.py
+
+table: .venv/.tools .venv/.native ## what we and pymycobot make of bad lines, into docs/bad-lines.md
+	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target
