@@ -70,7 +70,7 @@ def _measured(run: Run) -> Row:
         ends = [_started(run, peer.url, client) for client in range(run.case.clients)]
         until = time.monotonic() + LIMIT_SECONDS
         results = [_ended(process, end, until) for process, end in ends]
-        peer.settle(None)
+        peer.settle()
         frames, garbled = list(peer.frames), peer.garbled
     ended = [result for result in results if result is not None]
     outcomes = [outcome for result in ended for outcome in result[0]]

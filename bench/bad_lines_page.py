@@ -65,14 +65,23 @@ class Row:
         return ", ".join(part for part in parts if part)
 
     def _ends(self) -> str:
-        told = Counter(self._told(outcome) for outcome in self.outcomes)
+        outcomes = self.outcomes
+        if self._chance():
+            outcomes = sorted(outcomes, key=lambda outcome: KINDS.index(self._kind(outcome)))
+        told = Counter(self._told(outcome) for outcome in outcomes)
         if self.hung:
             told["**hangs**"] += 1
-        if len(told) == 1 and not self.hung:
+        if len(told) == 1:
             return next(iter(told))
+        if self._chance():
+            return ", ".join(told)
         return "; ".join(
             text if count == 1 else f"{count} x {text}" for text, count in told.items()
         )
+
+    def _chance(self) -> bool:
+        """Whether the numbers depend on who is first: then they are not told."""
+        return self.case.clients > 1
 
     def _told(self, outcome: Outcome) -> str:
         kind = self._kind(outcome)
@@ -95,11 +104,12 @@ class Row:
     def _asked(self) -> str:
         calls = len(self.case.calls) * self.case.repeat
         garbled = f", {self.garbled} bytes garbled" if self.garbled else ""
-        if self.case.deaf or (len(self.frames) == calls and not garbled):
+        requests = len(self.frames)
+        if self.case.deaf or self._chance() or (requests == calls and not garbled):
             return ""
-        often = f"{len(self.frames)} requests for {calls} calls"
+        often = f"{requests} request{'s' if requests > 1 else ''} for {calls} calls"
         if calls == 1:
-            often = f"sent {len(self.frames)} times"
+            often = {2: "sent twice"}.get(requests, f"sent {requests} times")
         return f"**{often}**{garbled}" if self._too_often() else often + garbled
 
 
@@ -110,7 +120,7 @@ def page(results: Results, clients: tuple[str, ...], limit: float) -> str:
     """The generated part of the page."""
     parts = [BEGIN, _summary(results, clients)]
     for title, cases in GROUPS.items():
-        parts.append(f"## {title}")
+        parts.append(f"### {title}")
         parts.append(
             _table([case for case in cases if _has(results, case)], results, clients, limit)
         )
@@ -124,7 +134,12 @@ def _has(results: Results, case: Case) -> bool:
 
 
 def _summary(results: Results, clients: tuple[str, ...]) -> str:
-    lines = ["| the worst that a caller got | " + " | ".join(TITLES[who] for who in clients) + " |"]
+    runs = len(results) // len(clients)
+    lines = [
+        f"| the worst that a caller got, of {runs} runs | "
+        + " | ".join(TITLES[who] for who in clients)
+        + " |"
+    ]
     lines.append("|---|" + "---|" * len(clients))
     counts = {
         who: Counter(row.worst() for (_, _, by), row in results.items() if by == who)
@@ -150,7 +165,7 @@ def _table(cases: list[Case], results: Results, clients: tuple[str, ...], limit:
 
 
 def _quoted(results: Results) -> str:
-    lines = ["## The lines of the notes", ""]
+    lines = ["### The lines of the notes", ""]
     for key, piece in NOTES.items():
         names = [case.name for cases in GROUPS.values() for case in cases if key in case.notes]
         if names:

@@ -49,7 +49,7 @@ def _played(case: Case, who: str, url: str) -> tuple[list[Outcome], float]:
 def test_a_line_of_the_notes_does_to_us_what_the_case_says(case: Case, link: str, who: str) -> None:
     with COUNTING_PEERS[link](case) as peer:
         outcomes, seconds = _played(case, who, peer.url)
-        peer.settle(case.asked)
+        peer.settle()
     verdicts = [outcome.verdict for outcome in outcomes]
     if case.clients > 1:
         verdicts.sort(key=case.ours.index)

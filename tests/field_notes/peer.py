@@ -20,13 +20,16 @@ class _Counting(_Peer):
         self.garbled = 0
         self._case = case
         self._rest = b""
+        self._silences = 0
 
-    def settle(self, frames: int | None) -> None:
-        """Wait until so many frames were heard, and a moment longer for those too many."""
-        until = time.monotonic() + 1
-        while len(self.frames) < (frames or 0) and time.monotonic() < until:
+    def settle(self) -> None:
+        """Wait until all that was written has been heard and answered; a client wrote it before."""
+        until = time.monotonic() + 3
+        silences = self._silences + 2
+        while self._silences < silences and self._thread.is_alive() and not self._case.deaf:
+            if time.monotonic() > until:
+                return
             time.sleep(0.002)
-        time.sleep(0.01)
 
     def _play(self) -> None:
         while not self._stop:
@@ -35,7 +38,9 @@ class _Counting(_Peer):
                 continue
             data = self._hear()
             if not data:
+                # Over TCP, a client that is gone is silent at once.
                 time.sleep(0.001)
+                self._silences += 1
             self.heard += data
             for frame in self._taken_apart(data):
                 number = len(self.frames)

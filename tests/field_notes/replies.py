@@ -75,6 +75,18 @@ CASES = (
         ((ANGLES[:8], 0.1, ANGLES[8:]),),
     ),
     Case(
+        "a pause of 120 ms inside the reply",
+        ("pause",),
+        "8 bytes, 120 ms, 9 bytes",
+        ((ANGLES[:8], 0.12, ANGLES[8:]),),
+    ),
+    Case(
+        "a pause of 120 ms behind FE FE",
+        ("pause",),
+        "2 bytes, 120 ms, 15 bytes",
+        ((ANGLES[:2], 0.12, ANGLES[2:]),),
+    ),
+    Case(
         "a reply split after 8 bytes",
         ("split",),
         "8 bytes, 5 ms, 9 bytes",
