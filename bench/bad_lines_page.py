@@ -65,23 +65,17 @@ class Row:
         return ", ".join(part for part in parts if part)
 
     def _ends(self) -> str:
-        outcomes = self.outcomes
-        if self._chance():
-            outcomes = sorted(outcomes, key=lambda outcome: KINDS.index(self._kind(outcome)))
-        told = Counter(self._told(outcome) for outcome in outcomes)
+        told = Counter(self._told(outcome) for outcome in self.outcomes)
         if self.hung:
             told["**hangs**"] += 1
-        if len(told) == 1:
-            return next(iter(told))
-        if self._chance():
-            return ", ".join(told)
-        return "; ".join(
-            text if count == 1 else f"{count} x {text}" for text, count in told.items()
-        )
+        if self._by_chance():
+            order = sorted(self.outcomes, key=lambda outcome: KINDS.index(self._kind(outcome)))
+            return f"from {self._told(order[0])} to {self._told(order[-1])}"
+        return "; ".join(told) if len(told) < len(self.outcomes) else "; ".join(told.elements())
 
-    def _chance(self) -> bool:
-        """Whether the numbers depend on who is first: then they are not told."""
-        return self.case.clients > 1
+    def _by_chance(self) -> bool:
+        """Many calls that end in different ways: how many in which way differs from run to run."""
+        return len(self.outcomes) > 3 and len({self._kind(one) for one in self.outcomes}) > 1
 
     def _told(self, outcome: Outcome) -> str:
         kind = self._kind(outcome)
@@ -99,13 +93,15 @@ class Row:
     def _time(self, limit: float) -> str:
         if self.hung:
             return f"ended after {limit:.0f} s"
+        if self._by_chance():
+            return ""
         return "< 0.1 s" if self.seconds < 0.095 else f"{self.seconds:.1f} s"
 
     def _asked(self) -> str:
         calls = len(self.case.calls) * self.case.repeat
         garbled = f", {self.garbled} bytes garbled" if self.garbled else ""
         requests = len(self.frames)
-        if self.case.deaf or self._chance() or (requests == calls and not garbled):
+        if self.case.deaf or self._by_chance() or (requests == calls and not garbled):
             return ""
         often = f"{requests} request{'s' if requests > 1 else ''} for {calls} calls"
         if calls == 1:

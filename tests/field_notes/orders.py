@@ -23,7 +23,7 @@ def _encoders(request: bytes, number: int) -> Script:
 
 CASES = (
     Case(
-        "a relative move that nothing answers", ("unanswered",), "silence", (), (STEP,), within=0.3
+        "a relative move that nothing answers", ("unanswered",), "silence", (), (STEP,), within=0.5
     ),
     Case(
         "a relative move that firmware text answers",
@@ -31,7 +31,7 @@ CASES = (
         "`cmd_len error` to each request",
         ((b"cmd_len error\r\n",),),
         (STEP,),
-        within=0.3,
+        within=0.5,
     ),
     Case(
         "0.29 degrees",
@@ -39,7 +39,7 @@ CASES = (
         "acknowledges; 0.29 x 100 is 29",
         _acknowledged,
         (ROUNDED,),
-        within=0.3,
+        within=0.5,
     ),
     Case(
         "XON and XOFF in an order",
@@ -48,7 +48,7 @@ CASES = (
         _acknowledged,
         (CONTROLS,),
         cooked=True,
-        within=0.3,
+        within=0.5,
     ),
     Case(
         "the port goes while a reply comes",
