@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUST_SOURCES := $(shell find rust -name '*.rs' -not -path '*/target/*') $(shell find rust -name Cargo.toml) Cargo.toml
 EXAMPLES ?= 100
 
-.PHONY: help demo test lint python-test rust-test gen bench plots clean
+.PHONY: help demo test lint python-test rust-test gen bench plots table clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -43,6 +43,9 @@ plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again;
 	mkdir -p target
 	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
+
+table: .venv/.tools .venv/.native ## what we and pymycobot make of bad lines, into docs/bad-lines.md
+	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target
