@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 from cobotwire import codec as codecs
@@ -24,6 +25,16 @@ class Settings(NamedTuple):
         """The seconds that a command's answer may take, where there are no more than so many."""
         usual = command.deadline_ms / 1000 if self.timeout is None else self.timeout
         return min(longest, usual)
+
+    def for_stream(self, timeout: float | None) -> Settings:
+        """The same for the questions of a stream, which are sent once: the next slot asks again.
+
+        Raises:
+            UsageError: the timeout is not allowed.
+        """
+        seconds("timeout", timeout)
+        retry = replace(self.retry, tries=1)
+        return self._replace(retry=retry, timeout=self.timeout if timeout is None else timeout)
 
 
 def settings(
