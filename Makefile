@@ -36,6 +36,8 @@ gen: .venv/.tools ## write the generated files from spec/
 bench: .venv/.tools .venv/.native ## how fast, beside the limits
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/driver.py
+	$(BIN)/python bench/imports.py
+	$(BIN)/python bench/streaming.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target

@@ -12,13 +12,13 @@ from cobotwire.driver.aio_line import AsyncLine
 from cobotwire.driver.opening import check_port, opened, seconds, settings
 from cobotwire.driver.watching import Watcher, Watchers
 from cobotwire.errors import LinkError
-from cobotwire.limits import Limits
 from cobotwire.session import Conversation, Question, Request, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
 
 if TYPE_CHECKING:
     from cobotwire.driver.aio_streaming import AsyncStream
+    from cobotwire.limits import Limits
     from cobotwire.session.sample import Query
 
 

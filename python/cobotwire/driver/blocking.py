@@ -10,13 +10,13 @@ from cobotwire import codec as codecs
 from cobotwire.driver.line import SharedLine
 from cobotwire.driver.opening import opened, seconds, settings
 from cobotwire.driver.watching import Watcher, Watchers
-from cobotwire.limits import Limits
 from cobotwire.session import Conversation, Question, Request, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
 
 if TYPE_CHECKING:
     from cobotwire.driver.streaming import Stream
+    from cobotwire.limits import Limits
     from cobotwire.session.sample import Query
 
 

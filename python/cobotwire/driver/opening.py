@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.errors import UsageError
-from cobotwire.limits import Limits, limited
 from cobotwire.session import RetryPolicy
 from cobotwire.table import Command, Table
 from cobotwire.transport import Transport
+
+if TYPE_CHECKING:
+    from cobotwire.limits import Limits
 
 
 class Settings(NamedTuple):
@@ -53,6 +55,9 @@ def settings(
     if retry is not None and not isinstance(retry, RetryPolicy):
         raise UsageError("retry", retry, "a RetryPolicy")
     if limits is not None:
+        # Here, not above: few programs have limits of their own, and all of them import this.
+        from cobotwire.limits import Limits, limited
+
         if not isinstance(limits, Limits):
             raise UsageError("limits", limits, "Limits")
         table = limited(table, limits)
