@@ -38,6 +38,7 @@ bench: .venv/.tools .venv/.native ## how fast, beside the limits
 	$(BIN)/python bench/driver.py
 	$(BIN)/python bench/imports.py
 	$(BIN)/python bench/streaming.py
+	$(BIN)/python bench/pipelining.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target

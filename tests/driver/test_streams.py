@@ -11,16 +11,18 @@ from typing import Any
 
 import pytest
 
-from both_ways import Opener
+from both_ways import Opener, openers
 from cobotwire import AsyncMyCobot, LinkError, MyCobot, RetryPolicy, UsageError
 from cobotwire.editions.mycobot import Angles, Coords
-from cobotwire.sim import PtyServer
+from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
+from cobotwire.sim import PtyServer, SimulatedArm
 from scripted_peer import ScriptedPeer
 
 QUESTION = bytes.fromhex("FE FE 02 20 FA")
 ANSWER = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 # What was not answered holds the next question so long, from its asking.
 QUICK = RetryPolicy(grace=0.06)
+NEWER = openers(MyCobot280, AsyncMyCobot280)
 
 
 def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServer) -> None:
@@ -43,6 +45,22 @@ def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServe
         # A busy machine wakes late now and then; nothing else is missed here.
         assert report.unanswered == 0
         assert report.reached > 40
+
+
+@pytest.mark.parametrize("opening", list(NEWER))
+def test_every_query_streams_what_its_method_gives(opening: str) -> None:
+    names = [
+        command.name
+        for command in TABLE.commands
+        if command.safety == "query" and not command.request[0].fields
+    ]
+    with PtyServer(SimulatedArm(TABLE)) as server, NEWER[opening](server.url) as arm:
+        sample = next(arm.stream(*names, rate=10))
+        for name in names:
+            once = getattr(arm, name)()
+            assert sample[name] == once
+            assert type(sample[name]) is type(once)
+    assert len(names) > 20
 
 
 def test_a_rate_beyond_the_line_is_told_and_not_pretended(open_arm: Opener, peer_on: Any) -> None:
