@@ -37,6 +37,9 @@ bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost o
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/driver.py
 	$(BIN)/python bench/resync.py
+	$(BIN)/python bench/imports.py
+	$(BIN)/python bench/streaming.py
+	$(BIN)/python bench/pipelining.py
 
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench

@@ -33,6 +33,9 @@ class InLoop:
             return found
         return lambda *arguments, **options: self._run(found(*arguments, **options))
 
+    def stream(self, *queries: Any, **options: Any) -> _StreamInLoop:
+        return _StreamInLoop(self._run, self.client.stream(*queries, **options))
+
     def _run(self, work: Any) -> Any:
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()
 
@@ -52,6 +55,26 @@ class InLoop:
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()
+
+
+class _StreamInLoop:
+    """A stream of an asyncio client, gone through by an ordinary loop."""
+
+    def __init__(self, run: Callable[[Any], Any], stream: Any) -> None:
+        self._run = run
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def __iter__(self) -> Self:
+        return self
+
+    def __next__(self) -> Any:
+        try:
+            return self._run(self._stream.__anext__())
+        except StopAsyncIteration:
+            raise StopIteration from None
 
 
 Opener = Callable[..., Any]

@@ -10,20 +10,6 @@
 
 from typing import TYPE_CHECKING, Any
 
-from cobotwire.codec import chosen as codec_in_use
-from cobotwire.editions.mycobot import MyCobot
-from cobotwire.errors import (
-    CaptureError,
-    CobotwireError,
-    LinkError,
-    MotionTimeout,
-    ProtocolError,
-    ReplyTimeout,
-    UsageError,
-)
-from cobotwire.limits import Limits
-from cobotwire.session import RetryPolicy
-
 __version__ = "0.1.0"
 
 __all__ = [
@@ -37,19 +23,50 @@ __all__ = [
     "ProtocolError",
     "ReplyTimeout",
     "RetryPolicy",
+    "Sample",
+    "StreamReport",
     "UsageError",
     "__version__",
     "codec_in_use",
 ]
 
 if TYPE_CHECKING:
-    from cobotwire.editions.mycobot import AsyncMyCobot
+    from cobotwire.codec import chosen as codec_in_use
+    from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
+    from cobotwire.errors import (
+        CaptureError,
+        CobotwireError,
+        LinkError,
+        MotionTimeout,
+        ProtocolError,
+        ReplyTimeout,
+        UsageError,
+    )
+    from cobotwire.limits import Limits
+    from cobotwire.session.policy import RetryPolicy
+    from cobotwire.session.sample import Sample, StreamReport
 else:
+    # Each name is imported when it is asked for: whoever wants another edition, or the codec alone,
+    # loads no client of this one; and asyncio takes longer to import than all the rest.
+    _PLACES = {
+        "AsyncMyCobot": "editions.mycobot",
+        "Limits": "limits",
+        "MyCobot": "editions.mycobot",
+        "RetryPolicy": "session.policy",
+        "Sample": "session.sample",
+        "StreamReport": "session.sample",
+        "codec_in_use": "codec",
+    }
 
     def __getattr__(name: str) -> Any:
-        # The asyncio client when it is asked for: asyncio takes longer to import than all of this.
-        if name == "AsyncMyCobot":
-            from cobotwire.editions.mycobot import AsyncMyCobot
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from importlib import import_module
 
-            return AsyncMyCobot
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        module = import_module(f"{__name__}.{_PLACES.get(name, 'errors')}")
+        found = getattr(module, "chosen" if name == "codec_in_use" else name)
+        globals()[name] = found
+        return found
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__})

@@ -8,7 +8,6 @@ attribute. How the records are to be read is said once, in ``codec/reference``.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Literal
 
 from cobotwire.errors import UsageError
@@ -220,6 +219,8 @@ class Table:
         for command in self.commands:
             if command.name == name:
                 return command
+        from difflib import get_close_matches  # only to tell what was wrong
+
         near = get_close_matches(name, [command.name for command in self.commands], n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
         raise UsageError("command", name, f"a command of edition {self.edition}{hint}")

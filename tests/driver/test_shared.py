@@ -127,3 +127,14 @@ def test_a_transport_of_ones_own_needs_nothing_but_the_protocol() -> None:
         return link.written
 
     assert asyncio.run(drive()) == bytes.fromhex("FE FE 02 10 FA") + 3 * ASK
+
+
+def test_who_listens_holds_nobody_up(server: PtyServer) -> None:
+    with MyCobot(server.url) as arm:
+        listening = threading.Thread(target=arm.listen, args=(1.0,))
+        listening.start()
+        time.sleep(0.1)
+        started = time.monotonic()
+        arm.get_angles()
+        assert time.monotonic() - started < 0.5
+        listening.join()

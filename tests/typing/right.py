@@ -1,6 +1,6 @@
 """Code that must type-check."""
 
-from cobotwire import AsyncMyCobot, Limits, MyCobot, RetryPolicy
+from cobotwire import AsyncMyCobot, Limits, MyCobot, RetryPolicy, Sample, StreamReport
 from cobotwire.editions.mycobot import Angles, Axis, Coords, ReferenceFrame, WifiAccount
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 
@@ -31,6 +31,23 @@ def wait(arm: MyCobot280) -> None:
     arm.set_color(1, 2, 3, ack_within=0.5)
     limits = Limits(joints=[(-90, 90), None, None, None, None, None], wider=True)
     MyCobot280("/dev/ttyACM0", limits=limits, retry=RetryPolicy(tries=1)).close()
+
+
+def sample(arm: MyCobot) -> StreamReport:
+    """Samples of several queries."""
+    with arm.stream("get_angles", ("get_encoder", 2), rate=50, timeout=0.1) as stream:
+        for one in stream:
+            seen: Sample = one
+            print(seen.number, one.answered_at - one.asked_at, one["get_encoder", 2])
+    return stream.report
+
+
+async def sample_async(arm: AsyncMyCobot) -> float:
+    """The same with async."""
+    stream = arm.stream("get_angles", rate=50)
+    async for one in stream:
+        print(one.values, one.reading("get_angles").answered_at)
+    return stream.report.reached
 
 
 async def drive_async(port: str) -> float:

@@ -20,9 +20,16 @@ def drive(arm: MyCobot) -> None:
     print(angles)
     arm.power_on(ack_within=1.0)  # wrong
     arm.move_angles([0, 0, 0, 0, 0, 0], 30, 5)  # wrong
+    arm.stream("get_angles")  # wrong
+    arm.stream(("get_encoder", 2), 50)  # wrong
+    arm.stream((2, "get_encoder"), rate=50)  # wrong
+    for sample in arm.stream("get_angles", rate=50):
+        print(sample.angles)  # wrong
 
 
 async def drive_async(arm: AsyncMyCobot) -> None:
     """What is forgotten most."""
     print(arm.get_angles().j1)  # wrong
     await arm.send_angles("000000", 30)  # wrong
+    for sample in arm.stream("get_angles", rate=50):  # wrong
+        print(sample)

@@ -5,17 +5,21 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from cobotwire import codec as codecs
 from cobotwire.driver.aio_line import AsyncLine
 from cobotwire.driver.opening import check_port, opened, seconds, settings
 from cobotwire.driver.watching import Watcher, Watchers
 from cobotwire.errors import LinkError
-from cobotwire.limits import Limits
-from cobotwire.session import Conversation, RetryPolicy
+from cobotwire.session import Conversation, Question, Request, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
+
+if TYPE_CHECKING:
+    from cobotwire.driver.aio_streaming import AsyncStream
+    from cobotwire.limits import Limits
+    from cobotwire.session.sample import Query
 
 
 class AsyncDriver:
@@ -104,6 +108,41 @@ class AsyncDriver:
         """
         return self._watchers.add(watcher)
 
+    def stream(self, *queries: Query, rate: float, timeout: float | None = None) -> AsyncStream:
+        """Samples of what queries answer, so many times a second.
+
+            async for sample in arm.stream("get_angles", "get_coords", rate=20):
+                angles, coords = sample.values
+
+        The arm is asked only when the loop wants a sample, so a slow loop misses samples and heaps
+        up none. A sample that is missed is missed: it is counted in the stream's ``report``, and
+        nothing is caught up. A question is sent once; the next slot asks again anyway. After one
+        that was not answered, the next like it may have to wait: see ``RetryPolicy.grace``.
+
+        Args:
+            queries: names of commands of safety class query; with arguments as a tuple:
+                ``("get_encoder", 2)``.
+            rate: samples a second, above 0 and up to 1000.
+            timeout: seconds that each question has; left out: as in other calls.
+
+        Returns:
+            The stream. Its loop raises LinkError when the link is gone, and nothing else.
+
+        Raises:
+            UsageError: an argument is not allowed, or is no query; nothing was sent.
+        """
+        # Here, not above: few programs stream, and all of them import this.
+        from cobotwire.driver.aio_streaming import AsyncStream
+        from cobotwire.driver.streamed import streamed
+
+        chosen = self._settings.for_stream(timeout)
+
+        async def ask(request: Request) -> Question:
+            return await self._opened().ask(request, chosen.retry, chosen.timeout)
+
+        asked = streamed(type(self), self.table, queries, self._conversation.prepare)
+        return AsyncStream(ask, asked, rate)
+
     async def _tell(
         self,
         name: str,
@@ -126,7 +165,8 @@ class AsyncDriver:
         request = self._conversation.prepare(name, values)
         chosen = self._settings
         wait = chosen.timeout if longest is None else chosen.at_most(longest, request.command)
-        return await self._opened().ask(request, chosen.retry, wait)
+        question = await self._opened().ask(request, chosen.retry, wait)
+        return question.result()
 
     def _opened(self) -> AsyncLine:
         if self._line is None:

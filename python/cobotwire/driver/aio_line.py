@@ -9,7 +9,7 @@ from typing import Any
 
 from cobotwire.driver.watching import Watchers
 from cobotwire.errors import LinkError
-from cobotwire.session import Conversation, Request, RetryPolicy, Ticket
+from cobotwire.session import Conversation, Question, Request, RetryPolicy, Ticket
 from cobotwire.transport import Transport
 from cobotwire.transport.aio import attach
 
@@ -44,19 +44,18 @@ class AsyncLine:
             if order is not None:
                 self._conversation.give_up(order)
 
-    async def ask(
-        self, request: Request, policy: RetryPolicy, wait: float | None
-    ) -> dict[str, Any]:
-        """Ask a question and wait for its reply; gives the reply's fields by name."""
+    async def ask(self, request: Request, policy: RetryPolicy, wait: float | None) -> Question:
+        """Ask a question and wait for its reply; gives the question, which is answered."""
         question = self._conversation.ask(request, time.monotonic(), policy, wait)
         try:
             self._turn()
-            return await self._await(question)
+            await self._await(question)
         finally:
             # A call that was cancelled leaves everything ready for the next one.
             if not question.done:
                 self._conversation.give_up(question)
                 self._turn()
+        return question
 
     def close(self) -> None:
         """Give the link back; whoever waits hears of it."""

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from cobotwire import codec as codecs
 from cobotwire.driver.line import SharedLine
 from cobotwire.driver.opening import opened, seconds, settings
 from cobotwire.driver.watching import Watcher, Watchers
-from cobotwire.limits import Limits
-from cobotwire.session import Conversation, RetryPolicy
+from cobotwire.session import Conversation, Question, Request, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
+
+if TYPE_CHECKING:
+    from cobotwire.driver.streaming import Stream
+    from cobotwire.limits import Limits
+    from cobotwire.session.sample import Query
 
 
 class Driver:
@@ -102,6 +106,41 @@ class Driver:
         """
         self._line.listen(seconds)
 
+    def stream(self, *queries: Query, rate: float, timeout: float | None = None) -> Stream:
+        """Samples of what queries answer, so many times a second.
+
+            for sample in arm.stream("get_angles", "get_coords", rate=20):
+                angles, coords = sample.values
+
+        The arm is asked only when the loop wants a sample, so a slow loop misses samples and heaps
+        up none. A sample that is missed is missed: it is counted in the stream's ``report``, and
+        nothing is caught up. A question is sent once; the next slot asks again anyway. After one
+        that was not answered, the next like it may have to wait: see ``RetryPolicy.grace``.
+
+        Args:
+            queries: names of commands of safety class query; with arguments as a tuple:
+                ``("get_encoder", 2)``.
+            rate: samples a second, above 0 and up to 1000.
+            timeout: seconds that each question has; left out: as in other calls.
+
+        Returns:
+            The stream. Its loop raises LinkError when the link is gone, and nothing else.
+
+        Raises:
+            UsageError: an argument is not allowed, or is no query; nothing was sent.
+        """
+        # Here, not above: few programs stream, and all of them import this.
+        from cobotwire.driver.streamed import streamed
+        from cobotwire.driver.streaming import Stream
+
+        chosen = self._settings.for_stream(timeout)
+
+        def ask(request: Request) -> Question:
+            return self._line.ask(request, chosen.retry, chosen.timeout)
+
+        asked = streamed(type(self), self.table, queries, self._conversation.prepare)
+        return Stream(ask, asked, rate)
+
     def _tell(
         self,
         name: str,
@@ -123,4 +162,4 @@ class Driver:
         request = self._conversation.prepare(name, values)
         chosen = self._settings
         wait = chosen.timeout if longest is None else chosen.at_most(longest, request.command)
-        return self._line.ask(request, chosen.retry, wait)
+        return self._line.ask(request, chosen.retry, wait).result()

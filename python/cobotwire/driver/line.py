@@ -17,7 +17,7 @@ from typing import Any
 
 from cobotwire.driver.watching import Watchers
 from cobotwire.errors import LinkError
-from cobotwire.session import Conversation, Request, RetryPolicy, Ticket
+from cobotwire.session import Conversation, Question, Request, RetryPolicy, Ticket
 from cobotwire.session.conversation import CLEAR_SECONDS
 from cobotwire.transport import Transport
 
@@ -57,12 +57,13 @@ class SharedLine:
             finally:
                 self._resign()
 
-    def ask(self, request: Request, policy: RetryPolicy, wait: float | None) -> dict[str, Any]:
-        """Ask a question and wait for its reply; gives the reply's fields by name."""
+    def ask(self, request: Request, policy: RetryPolicy, wait: float | None) -> Question:
+        """Ask a question and wait for its reply; gives the question, which is answered."""
         with self._state:
             question = self._conversation.ask(request, time.monotonic(), policy, wait)
         # What lies there already is read first, without waiting.
-        return self._await(question, 0.0)
+        self._await(question, 0.0)
+        return question
 
     def listen(self, seconds: float) -> None:
         """Read what comes unasked for so long; the watchers are told of it."""
@@ -70,7 +71,7 @@ class SharedLine:
         while (left := until - time.monotonic()) > 0:
             if self._leads():
                 try:
-                    self._turn(left)
+                    self._turn(min(left, SLICE_SECONDS))
                 finally:
                     self._resign()
             else:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.errors import UsageError
-from cobotwire.limits import Limits, limited
 from cobotwire.session import RetryPolicy
 from cobotwire.table import Command, Table
 from cobotwire.transport import Transport, open_link
+
+if TYPE_CHECKING:
+    from cobotwire.limits import Limits
 
 
 class Settings(NamedTuple):
@@ -24,6 +27,16 @@ class Settings(NamedTuple):
         """The seconds that a command's answer may take, where there are no more than so many."""
         usual = command.deadline_ms / 1000 if self.timeout is None else self.timeout
         return min(longest, usual)
+
+    def for_stream(self, timeout: float | None) -> Settings:
+        """The same for the questions of a stream, which are sent once: the next slot asks again.
+
+        Raises:
+            UsageError: the timeout is not allowed.
+        """
+        seconds("timeout", timeout)
+        retry = replace(self.retry, tries=1)
+        return self._replace(retry=retry, timeout=self.timeout if timeout is None else timeout)
 
 
 def settings(
@@ -42,6 +55,9 @@ def settings(
     if retry is not None and not isinstance(retry, RetryPolicy):
         raise UsageError("retry", retry, "a RetryPolicy")
     if limits is not None:
+        # Here, not above: few programs have limits of their own, and all of them import this.
+        from cobotwire.limits import Limits, limited
+
         if not isinstance(limits, Limits):
             raise UsageError("limits", limits, "Limits")
         table = limited(table, limits)

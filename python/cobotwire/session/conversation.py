@@ -182,13 +182,13 @@ class Conversation:
         # In this order: an interrupt between two of these leaves nobody waiting for ever.
         self._asked = question
         self._queue.remove(question)
-        question.sent = True
+        question.asked_at = now
         return self._host.send(question.request, now, question.wait, question.policy)
 
     def _heal(self, asked: Question) -> None:
         """Ctrl-C came while the state was changed in a driver's thread: another one's question."""
         self._asked = None
-        if asked.sent:
+        if asked.asked_at is not None:
             asked.fail(asked.silence(self._codec, 0.0, 1))
         elif asked not in self._queue:
             self._queue.appendleft(asked)
@@ -211,6 +211,7 @@ class Conversation:
             assert asked is not None, "only a question that was asked ends"
             self._asked = None
             if isinstance(event, Answered):
+                asked.answered_at = now
                 asked.succeed(event.fields)
             elif isinstance(event, Refused):
                 asked.fail(event.error)

@@ -81,10 +81,11 @@ class Question(Ticket):
     Attributes:
         wait: seconds that the arm has to answer, from the first asking; None: the edition's.
         ready_since: when nothing but bytes to be read kept it from being asked.
-        sent: whether it was asked.
+        asked_at: when it was first sent; None: not yet.
+        answered_at: when its reply was received; None: not yet, or never.
     """
 
-    __slots__ = ("policy", "queued_at", "ready_since", "sent", "wait")
+    __slots__ = ("answered_at", "asked_at", "policy", "queued_at", "ready_since", "wait")
 
     def __init__(
         self, request: Request, wait: float | None, policy: RetryPolicy, now: float
@@ -94,7 +95,8 @@ class Question(Ticket):
         self.policy = policy
         self.queued_at = now
         self.ready_since: float | None = None
-        self.sent = False
+        self.asked_at: float | None = None
+        self.answered_at: float | None = None
 
 
 class Order(Ticket):
