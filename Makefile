@@ -6,7 +6,7 @@ EXAMPLES ?= 100
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test rust-test gen bench plots fuzz clean
+.PHONY: help demo test lint python-test rust-test gen bench plots table fuzz clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -38,9 +38,13 @@ gen: .venv/.tools ## write the generated files from spec/
 
 bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py
+	$(BIN)/python bench/driver.py
 	$(BIN)/python bench/resync.py
 	$(BIN)/python bench/lock.py
 	$(BIN)/python bench/speed.py
+	$(BIN)/python bench/imports.py
+	$(BIN)/python bench/streaming.py
+	$(BIN)/python bench/pipelining.py
 
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench
@@ -54,6 +58,9 @@ fuzz: .venv/.tools .venv/.native $(CARGO_FUZZ) ## search for faults, FUZZ_SECOND
 	$(BIN)/python rust/fuzz/run.py $(FUZZ_SECONDS) || status=1; \
 	$(BIN)/python tests/deep.py $(FUZZ_SECONDS) || status=1; \
 	exit $$status
+
+table: .venv/.tools .venv/.native ## what we and pymycobot make of bad lines, into docs/bad-lines.md
+	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target .cargo-tools rust/fuzz/target

@@ -1,28 +1,29 @@
-"""A scripted peer on a real pseudo-terminal: it says what the test tells it to."""
+"""A scripted peer on a real pseudo-terminal or over real TCP: it says what the test tells it to."""
 
 from __future__ import annotations
 
 import os
 import select
+import socket
 import threading
 import time
 import tty
 from collections.abc import Sequence
+from contextlib import suppress
 from types import TracebackType
 from typing import Self
 
 Step = bytes | float | None
 
 
-class ScriptedPeer:
+class _Peer:
     """Waits for a request, then plays its script: bytes are sent, numbers slept, None unplugs."""
+
+    url: str
 
     def __init__(self, *scripts: Sequence[Step]) -> None:
         self.heard = b""
         self._scripts = scripts
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
-        self.url = os.ttyname(self._slave)
         self._stop = False
         self._thread = threading.Thread(target=self._play, daemon=True)
 
@@ -41,7 +42,45 @@ class ScriptedPeer:
         self.unplug()
 
     def unplug(self) -> None:
-        """Close both ends: whoever has the port open hears that it is gone."""
+        """Whoever has the port open hears that it is gone."""
+        raise NotImplementedError
+
+    def say(self, data: bytes) -> None:
+        """Send bytes now."""
+        raise NotImplementedError
+
+    def _hear(self) -> bytes:
+        """What has come; nothing after 20 ms without."""
+        raise NotImplementedError
+
+    def _play(self) -> None:
+        scripts = list(self._scripts)
+        while not self._stop:
+            data = self._hear()
+            self.heard += data
+            if not data:
+                continue
+            for step in scripts.pop(0) if scripts else ():
+                if step is None:
+                    self.unplug()
+                    return
+                if isinstance(step, bytes):
+                    self.say(step)
+                else:
+                    time.sleep(step)
+
+
+class ScriptedPeer(_Peer):
+    """On a pseudo-terminal."""
+
+    def __init__(self, *scripts: Sequence[Step]) -> None:
+        super().__init__(*scripts)
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        self.url = os.ttyname(self._slave)
+
+    def unplug(self) -> None:
+        """Close both ends."""
         for descriptor in (self._master, self._slave):
             if descriptor >= 0:
                 os.close(descriptor)
@@ -51,18 +90,41 @@ class ScriptedPeer:
         """Send bytes now."""
         os.write(self._master, data)
 
-    def _play(self) -> None:
-        scripts = list(self._scripts)
-        while not self._stop:
-            ready, _, _ = select.select([self._master], [], [], 0.02)
-            if not ready:
-                continue
-            self.heard += os.read(self._master, 4096)
-            for step in scripts.pop(0) if scripts else ():
-                if step is None:
-                    self.unplug()
-                    return
-                if isinstance(step, bytes):
-                    self.say(step)
-                else:
-                    time.sleep(step)
+    def _hear(self) -> bytes:
+        ready, _, _ = select.select([self._master], [], [], 0.02)
+        return os.read(self._master, 4096) if ready else b""
+
+
+class ScriptedTcpPeer(_Peer):
+    """Over TCP, for one client; each step of bytes is a packet of its own."""
+
+    def __init__(self, *scripts: Sequence[Step]) -> None:
+        super().__init__(*scripts)
+        self._listening = socket.create_server(("127.0.0.1", 0))
+        self._listening.settimeout(0.02)
+        self._connection: socket.socket | None = None
+        self.url = f"socket://127.0.0.1:{self._listening.getsockname()[1]}"
+
+    def unplug(self) -> None:
+        """Close the connection, and listen no more."""
+        if self._connection is not None:
+            self._connection.close()
+        self._listening.close()
+
+    def say(self, data: bytes) -> None:
+        """Send bytes now."""
+        assert self._connection is not None
+        with suppress(BrokenPipeError, ConnectionResetError):
+            self._connection.sendall(data)
+
+    def _hear(self) -> bytes:
+        with suppress(TimeoutError, ConnectionResetError):
+            if self._connection is None:
+                self._connection, _ = self._listening.accept()
+                self._connection.settimeout(0.02)
+                self._connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            return self._connection.recv(4096)
+        return b""
+
+
+PEERS = {"pty": ScriptedPeer, "tcp": ScriptedTcpPeer}

@@ -8,19 +8,65 @@
 ``codec_in_use()`` says which codec does the work: ``native`` (Rust) or ``reference`` (Python).
 """
 
-from cobotwire.codec import chosen as codec_in_use
-from cobotwire.editions.mycobot import MyCobot
-from cobotwire.errors import CobotwireError, LinkError, ProtocolError, ReplyTimeout, UsageError
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "AsyncMyCobot",
+    "CaptureError",
     "CobotwireError",
+    "Limits",
     "LinkError",
+    "MotionTimeout",
     "MyCobot",
     "ProtocolError",
     "ReplyTimeout",
+    "RetryPolicy",
+    "Sample",
+    "StreamReport",
     "UsageError",
     "__version__",
     "codec_in_use",
 ]
+
+if TYPE_CHECKING:
+    from cobotwire.codec import chosen as codec_in_use
+    from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
+    from cobotwire.errors import (
+        CaptureError,
+        CobotwireError,
+        LinkError,
+        MotionTimeout,
+        ProtocolError,
+        ReplyTimeout,
+        UsageError,
+    )
+    from cobotwire.limits import Limits
+    from cobotwire.session.policy import RetryPolicy
+    from cobotwire.session.sample import Sample, StreamReport
+else:
+    # Each name is imported when it is asked for: whoever wants another edition, or the codec alone,
+    # loads no client of this one; and asyncio takes longer to import than all the rest.
+    _PLACES = {
+        "AsyncMyCobot": "editions.mycobot",
+        "Limits": "limits",
+        "MyCobot": "editions.mycobot",
+        "RetryPolicy": "session.policy",
+        "Sample": "session.sample",
+        "StreamReport": "session.sample",
+        "codec_in_use": "codec",
+    }
+
+    def __getattr__(name: str) -> Any:
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from importlib import import_module
+
+        module = import_module(f"{__name__}.{_PLACES.get(name, 'errors')}")
+        found = getattr(module, "chosen" if name == "codec_in_use" else name)
+        globals()[name] = found
+        return found
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__})

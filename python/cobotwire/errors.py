@@ -1,6 +1,6 @@
 """Everything that can go wrong, sorted by whose fault it is.
 
-One root, four branches, each also the built-in exception that a caller would expect. The
+One root, six branches, each also the built-in exception that a caller would expect. The
 attributes are data; the text is made from them here and nowhere else.
 """
 
@@ -51,28 +51,82 @@ class LinkError(CobotwireError, OSError):
 
     Attributes:
         url: the port or URL in question.
+        detail: what went wrong with it.
+        written: how many bytes of a write that failed had been taken all the same.
     """
 
-    def __init__(self, url: str, detail: str) -> None:
+    def __init__(self, url: str, detail: str, written: int = 0) -> None:
         self.url = url
+        self.detail = detail
+        self.written = written
         super().__init__(f"{url}: {detail}")
 
 
 class ReplyTimeout(CobotwireError, TimeoutError):
-    """Silence: the deadline passed without the answer.
+    """Silence: the deadline passed without the answer, or the acknowledgement that was waited for.
 
     Attributes:
         command: the name of the command that was asked.
         waited: seconds from the request to giving up.
         heard: what came meanwhile instead, one line each.
+        tries: how often it was asked; 0 if it could not be sent without risk of a wrong answer.
+        asked: the call with its arguments, for example ``get_encoder(joint=1)``.
     """
 
-    def __init__(self, command: str, waited: float, heard: tuple[str, ...]) -> None:
+    def __init__(
+        self,
+        command: str,
+        waited: float,
+        heard: tuple[str, ...],
+        tries: int = 1,
+        asked: str = "",
+    ) -> None:
         self.command = command
         self.waited = waited
         self.heard = heard
+        self.tries = tries
+        self.asked = asked or command
         meanwhile = "; ".join(heard) if heard else "nothing"
-        super().__init__(f"no answer to {command} within {waited:.3f} s; heard: {meanwhile}")
+        super().__init__(
+            f"no answer to {self.asked} within {waited:.3f} s, {_often(tries)}; heard: {meanwhile}"
+        )
+
+
+class MotionTimeout(CobotwireError, TimeoutError):
+    """The arm has not come to its target in time, or stands still short of it.
+
+    It is not told to stop: call ``stop()`` where it should.
+
+    Attributes:
+        target: where it should go.
+        waited: seconds from the start of waiting to giving up.
+        standing: whether it stood still at the end; False where that is not known.
+    """
+
+    def __init__(self, target: tuple[float, ...], waited: float, standing: bool) -> None:
+        self.target = target
+        self.waited = waited
+        self.standing = standing
+        how = "stands still short of" if standing else "has not reached"
+        super().__init__(f"the arm {how} {list(target)} after {waited:.1f} s")
+
+
+def _often(tries: int) -> str:
+    return {0: "not asked", 1: "asked once", 2: "asked twice"}.get(tries, f"asked {tries} times")
+
+
+class CaptureError(CobotwireError, ValueError):
+    """A file's fault: a recording that is none, is damaged, or cannot be written on.
+
+    Attributes:
+        name: the file.
+        offset: where in it, in bytes; the beginning of the block in question.
+    """
+
+    def __init__(self, name: str, offset: int, detail: str) -> None:
+        self.name = name
+        self.offset = offset
+        super().__init__(f"{name}: {detail} (at byte {offset})")
 
 
 def _short(value: Any, limit: int = 80) -> str:

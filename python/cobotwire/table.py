@@ -8,13 +8,25 @@ attribute. How the records are to be read is said once, in ``codec/reference``.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Literal
 
 from cobotwire.errors import UsageError
 
 Direction = Literal["request", "reply"]
 Safety = Literal["query", "setting", "motion", "power", "persistent write"]
+Role = Literal[
+    "",
+    "joint targets",
+    "joint target",
+    "coordinate targets",
+    "coordinate target",
+    "reached",
+    "moving",
+    "stop",
+    "joints",
+    "coordinates",
+    "powered",
+]
 FieldKind = Literal["number", "flag", "enum"]
 Check = Literal["footer", "crc16-modbus", "sum"]
 
@@ -119,7 +131,8 @@ class Command:
 
     ``request`` and ``reply`` hold the forms of the message, told apart by their size on the wire;
     the first is the full one. No ``reply`` and no ``text`` means that nothing answers. With ``ack``
-    the reply is an acknowledgement that may come, late or never, and is not waited for.
+    the reply is an acknowledgement that may come, late or never, and is not waited for. ``role`` is
+    what hand-written code knows the command by.
     """
 
     id: int
@@ -135,6 +148,7 @@ class Command:
     notes: tuple[str, ...] = ()
     ack: bool = False
     request_text: TextRequest | None = None
+    role: Role = ""
 
     @property
     def answers(self) -> bool:
@@ -205,6 +219,19 @@ class Table:
         for command in self.commands:
             if command.name == name:
                 return command
+        from difflib import get_close_matches  # only to tell what was wrong
+
         near = get_close_matches(name, [command.name for command in self.commands], n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
         raise UsageError("command", name, f"a command of edition {self.edition}{hint}")
+
+    def in_role(self, role: Role) -> Command:
+        """The first command that has a role.
+
+        Raises:
+            UsageError: none has it.
+        """
+        for command in self.commands:
+            if command.role == role:
+                return command
+        raise UsageError("role", role, f"a role that a command of edition {self.edition} has")

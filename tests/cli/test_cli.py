@@ -56,7 +56,8 @@ def test_the_demo_fails_when_an_answer_is_wrong() -> None:
 def test_help_names_the_verbs_and_the_exit_codes() -> None:
     result = run("--help")
     assert result.returncode == 0
-    for word in ("demo", "call", "decode", "sim", "commands", "Exit codes"):
+    verbs = ("demo", "ports", "doctor", "monitor", "call", "decode", "sim", "replay", "commands")
+    for word in (*verbs, "Exit codes"):
         assert word in result.stdout
 
 

@@ -11,25 +11,7 @@ import pytest
 from cobotwire import MyCobot, UsageError
 from cobotwire.driver import Driver
 from cobotwire.transport import Transport
-
-
-class Recorder:
-    """A link that keeps what is written to it; nothing ever comes back."""
-
-    url = "recorder"
-
-    def __init__(self) -> None:
-        self.written = b""
-
-    def write(self, data: bytes) -> None:
-        self.written += data
-
-    def read(self, timeout: float) -> bytes:
-        return b""
-
-    def close(self) -> None:
-        pass
-
+from links import Recorder
 
 SIX = [0.0] * 6
 

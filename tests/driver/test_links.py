@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import socket
 import termios
 import threading
@@ -92,7 +93,8 @@ def test_a_link_that_another_thread_closes_is_a_link_error(kind: str) -> None:
 
 
 def test_a_fault_of_the_terminal_itself_is_a_link_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    with ScriptedPeer() as peer, MyCobot(peer.url) as arm:
+    # A port that is spied on is written by pyserial's own hands.
+    with ScriptedPeer() as peer, MyCobot(f"spy://{peer.url}") as arm:
 
         def fail(*arguments: object) -> int:
             raise termios.error(5, "Input/output error")
@@ -167,6 +169,8 @@ def test_a_spied_port_works() -> None:
     try:
         with MyCobot(f"spy://{os.ttyname(slave)}", timeout=0.3) as arm:
             os.write(master, bytes.fromhex("FE FE 03 12 00 FA"))
+            # A terminal hands bytes over when it finds the time; only then do they come before.
+            assert select.select([slave], [], [], 5)[0]
             started = time.monotonic()
             with pytest.raises(ReplyTimeout):
                 arm.is_power_on()

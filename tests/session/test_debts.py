@@ -6,8 +6,8 @@ import pytest
 
 from cobotwire.codec.interface import Codec
 from cobotwire.errors import UsageError
-from cobotwire.session import Answered, Expired, HostSession, Unasked
-from cobotwire.session.debts import GRACE_SECONDS
+from cobotwire.session import Answered, Expired, HostSession, Late, Unasked
+from cobotwire.session.policy import GRACE_SECONDS
 
 ENCODER = bytes.fromhex("FE FE 04 3B 08 00 FA")
 MINIMUM_OF_1 = bytes.fromhex("FE FE 05 4A 01 F9 F2 FA")
@@ -44,7 +44,7 @@ def test_a_question_is_held_while_an_answer_like_its_own_is_owed(session: HostSe
 
 def test_the_late_answer_lifts_the_hold(session: HostSession) -> None:
     give_up(session, "get_encoder", 1)
-    assert [type(e) for e in session.receive(ENCODER, 0.15)] == [Unasked]
+    assert [type(e) for e in session.receive(ENCODER, 0.15)] == [Late]
     assert held(session, "get_encoder", 2) is None
     session.request("get_encoder", (2,), now=0.16)
     assert [type(e) for e in session.receive(ENCODER, 0.17)] == [Answered]
@@ -61,7 +61,7 @@ def test_echoed_arguments_tell_answers_apart(session: HostSession) -> None:
     assert held(session, "get_joint_min_angle", 1) == GRACE_SECONDS
     assert held(session, "get_joint_min_angle", 2) is None
     session.request("get_joint_min_angle", (2,), now=0.2)
-    assert [type(e) for e in session.receive(MINIMUM_OF_1, 0.3)] == [Unasked]
+    assert [type(e) for e in session.receive(MINIMUM_OF_1, 0.3)] == [Late]
     assert session.waiting
     assert held(session, "get_joint_min_angle", 1) is None, "it has come"
 

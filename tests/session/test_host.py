@@ -10,7 +10,7 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Noise
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.errors import UsageError
-from cobotwire.session import Answered, Expired, HostSession, Refused, Unasked
+from cobotwire.session import Answered, Expired, HostSession, Late, Refused, Unasked
 
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
@@ -52,7 +52,7 @@ def test_the_deadline_ends_the_wait_once(codec: Codec) -> None:
     assert session.wake(0.2) == [Expired(TABLE.command("get_angles"), 0.0)]
     assert session.wake(9.0) == []
     [late] = session.receive(ANGLES, now=0.3)
-    assert isinstance(late, Unasked)
+    assert isinstance(late, Late)
 
 
 def test_a_frame_that_had_begun_before_the_question_is_not_its_answer(codec: Codec) -> None:

@@ -14,7 +14,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.session import Answered, HostSession, SessionEvent
-from cobotwire.session.debts import GRACE_SECONDS
+from cobotwire.session.policy import GRACE_SECONDS
 
 REFERENCE = codecs.load(TABLE, "reference")
 TIMEOUT = 0.1

@@ -1,7 +1,8 @@
 """Code that must type-check."""
 
-from cobotwire import MyCobot
+from cobotwire import AsyncMyCobot, Limits, MyCobot, RetryPolicy, Sample, StreamReport
 from cobotwire.editions.mycobot import Angles, Axis, Coords, ReferenceFrame, WifiAccount
+from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 
 
 def drive(arm: MyCobot) -> None:
@@ -21,3 +22,39 @@ def drive(arm: MyCobot) -> None:
     with MyCobot("/dev/ttyACM0", baudrate=1_000_000) as other:
         encoder: int = other.get_encoder(2)
         print(encoder)
+
+
+def wait(arm: MyCobot280) -> None:
+    """Motions that are waited for, and acknowledgements."""
+    arm.move_angles([0, 0, 0, 0, 0, 0], 30, timeout=5)
+    arm.move_coords(arm.get_coords(), 30, wait=False)
+    arm.set_color(1, 2, 3, ack_within=0.5)
+    limits = Limits(joints=[(-90, 90), None, None, None, None, None], wider=True)
+    MyCobot280("/dev/ttyACM0", limits=limits, retry=RetryPolicy(tries=1)).close()
+
+
+def sample(arm: MyCobot) -> StreamReport:
+    """Samples of several queries."""
+    with arm.stream("get_angles", ("get_encoder", 2), rate=50, timeout=0.1) as stream:
+        for one in stream:
+            seen: Sample = one
+            print(seen.number, one.answered_at - one.asked_at, one["get_encoder", 2])
+    return stream.report
+
+
+async def sample_async(arm: AsyncMyCobot) -> float:
+    """The same with async."""
+    stream = arm.stream("get_angles", rate=50)
+    async for one in stream:
+        print(one.values, one.reading("get_angles").answered_at)
+    return stream.report.reached
+
+
+async def drive_async(port: str) -> float:
+    """The same with await."""
+    async with AsyncMyCobot(port) as arm:
+        await arm.send_angles(await arm.get_angles(), 30)
+    async with AsyncMyCobot280(port, timeout=1.0) as other:
+        await other.move_angles([0, 0, 0, 0, 0, 0], 30)
+        angles: Angles = await arm.get_angles()
+    return angles.j1

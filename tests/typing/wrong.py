@@ -1,6 +1,7 @@
 """Code that must not type-check: each line that ends in `# wrong` is an error, and no other."""
 
-from cobotwire import MyCobot
+import cobotwire
+from cobotwire import AsyncMyCobot, MyCobot
 
 
 def drive(arm: MyCobot) -> None:
@@ -15,4 +16,20 @@ def drive(arm: MyCobot) -> None:
     arm.get_angels()  # wrong
     angles: list[float] = arm.get_angles()  # wrong
     print(arm.get_coords().w)  # wrong
+    print(cobotwire.Nothing)  # wrong
     print(angles)
+    arm.power_on(ack_within=1.0)  # wrong
+    arm.move_angles([0, 0, 0, 0, 0, 0], 30, 5)  # wrong
+    arm.stream("get_angles")  # wrong
+    arm.stream(("get_encoder", 2), 50)  # wrong
+    arm.stream((2, "get_encoder"), rate=50)  # wrong
+    for sample in arm.stream("get_angles", rate=50):
+        print(sample.angles)  # wrong
+
+
+async def drive_async(arm: AsyncMyCobot) -> None:
+    """What is forgotten most."""
+    print(arm.get_angles().j1)  # wrong
+    await arm.send_angles("000000", 30)  # wrong
+    for sample in arm.stream("get_angles", rate=50):  # wrong
+        print(sample)

@@ -157,6 +157,7 @@ def _command(family: str, command: Command) -> dict[str, Any]:
             "fields": [name for name, _ in command.request_text.fields],
             "suffix": command.request_text.suffix,
         },
+        "role": command.role,
     }
 
 

@@ -11,7 +11,11 @@ from cobotwire.cli.call import call
 from cobotwire.cli.commands import commands
 from cobotwire.cli.decode import decode
 from cobotwire.cli.demo import demo
+from cobotwire.cli.doctor import doctor
 from cobotwire.cli.failure import EPILOG, failures
+from cobotwire.cli.monitor import monitor
+from cobotwire.cli.ports import ports_
+from cobotwire.cli.replay import replay
 from cobotwire.cli.sim import sim
 from cobotwire.editions import DEFAULT
 
@@ -51,5 +55,5 @@ def app(ctx: click.Context, edition: str) -> None:
     ctx.obj = edition
 
 
-for verb in (demo, call, decode, sim, commands):
+for verb in (demo, ports_, doctor, monitor, call, decode, sim, replay, commands):
     app.add_command(verb)

@@ -10,6 +10,7 @@ import click
 
 from cobotwire import editions
 from cobotwire.cli.arguments import parse
+from cobotwire.cli.link import link_options, linked
 
 
 # A negative number looks like an option to click; as none is known by that name, it is passed on.
@@ -17,7 +18,7 @@ from cobotwire.cli.arguments import parse
 @click.argument("name")
 @click.argument("values", nargs=-1, metavar="[ARGS]...")
 @click.option("--port", required=True, help="A serial port, or a URL such as socket://host:9000.")
-@click.option("--baudrate", type=int, help="Bits a second [default: the edition's].")
+@link_options
 @click.option("--timeout", type=float, help="Seconds to wait [default: the command's].")
 @click.option("--json", "as_json", is_flag=True, help="Print the answer as JSON.")
 @click.pass_obj
@@ -27,6 +28,7 @@ def call(
     values: tuple[str, ...],
     port: str,
     baudrate: int | None,
+    record: str | None,
     timeout: float | None,
     as_json: bool,
 ) -> None:
@@ -42,12 +44,12 @@ def call(
     package = editions.load(edition)
     command = package.TABLE.command(name)
     arguments = parse(command, values)
-    with package.CLIENT(port, baudrate=baudrate, timeout=timeout) as arm:
-        result = getattr(arm, name)(*arguments)
+    with linked(port, package.TABLE, baudrate, record) as link:
+        result = getattr(package.CLIENT(link, timeout=timeout), name)(*arguments)
     if as_json:
         click.echo(json.dumps({"command": name, "result": plain(result)}))
     elif result is not None:
-        click.echo(_words(result))
+        click.echo(in_words(result))
 
 
 def plain(value: Any) -> Any:
@@ -59,7 +61,8 @@ def plain(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _words(value: Any) -> str:
+def in_words(value: Any) -> str:
+    """A result for people, on one line."""
     if hasattr(value, "_asdict"):
         return "  ".join(f"{name}={part}" for name, part in value._asdict().items())
     return value.name if isinstance(value, IntEnum) else str(value)

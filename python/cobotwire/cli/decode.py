@@ -14,13 +14,13 @@ from rich.progress import Progress
 
 from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.cli import show
+from cobotwire.capture import CaptureReader
+from cobotwire.cli.recorded import capture_in, tell_the_end
 from cobotwire.cli.source import Form, Source, open_source
+from cobotwire.cli.strand import Look, Strand, Strands
 from cobotwire.cli.tally import Tally
 from cobotwire.codec.interface import Framer
-from cobotwire.diagnose import Diagnoser, Item
-from cobotwire.explain import DIRECTIONS
-from cobotwire.table import Direction
+from cobotwire.diagnose import Item
 
 # A bar is worth its place where a file takes some seconds.
 LONG_FILE = 4 << 20
@@ -62,35 +62,31 @@ def decode(
     other single word is a FILE, and - is the standard input. A word that is hex and the name of a
     file is refused: say ./NAME or 0xNAME.
 
-    A FILE or - holds raw bytes or hex text. It is hex if its first 512 bytes are nothing but hex;
-    other plain text is refused, so that it is not taken for raw bytes by mistake. --raw and --hex
-    say it without guessing.
+    A FILE that is a recording (pcapng, see --record) is read packet by packet: each frame has its
+    time, and is read in the direction in which it went; --direction is for packets that tell none.
+
+    Any other FILE or - holds raw bytes or hex text. It is hex if its first 512 bytes are nothing
+    but hex; other plain text is refused, so that it is not taken for raw bytes by mistake. --raw
+    and --hex say it without guessing.
 
     \b
       cobotwire decode FE FE 06 21 01 00 1D 14 FA
       cobotwire decode capture.bin --summary
+      cobotwire decode arm.pcapng
       cat capture.hex | cobotwire decode - --hex --json
 
     Exit code 1 if there is anything among the bytes that is no legal frame; 141 if whoever read
     the output went away.
     """  # noqa: D301  (\b is the control character by which click keeps the lines)
-    table = editions.load(edition).TABLE
-    codec = codecs.load(table)
-    directions: tuple[Direction, ...] = tuple(d for d in DIRECTIONS if direction in (d, "both"))
-    source = open_source(words, form)
-    read = show.reader(codec, directions)
-    shown = show.on_a_line(read, colour=_colour())
-    if as_json:
-        shown = show.as_json(read)
-    elif each_byte or source.words:
-        shown = show.byte_by_byte(read, table.frame)
-    framer = codec.framer(direction, accept_unknown=accept_unknown)
-    tally = Tally(read, framer)
+    look = Look(edition, direction, accept_unknown, each_byte, as_json, _colour())
+    capture = capture_in(words) if form is None else None
+    framers: list[Framer] = []
+    tally = Tally(framers)
     try:
-        with _progress(source, quiet) as blocks:
-            for items in _diagnosed(framer, Diagnoser(codec, direction), blocks, tally):
-                if items and not quiet:
-                    _write("\n".join(map(shown, items)))
+        if capture is None:
+            _bytes(open_source(words, form), look, framers, tally, quiet)
+        else:
+            _packets(capture, look, framers, tally, quiet)
     finally:
         # Also what was counted until Ctrl-C.
         if summary:
@@ -98,13 +94,35 @@ def decode(
     sys.exit(0 if tally.clean else 1)
 
 
-def _diagnosed(
-    framer: Framer, diagnoser: Diagnoser, blocks: Iterator[bytes], tally: Tally
-) -> Iterator[list[Item]]:
-    """The frames and findings of each block, counted."""
-    for block in blocks:
-        yield tally.count(diagnoser.feed(framer.feed(block)))
-    yield tally.count(diagnoser.feed(framer.flush()) + diagnoser.flush())
+def _bytes(source: Source, look: Look, framers: list[Framer], tally: Tally, quiet: bool) -> None:
+    """Bytes that have no times, and all one direction."""
+    codec = codecs.load(editions.load(look.edition).TABLE)
+    strand = Strand(codec, look.direction, look._replace(each_byte=look.each_byte or source.words))
+    framers.append(strand.framer)
+
+    def take(items: list[Item]) -> None:
+        tally.count(items, strand.read)
+        if items and not quiet:
+            _write("\n".join(map(strand.show, items)))
+
+    with _progress(source, quiet) as blocks:
+        for block in blocks:
+            take(strand.feed(block))
+        take(strand.flush())
+
+
+def _packets(
+    capture: CaptureReader, look: Look, framers: list[Framer], tally: Tally, quiet: bool
+) -> None:
+    """A recording: each direction on its own, with its times."""
+    strands = Strands(capture, look)
+    with capture:
+        for strand, items, start in strands.items():
+            framers[:] = [known.framer for known in strands.all.values()]
+            tally.count(items, strand.read)
+            if items and not quiet:
+                _write("\n".join(strand.shown(item, start) for item in items))
+        tell_the_end(capture)
 
 
 def _write(text: str) -> None:

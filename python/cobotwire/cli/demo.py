@@ -75,13 +75,13 @@ class _Line(NamedTuple):
 
 def _lines(traffic: tuple[Traffic, ...]) -> Iterator[_Line]:
     codec = codecs.load(TABLE)
-    for moment, direction, data in traffic:
-        arrow, way = (">", DIRECTIONS[:1]) if direction == "sent" else ("<", DIRECTIONS[1:])
-        for explained in explain(codec, data, way):
+    for one in traffic:
+        arrow, way = (">", DIRECTIONS[:1]) if one.direction == "sent" else ("<", DIRECTIONS[1:])
+        for explained in explain(codec, one.data, way):
             messages = [r.message for r in explained.readings if r.message is not None]
             command = messages[0].command if messages else None
             meaning = summary(messages[0]) if messages else "noise"
-            yield _Line(moment, arrow, explained.event.data, command, meaning)
+            yield _Line(one.time, arrow, explained.event.data, command, meaning)
 
 
 def _worth_showing(lines: Sequence[_Line]) -> list[bool]:

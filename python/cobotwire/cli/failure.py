@@ -8,18 +8,27 @@ from contextlib import contextmanager
 
 import click
 
-from cobotwire.errors import CobotwireError, LinkError, ProtocolError, ReplyTimeout, UsageError
+from cobotwire.errors import (
+    CaptureError,
+    CobotwireError,
+    LinkError,
+    ProtocolError,
+    ReplyTimeout,
+    UsageError,
+)
 
 CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (UsageError, 2),
     (LinkError, 3),
     (ReplyTimeout, 4),
     (ProtocolError, 5),
+    (CaptureError, 6),
 )
 
 EPILOG = (
     "Exit codes: 0 done; 1 the answer is no (a wrong answer, an illegal frame); 2 the call is "
-    "wrong; 3 the link failed; 4 no reply; 5 an illegal reply; 130 interrupted."
+    "wrong; 3 the link failed; 4 no reply; 5 an illegal reply; 6 a damaged recording; "
+    "130 interrupted."
 )
 
 

@@ -113,18 +113,19 @@ def _reading(frame: FrameFormat, data: bytes, reading: Reading) -> list[str]:
 
 def as_json(read: Reader) -> Show:
     """One JSON object an event."""
+    return lambda item: json.dumps(as_object(read, item))
 
-    def show(item: Item) -> str:
-        data = item.data
-        common = {"offset": item.offset, "data": data.hex(" ").upper()}
-        said = {"readings": [_reading_json(reading) for reading in read(data)]}
-        if isinstance(item, Frame):
-            legal = any(reading.message for reading in read(data))
-            return json.dumps({"kind": "frame", **common, "legal": legal, **said})
-        noise = {"kind": "noise", **common, "legal": False, "reason": item.reason}
-        return json.dumps({**noise, **said, **_finding_json(item)})
 
-    return show
+def as_object(read: Reader, item: Item) -> dict[str, Any]:
+    """An event as JSON knows it."""
+    data = item.data
+    common = {"offset": item.offset, "data": data.hex(" ").upper()}
+    said = {"readings": [_reading_json(reading) for reading in read(data)]}
+    if isinstance(item, Frame):
+        legal = any(reading.message for reading in read(data))
+        return {"kind": "frame", **common, "legal": legal, **said}
+    noise = {"kind": "noise", **common, "legal": False, "reason": item.reason}
+    return {**noise, **said, **_finding_json(item)}
 
 
 def _finding_json(finding: Finding) -> dict[str, Any]:

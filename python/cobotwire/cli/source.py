@@ -48,7 +48,7 @@ def open_source(words: Sequence[str], form: Form | None) -> Source:
     """
     name = words[0]
     if form is None and name != "-":
-        data = _hex_words(words)
+        data = hex_words(words)
         if data is not None:
             if len(words) == 1 and os.path.exists(name):
                 raise UsageError("WORDS", name, f"./{name} for the file, 0x{name} for the bytes")
@@ -61,7 +61,7 @@ def open_source(words: Sequence[str], form: Form | None) -> Source:
     return Source(_read(stream, name, form), size, words=False)
 
 
-def _hex_words(words: Sequence[str]) -> bytes | None:
+def hex_words(words: Sequence[str]) -> bytes | None:
     """The bytes, if the words are hex: no pair is torn by a blank."""
     text = " ".join(words).encode(errors="replace")
     if not _HEX.fullmatch(text):

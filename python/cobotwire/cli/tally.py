@@ -13,9 +13,8 @@ from cobotwire.diagnose import Item, Summary
 class Tally:
     """Counts of a stream; small, however long that is."""
 
-    def __init__(self, read: Reader, framer: Framer) -> None:
-        self._read = read
-        self._framer = framer
+    def __init__(self, framers: list[Framer]) -> None:
+        self._framers = framers
         self._frames: Counter[str] = Counter()
         self._illegal = 0
         self._findings = Summary()
@@ -23,29 +22,42 @@ class Tally:
     @property
     def clean(self) -> bool:
         """Whether there was nothing but legal frames."""
-        return not self._framer.counters.noise and not self._illegal
+        return not self._noise() and not self._illegal
 
-    def count(self, items: list[Item]) -> list[Item]:
+    def count(self, items: list[Item], read: Reader) -> list[Item]:
         """Count frames by name, and findings; give them back."""
         for item in items:
-            self._count_item(item)
+            self._count_item(item, read)
         return items
 
-    def _count_item(self, item: Item) -> None:
+    def _noise(self) -> Counter[str]:
+        noise: Counter[str] = Counter()
+        for framer in self._framers:
+            noise.update(framer.counters.noise)
+        return noise
+
+    def _count_item(self, item: Item, read: Reader) -> None:
         if not isinstance(item, Frame):
             self._findings.add(item)
             return
-        found = self._read(item.data)
+        found = read(item.data)
         message = found[0].message if found else None
         self._illegal += message is None
         name = "illegal value or unknown id" if message is None else message.command.name
         self._frames[f"0x{item.command:02X} {name}"] += 1
 
+    @property
+    def _bytes(self) -> int:
+        return sum(framer.counters.bytes for framer in self._framers)
+
+    @property
+    def _resyncs(self) -> int:
+        return sum(framer.counters.resyncs for framer in self._framers)
+
     def lines(self) -> str:
         """The counts for people."""
-        counters, noise = self._framer.counters, Counter(self._framer.counters.noise)
-        frames = f"{self._frames.total()} frames, {counters.resyncs} resyncs"
-        lines = [f"{counters.bytes} bytes, {frames}"]
+        noise = self._noise()
+        lines = [f"{self._bytes} bytes, {self._frames.total()} frames, {self._resyncs} resyncs"]
         lines += [f"  {count:>10} x {name}" for name, count in self._frames.most_common()]
         lines.append(f"{noise.total()} bytes of noise")
         lines += [f"  {count:>10} {reason}" for reason, count in noise.most_common()]
@@ -57,15 +69,14 @@ class Tally:
 
     def as_json(self) -> str:
         """The counts as one JSON object."""
-        counters = self._framer.counters
         return json.dumps(
             {
                 "kind": "summary",
-                "bytes": counters.bytes,
+                "bytes": self._bytes,
                 "frames": dict(self._frames),
-                "noise": dict(counters.noise),
+                "noise": dict(self._noise()),
                 "findings": dict(self._findings.kinds),
-                "resyncs": counters.resyncs,
+                "resyncs": self._resyncs,
                 "diagnosis": str(self._findings),
             }
         )

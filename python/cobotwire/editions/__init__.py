@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import sys
-from difflib import get_close_matches
-from importlib import import_module
-from pathlib import Path
-from pkgutil import iter_modules
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
-from cobotwire.driver import Driver
 from cobotwire.errors import UsageError
-from cobotwire.table import Table
+
+if TYPE_CHECKING:
+    from cobotwire.driver import Driver
+    from cobotwire.driver.aio import AsyncDriver
+    from cobotwire.table import Table
 
 DEFAULT = "mycobot"
 
@@ -21,10 +19,13 @@ class Edition(Protocol):
 
     TABLE: Table
     CLIENT: type[Driver]
+    ASYNC_CLIENT: type[AsyncDriver]
 
 
 def names() -> list[str]:
     """The editions that come with cobotwire."""
+    from pkgutil import iter_modules
+
     return sorted(module.name for module in iter_modules(__path__) if module.ispkg)
 
 
@@ -36,6 +37,11 @@ def load(name: str = DEFAULT) -> Edition:
     Raises:
         UsageError: there is no such edition, or the package is none.
     """
+    # Here, not above: whoever imports an edition by its name runs this module, and needs no search.
+    import sys
+    from importlib import import_module
+    from pathlib import Path
+
     if name in names():
         return cast(Edition, import_module(f"cobotwire.editions.{name}"))
     folder = Path(name)
@@ -45,6 +51,8 @@ def load(name: str = DEFAULT) -> Edition:
     try:
         package = import_module(name)
     except (ModuleNotFoundError, ValueError, TypeError):
+        from difflib import get_close_matches
+
         near = get_close_matches(name, names(), n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
         allowed = f"one of {', '.join(names())}, or a package that cobotwire-gen build made{hint}"

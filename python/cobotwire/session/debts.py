@@ -1,4 +1,4 @@
-"""Answers that are still owed: to questions that were given up.
+"""Answers that are still owed: to questions that were given up, or asked more than once.
 
 The protocol has no sequence numbers, so an answer that comes late looks just like the answer to the
 next question of the same command. Hence that question waits until the old answer has come, or has
@@ -13,9 +13,6 @@ from cobotwire.codec.interface import Codec, Frame
 from cobotwire.errors import ProtocolError
 from cobotwire.session.request import Request, fits, told_apart
 
-# A reply was seen 727 ms after its request on a real line; none later.
-GRACE_SECONDS = 1.0
-
 
 class _Debt(NamedTuple):
     request: Request
@@ -23,23 +20,24 @@ class _Debt(NamedTuple):
 
 
 class Debts:
-    """What is owed; a few entries at most, since each is forgotten after the grace."""
+    """What is owed; a few entries at most, since each is forgotten when it has had its time."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
         self._debts: list[_Debt] = []
 
-    def owe(self, request: Request, asked_at: float) -> None:
-        """A question was given up; its answer may still come."""
-        self._debts.append(_Debt(request, asked_at + GRACE_SECONDS))
+    def owe(self, request: Request, until: float) -> None:
+        """An answer to this request may still come until then."""
+        self._debts.append(_Debt(request, until))
 
     def forget(self, now: float) -> None:
         """Drop what has had its time."""
-        self._debts = [debt for debt in self._debts if debt.until > now]
+        if self._debts:
+            self._debts = [debt for debt in self._debts if debt.until > now]
 
     def hold_until(self, request: Request) -> float | None:
         """Until when an owed answer could be taken for this request's; None: none could."""
-        if not request.command.answers:
+        if not self._debts or not request.command.answers:
             return None
         alike = (d.until for d in self._debts if not told_apart(d.request, request))
         return max(alike, default=None)
@@ -48,12 +46,13 @@ class Debts:
         """Whether an answer with this id is owed."""
         return any(debt.request.command.id == command for debt in self._debts)
 
-    def settle(self, frame: Frame) -> None:
-        """A frame came that answers nothing that waits: it may be what is owed, oldest first."""
+    def settle(self, frame: Frame) -> Request | None:
+        """A frame came that answers nothing that waits: is it what is owed? Oldest first."""
         for index, debt in enumerate(self._debts):
             if debt.request.command.id == frame.command and self._pays(frame, debt.request):
                 del self._debts[index]
-                return
+                return debt.request
+        return None
 
     def _pays(self, frame: Frame, request: Request) -> bool:
         if frame.data == request.frame:

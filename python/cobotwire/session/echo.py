@@ -13,32 +13,62 @@ from cobotwire.codec.interface import Frame, Noise
 from cobotwire.session.request import Request
 
 
+class _Sent:
+    """A request that went out: copies of it may come from ``since`` of the stream on."""
+
+    __slots__ = ("copies", "frame", "since")
+
+    def __init__(self, frame: bytes, since: int) -> None:
+        self.frame = frame
+        self.since = since
+        self.copies = 1
+
+
 class EchoWatch:
-    """Looks for copies of the request that was sent last; ``proven`` once the line echoes."""
+    """Looks for copies of the last question and the last order; ``proven`` once the line echoes.
+
+    Both are kept, since an order may go out while a question waits.
+    """
 
     def __init__(self) -> None:
         self.proven = False
-        self._sent: Request | None = None
-        self._since = 0
-        self._copied = False
+        self._question: _Sent | None = None
+        self._order: _Sent | None = None
         self._noise = b""
 
-    def sent(self, request: Request, offset: int) -> None:
+    def sent(self, request: Request, offset: int, *, again: bool = False) -> None:
         """A request goes out; what comes from ``offset`` of the stream on may be its copy."""
-        self._sent, self._since, self._copied, self._noise = request, offset, False, b""
+        if again and self._question is not None:
+            self._question.copies += 1
+        elif request.command.answers:
+            self._question = _Sent(request.frame, offset)
+        else:
+            self._order = _Sent(request.frame, offset)
+        if not self.proven:
+            self._noise = b""
 
     def hear_noise(self, noise: Noise) -> None:
         """Most requests are no legal replies, so that their copies come as noise."""
-        if self._sent is None or self.proven:
+        if self.proven:
             return
-        self._noise += noise.data[max(0, self._since - noise.offset) :]
-        self.proven = self._sent.frame in self._noise
-        self._noise = self._noise[-len(self._sent.frame) :]
+        watched = [sent for sent in (self._question, self._order) if sent is not None]
+        if not watched:
+            return
+        since = min(sent.since for sent in watched)
+        self._noise += noise.data[max(0, since - noise.offset) :]
+        self.proven = any(sent.frame in self._noise for sent in watched)
+        self._noise = self._noise[-max(len(sent.frame) for sent in watched) :]
 
     def is_copy(self, frame: Frame) -> bool:
-        """Whether this is the first frame that is a copy. A second one was said by the arm."""
+        """Whether this is a copy; one for each time of sending. A further one the arm said."""
         self._noise = b""
-        if self._sent is None or self._copied or frame.offset < self._since:
-            return False
-        self._copied = frame.data == self._sent.frame
-        return self._copied
+        for sent in (self._question, self._order):
+            if (
+                sent is not None
+                and sent.copies
+                and frame.offset >= sent.since
+                and frame.data == sent.frame
+            ):
+                sent.copies -= 1
+                return True
+        return False

@@ -10,11 +10,16 @@ from cobotwire.table import Command
 
 
 class Answered(NamedTuple):
-    """The reply that was waited for; ``message`` is None where it was text outside any frame."""
+    """The reply that was waited for.
+
+    ``message`` is None where it was text outside any frame. ``frame`` is None where its bytes were
+    told before: as noise, which a text is, or as :class:`Echoed`.
+    """
 
     command: Command
     fields: dict[str, Any]
     message: Message | None
+    frame: Frame | None = None
 
 
 class Refused(NamedTuple):
@@ -22,10 +27,26 @@ class Refused(NamedTuple):
 
     command: Command
     error: ProtocolError
+    frame: Frame | None = None
+
+
+class Late(NamedTuple):
+    """The reply to a question that was given up, or was answered already when asked again."""
+
+    command: Command
+    frame: Frame
+
+
+class Acknowledged(NamedTuple):
+    """The acknowledgement of an order."""
+
+    command: Command
+    message: Message
+    frame: Frame
 
 
 class Unasked(NamedTuple):
-    """A legal frame that answers nothing that waits now."""
+    """A legal frame that answers nothing."""
 
     frame: Frame
 
@@ -40,10 +61,11 @@ class Echoed(NamedTuple):
 
 
 class Expired(NamedTuple):
-    """The deadline passed."""
+    """The deadline passed; the question was asked ``tries`` times, first at ``asked_at``."""
 
     command: Command
     asked_at: float
+    tries: int = 1
 
 
-SessionEvent = Answered | Refused | Unasked | Echoed | Expired | Noise
+SessionEvent = Answered | Refused | Late | Acknowledged | Unasked | Echoed | Expired | Noise

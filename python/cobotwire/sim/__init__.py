@@ -1,6 +1,7 @@
 """A simulated arm: state for every command, on a real pseudo-terminal or in memory."""
 
 from cobotwire.sim.arm import SimulatedArm
-from cobotwire.sim.pty import PtyServer
+from cobotwire.sim.pty import PtyPort, PtyServer
+from cobotwire.sim.replayed import Heard, ReplayedArm
 
-__all__ = ["PtyServer", "SimulatedArm"]
+__all__ = ["Heard", "PtyPort", "PtyServer", "ReplayedArm", "SimulatedArm"]

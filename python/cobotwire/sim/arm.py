@@ -15,6 +15,8 @@ from cobotwire.table import Command, Field, Table
 
 # A joint's limit lies inside half a turn; what is wider is only what the wire can say.
 HALF_TURN = 180.0
+# A request that stands still this long is given up, so that the next one is not taken for its rest.
+IDLE_SECONDS = 0.2
 
 Clock = Callable[[], float]
 Watch = Callable[[DeviceEvent, bytes], None]
@@ -54,6 +56,11 @@ class SimulatedArm:
     def pending(self) -> int:
         """Bytes of a request that is not whole yet."""
         return self._session.pending
+
+    @property
+    def wait(self) -> float | None:
+        """In how many seconds :meth:`flush` must be called if nothing is heard; None: never."""
+        return IDLE_SECONDS if self.pending else None
 
     def receive(self, data: bytes) -> bytes:
         """Hear ``data``; gives what the arm answers at once."""

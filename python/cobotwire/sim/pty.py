@@ -1,4 +1,4 @@
-"""The simulated arm on a pseudo-terminal, for any program that opens a serial port."""
+"""A simulated arm, or whatever answers, on a pseudo-terminal: a port that any program opens."""
 
 from __future__ import annotations
 
@@ -8,23 +8,40 @@ import threading
 import tty
 from collections import deque
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 from cobotwire.sim.arm import SimulatedArm
 
-# A request that stands still this long is given up, so that the next one is not taken for its rest.
-IDLE_SECONDS = 0.2
 # Bytes of answers that wait for a client to read; beyond that the oldest answers are lost, as a
 # serial line without flow control loses them.
 UNREAD_LIMIT = 4096
 
 
-class PtyServer:
-    """Serves an arm on a pty while its ``with`` block runs; ``url`` is the port to open."""
+class Peer(Protocol):
+    """Something that answers; bytes in, bytes out."""
 
-    def __init__(self, arm: SimulatedArm) -> None:
-        self.arm = arm
-        self._stop, self._stopper = os.pipe()
+    @property
+    def wait(self) -> float | None:
+        """In how many seconds :meth:`flush` must be called if nothing is heard; None: never."""
+        ...
+
+    def receive(self, data: bytes) -> bytes:
+        """Hear ``data``; gives what is to be answered at once."""
+        ...
+
+    def flush(self) -> bytes:
+        """Time has passed; gives what is to be answered now."""
+        ...
+
+
+class PtyPort:
+    """Serves a peer on a pty while its ``with`` block runs; ``url`` is the port to open."""
+
+    def __init__(self, peer: Peer) -> None:
+        self._peer = peer
+        # A byte written to ``stopper`` ends :meth:`serve`.
+        self._stop, self.stopper = os.pipe()
+        os.set_blocking(self.stopper, False)
         self._master, self._slave = os.openpty()
         # Raw, or the terminal would echo the requests and eat some of their bytes. The slave stays
         # open here, so that a client may come and go.
@@ -52,15 +69,15 @@ class PtyServer:
     def serve(self) -> None:
         """Answer until :meth:`stop` is called."""
         while True:
-            wait = IDLE_SECONDS if self.arm.pending else None
+            wait = self._peer.wait
             writing = [self._master] if self._unread else []
             ready, writable, _ = select.select([self._master, self._stop], writing, [], wait)
             if self._stop in ready:
                 return
             if self._master in ready:
-                self._answer(self.arm.receive(os.read(self._master, 4096)))
+                self._answer(self._peer.receive(os.read(self._master, 4096)))
             elif not writable:
-                self._answer(self.arm.flush())
+                self._answer(self._peer.flush())
             if self._unread:
                 self._write()
 
@@ -81,9 +98,17 @@ class PtyServer:
 
     def stop(self) -> None:
         """End :meth:`serve`; may be called from another thread or a signal handler."""
-        os.write(self._stopper, b"x")
+        os.write(self.stopper, b"x")
 
     def close(self) -> None:
         """Give the pty back; whoever has it open hears that the port is gone."""
-        for descriptor in (self._master, self._slave, self._stop, self._stopper):
+        for descriptor in (self._master, self._slave, self._stop, self.stopper):
             os.close(descriptor)
+
+
+class PtyServer(PtyPort):
+    """Serves a simulated arm."""
+
+    def __init__(self, arm: SimulatedArm) -> None:
+        super().__init__(arm)
+        self.arm = arm

@@ -8,7 +8,7 @@ from cobotwire_codegen.build.text import build_text
 from cobotwire_codegen.build.types import Types, disputes
 from cobotwire_codegen.errors import Place, Problem
 from cobotwire_codegen.load import Node
-from cobotwire_codegen.model import SAFETY, Command, Family, Form
+from cobotwire_codegen.model import ROLES, SAFETY, Command, Family, Form
 from cobotwire_codegen.reader import Reader
 
 
@@ -74,6 +74,7 @@ def _command(
         title=reader.text("title"),
         doc=reader.text("doc"),
         safety=reader.one_of("safety", SAFETY),
+        role=reader.one_of("role", ROLES, ""),
         source=reader.lines("source"),
         deadline_ms=reader.positive("deadline_ms", deadline_ms),
         requests=build_forms(reader, "request", types) or ((),),

@@ -9,15 +9,42 @@ from cobotwire_codegen.model import Edition, Enum, Value
 
 # What the generated code itself calls by these names.
 RESERVED_FIELDS = frozenset(
-    {"self", "int", "float", "bool", "str", "tuple", "reply", "given", "to_degrees", "to_radians"}
+    {
+        "ack_within",
+        "bool",
+        "float",
+        "given",
+        "int",
+        "reply",
+        "self",
+        "str",
+        "to_degrees",
+        "to_radians",
+        "tuple",
+    }
 )
 # What every client is and can beside its commands.
-RESERVED_COMMANDS = frozenset({"close", "codec", "table"})
+RESERVED_COMMANDS = frozenset(
+    {
+        "close",
+        "codec",
+        "listen",
+        "move_angles",
+        "move_coords",
+        "open",
+        "table",
+        "wait_until_reached",
+        "watch",
+    }
+)
 # A named tuple's own methods, and the types that stand in its annotations.
 RESERVED_ITEMS = frozenset({"count", "index", "int", "float", "bool", "str", "tuple"})
 RESERVED_FAMILIES = frozenset({"types"})
 RESERVED_CLASSES = frozenset(
     {
+        "ASYNC_CLIENT",
+        "Any",
+        "AsyncDriver",
         "CLIENT",
         "Case",
         "ClassVar",
@@ -26,11 +53,14 @@ RESERVED_CLASSES = frozenset(
         "Field",
         "FrameFormat",
         "IntEnum",
+        "AsyncMoving",
         "Layout",
+        "Moving",
         "NamedTuple",
         "Number",
         "Sequence",
         "TABLE",
+        "TYPE_CHECKING",
         "Table",
         "TextReply",
         "TextRequest",
@@ -72,13 +102,21 @@ def _reserved(name: str, place: Place) -> Problem:
 def classes_apart(edition: Edition) -> Iterator[Problem]:
     """Each class of the generated package has a name of its own."""
     seen: dict[str, Place] = {}
-    for name, place in _classes(edition):
+    for name, place in (*_classes(edition), *_asyncio_classes(edition)):
         if name in RESERVED_CLASSES:
             yield _reserved(name, place)
         elif name in seen:
             message = f"{name} is a class already, at {seen[name]}"
             yield Problem(place, "duplicate-class", message)
         seen.setdefault(name, place)
+
+
+def _asyncio_classes(edition: Edition) -> Iterator[tuple[str, Place]]:
+    """The asyncio client's; what is told of the blocking one's names is not told twice."""
+    for family in edition.families:
+        yield f"Async{family.name.capitalize()}Commands", family.place
+    if edition.class_name not in RESERVED_CLASSES:
+        yield f"Async{edition.class_name}", edition.place
 
 
 def _classes(edition: Edition) -> Iterator[tuple[str, Place]]:

@@ -58,6 +58,8 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
         yield finding("id-changed", where, f"{old.id:#04x}", f"{new.id:#04x}")
     if old.safety != new.safety:
         yield finding("safety-changed", where, old.safety, new.safety)
+    if old.role != new.role:
+        yield finding("role-changed", where, old.role or "none", new.role or "none")
     if old.ack != new.ack:
         yield finding("ack-changed", where, words.yes(old.ack), words.yes(new.ack))
     if old.alias != new.alias:

@@ -49,6 +49,8 @@ class Text:
 class Command:
     """One call.
 
+    ``role`` is what hand-written code knows it by (one of ROLES, or nothing): which command stops
+    the arm, which tells whether a target is reached.
     ``requests`` and ``replies`` hold the forms of the messages, the full one first. With ``alias``
     the call is another one's message under a name of its own; ``shares_id`` names the calls that
     have the same id with other data.
@@ -60,6 +62,7 @@ class Command:
     title: str
     doc: str
     safety: str
+    role: str
     source: Lines
     deadline_ms: int
     requests: tuple[Form, ...]

@@ -4,6 +4,18 @@ from __future__ import annotations
 
 SAFETY = ("query", "setting", "motion", "power", "persistent write")
 CHECKS = ("footer", "crc16-modbus", "sum")
+ROLES = (
+    "joint targets",
+    "joint target",
+    "coordinate targets",
+    "coordinate target",
+    "reached",
+    "moving",
+    "stop",
+    "joints",
+    "coordinates",
+    "powered",
+)
 UNITS = (
     "degree",
     "degree_celsius",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from jinja2 import (
     ChoiceLoader,
@@ -19,6 +20,7 @@ from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
 from cobotwire_codegen.render import markdown, parameters, python_api, python_table, words
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.vectors_json import vectors_json
+from cobotwire_codegen.render.way import BLOCKING, WAYS, Way
 
 Files = dict[PurePosixPath, str]
 
@@ -33,21 +35,36 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
     common = {"edition": edition, "named": _named_types(edition)}
     files = {
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
-        for name in ("__init__", "client", "enums", "values")
+        for name in ("__init__", "enums", "values")
     }
     # So that type checkers believe the package's annotations where it is installed.
     files[PurePosixPath("py.typed")] = ""
     for part in ("__init__", "types"):
         template = jinja.get_template(f"python/table/{part}.py.j2")
         files[PurePosixPath(f"table/{part}.py")] = template.render(common)
-    commands = jinja.get_template("python/commands/__init__.py.j2")
-    files[PurePosixPath("commands/__init__.py")] = commands.render(common)
     for family in edition.families:
-        for folder in ("table", "commands"):
-            template = jinja.get_template(f"python/{folder}/family.py.j2")
-            path = PurePosixPath(f"{folder}/{family.name}.py")
-            files[path] = template.render(common, family=family)
+        template = jinja.get_template("python/table/family.py.j2")
+        path = PurePosixPath(f"table/{family.name}.py")
+        files[path] = template.render(common, family=family)
+    for way in WAYS:
+        files |= _client(jinja, common, way)
     return files
+
+
+def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
+    """A client for one way of calling: the same templates make all of them."""
+    edition: Edition = common["edition"]
+    name = "client.py" if way is BLOCKING else f"{way.folder}_client.py"
+    made = {
+        name: jinja.get_template("python/client.py.j2").render(common, way=way),
+        f"{way.folder}/__init__.py": jinja.get_template("python/commands/__init__.py.j2").render(
+            common, way=way
+        ),
+    }
+    template = jinja.get_template("python/commands/family.py.j2")
+    for family in edition.families:
+        made[f"{way.folder}/{family.name}.py"] = template.render(common, family=family, way=way)
+    return {PurePosixPath(path): text for path, text in made.items()}
 
 
 def render_reference(edition: Edition, templates: Path | None = None) -> Files:

@@ -14,9 +14,13 @@ from cobotwire_codegen.render.parameters import (
     result_type,
     results,
 )
+from cobotwire_codegen.render.way import BLOCKING, Way
 
-INDENT = 8
 WIDTH = 100
+ACK_DOC = (
+    "ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its "
+    "bytes are written."
+)
 
 
 def returns(command: Command) -> str:
@@ -45,7 +49,7 @@ def answer(command: Command) -> str:
     return f"{result_class(command)}({', '.join(map(result_expression, found))})"
 
 
-def signature(command: Command) -> str:
+def signature(command: Command, way: Way = BLOCKING) -> str:
     """The method's head, laid out as ruff lays it out."""
     parts = ["self"]
     for parameter in parameters(command):
@@ -53,19 +57,26 @@ def signature(command: Command) -> str:
         parts.append(f"{parameter.name}: {argument_type(parameter)}{default}")
     if command.request_text is not None:
         parts.extend(f"{name}: str" for name, _ in command.request_text.fields)
-    tail = f") -> {returns(command)}:"
-    flat = f"def {command.name}({', '.join(parts)}{tail}"
-    if len(flat) + 4 <= WIDTH:
-        return flat
+    if command.ack:
+        parts.extend(("*", "ack_within: float | None = None"))
+    head = f"{way.async_}def {command.name}("
+    return _laid_out(head, parts, f") -> {returns(command)}:", 4)
+
+
+def _laid_out(head: str, parts: list[str], tail: str, indent: int) -> str:
+    """``head parts tail`` on one line, or on three, or a line each, as ruff lays it out."""
     joined = ", ".join(parts)
-    if len(joined) + INDENT <= WIDTH:
-        return f"def {command.name}(\n        {joined}\n    {tail}"
-    lines = "".join(f"        {part},\n" for part in parts)
-    return f"def {command.name}(\n{lines}    {tail}"
+    margin = " " * indent
+    if indent + len(head) + len(joined) + len(tail) <= WIDTH:
+        return f"{head}{joined}{tail}"
+    if indent + 4 + len(joined) <= WIDTH:
+        return f"{head}\n{margin}    {joined}\n{margin}{tail}"
+    lines = "".join(f"{margin}    {part},\n" for part in parts)
+    return f"{head}\n{lines}{margin}{tail}"
 
 
-def call(command: Command) -> str:
-    """The arguments of the driver's own call."""
+def call(command: Command, way: Way = BLOCKING) -> str:
+    """The driver's own call, with its arguments."""
     longest = max(command.requests, key=len)
     known = {parameter.name: parameter for parameter in parameters(command)}
     values = [
@@ -75,10 +86,15 @@ def call(command: Command) -> str:
     row = f"({values[0]},)" if len(values) == 1 else f"({', '.join(values)})"
     if any(parameter.optional for parameter in known.values()):
         row = f"given{row}" if len(values) > 1 else f"given({values[0]})"
+    arguments = [f'"{command.name}"', row]
     if command.request_text is not None:
         pairs = ", ".join(f'"{name}": {name}' for name, _ in command.request_text.fields)
-        row += f", {{{pairs}}}"
-    return f'"{command.name}", {row}'
+        arguments.append(f"{{{pairs}}}")
+    if command.ack:
+        arguments.append("ack_within=ack_within")
+    head = "reply = " if command.answers else ""
+    method = "_ask" if command.answers else "_tell"
+    return _laid_out(f"{head}{way.await_}self.{method}(", arguments, ")", 8)
 
 
 def escaped(text: str) -> str:
@@ -150,6 +166,12 @@ def imports(family: Family) -> tuple[list[str], list[str], bool]:
             enums |= {t.class_name for t in parameter.types if isinstance(t, Enum)} & {kind}
             values |= {t.class_name for t in parameter.types if isinstance(t, Value)} & {kind}
     return sorted(enums), sorted(values), sequence
+
+
+def moves(edition: Edition) -> bool:
+    """Whether the edition has every command that it takes to wait for the end of a motion."""
+    needed = {"joint targets", "coordinate targets", "reached", "moving", "stop"}
+    return needed <= {command.role for command in edition.commands}
 
 
 def value_classes(edition: Edition) -> list[str]:

@@ -44,8 +44,9 @@ def command_expression(family: Family, command: Command, named: dict[Type, str])
         "notes": lower.notes(command),
         "ack": command.ack,
         "request_text": _text_request(command.request_text),
+        "role": command.role,
     }
-    needed = ("reply", "text", "notes", "ack", "request_text")
+    needed = ("reply", "text", "notes", "ack", "request_text", "role")
     return Call("Command", **{k: v for k, v in keywords.items() if k not in needed or v})
 
 

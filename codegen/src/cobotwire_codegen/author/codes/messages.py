@@ -72,6 +72,14 @@ EXPLANATIONS = (
         "id: 0x24\ntitle: Read the state",
     ),
     Explanation(
+        "bad-role",
+        "A command has a role, but not the fields by which the drivers would use it.",
+        "What waits for the end of a motion, or checks limits, finds its fields by their place.",
+        "Give the role to the command that has these fields, or leave it out.",
+        "id: 0x23\nrole: stop\ntitle: Set a pin",
+        "id: 0x23\ntitle: Set a pin",
+    ),
+    Explanation(
         "alias-differs",
         "A command says that it is another one's message, but differs from it.",
         "An alias is the same message byte for byte: id, types in order, safety.",

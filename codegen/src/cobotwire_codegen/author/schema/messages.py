@@ -25,7 +25,7 @@ from cobotwire_codegen.author.schema.leaves import (
     yes,
 )
 from cobotwire_codegen.author.schema.types import SOURCE, free_doc, known
-from cobotwire_codegen.model import CHECKS, SAFETY
+from cobotwire_codegen.model import CHECKS, ROLES, SAFETY
 
 _SAFETY_DOCS = (
     "Asks and changes nothing: the only class that is repeated by itself.",
@@ -134,6 +134,9 @@ def command() -> Schema:
         "request_text": ref("request_text"),
         "ack": yes("The reply is an acknowledgement: it may come, late or never."),
         "alias": name("The command whose message this is, under a name of its own.", METHOD),
+        "role": one_of(
+            ROLES, "What hand-written code knows it by: targets, what tells of them, stop."
+        ),
         "shares_id": words("Calls with the same id and other data."),
         "deadline_ms": whole("How long an answer is awaited. Left out: as the link says.", 1),
         "notes": listed({"type": "string"}, "Sentences for the reference."),

@@ -33,6 +33,7 @@ COMMANDS = (
         notes=(
             "Disputed: x, y and z are carried in tenths of a millimetre. Read: x10, as the formula divides (confidence high).",
         ),
+        role="coordinates",
     ),
     Command(
         id=0x24,
@@ -72,6 +73,7 @@ COMMANDS = (
         notes=(
             "Disputed: x, y and z are carried in tenths of a millimetre. Read: x10, as the example sends it (confidence high).",
         ),
+        role="coordinate target",
     ),
     Command(
         id=0x25,
@@ -108,5 +110,6 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="coordinate targets",
     ),
 )

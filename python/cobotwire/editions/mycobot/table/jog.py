@@ -77,6 +77,7 @@ COMMANDS = (
         notes=(
             "Newer firmware (edition mycobot280) has another command under the id 0x31, a turn about an axis of the end.",
         ),
+        role="joint target",
     ),
     Command(
         id=0x32,

@@ -53,6 +53,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="joints",
     ),
     Command(
         id=0x21,
@@ -84,6 +85,7 @@ COMMANDS = (
         notes=(
             "The protocol has no checksum; a request that is damaged on the line is simply another angle, and the arm obeys it.",
         ),
+        role="joint target",
     ),
     Command(
         id=0x22,
@@ -115,6 +117,7 @@ COMMANDS = (
         notes=(
             "The protocol has no checksum; a request that is damaged on the line is simply another angle, and the arm obeys it.",
         ),
+        role="joint targets",
     ),
     Command(
         id=0x26,
@@ -175,6 +178,7 @@ COMMANDS = (
         notes=(
             "Nothing answers; ask is_moving before relying on it. It is no emergency stop, for a frame can be lost on the line; have a switch that cuts the power.",
         ),
+        role="stop",
     ),
     Command(
         id=0x2A,
@@ -222,6 +226,7 @@ COMMANDS = (
         notes=(
             "Disputed: The request always carries the kind of the target, as its last data byte. Read: LEN 0F: six words, then the kind (confidence high).",
         ),
+        role="reached",
     ),
     Command(
         id=0x2B,
@@ -245,6 +250,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="moving",
     ),
     Command(
         id=0x40,

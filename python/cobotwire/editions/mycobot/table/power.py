@@ -52,6 +52,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="powered",
     ),
     Command(
         id=0x13,

@@ -34,19 +34,25 @@ class AccessoriesCommands(Driver):
         reply = self._ask("get_tof_distance", ())
         return int(reply["distance"])
 
-    def move_round(self) -> None:
+    def move_round(self, *, ack_within: float | None = None) -> None:
         """Turn the small servo once.
 
         Turns a 9 g servo clockwise for one revolution.
 
         It turns what is fixed to it, at once and all the way round.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0xD4.
         """
-        self._tell("move_round", ())
+        self._tell("move_round", (), ack_within=ack_within)
 
     def set_four_pieces_zero(self) -> bool:
         """Take the four-piece motor's position as its zero.

@@ -43,7 +43,9 @@ class CoordsCommands(Driver):
         reply = self._ask("get_coords", ())
         return Coords(*reply["coords"])
 
-    def send_coord(self, axis: Axis | int, coord: float, speed: int) -> None:
+    def send_coord(
+        self, axis: Axis | int, coord: float, speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Send one coordinate.
 
         Moves the end so that one coordinate takes a new value; the other five stay.
@@ -57,17 +59,25 @@ class CoordsCommands(Driver):
             coord: The coordinate's target. Allowed: for X, Y: -281.4..281.4 millimetre; for Z:
                 -70..412.6 millimetre; for RX, RY, RZ: -180..180 degree.
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x24; document, lines 400-439.
         """
-        self._tell("send_coord", (axis, coord, speed))
+        self._tell("send_coord", (axis, coord, speed), ack_within=ack_within)
 
     def send_coords(
-        self, coords: Sequence[float], speed: int, mode: MoveMode | int | None = None
+        self,
+        coords: Sequence[float],
+        speed: int,
+        mode: MoveMode | int | None = None,
+        *,
+        ack_within: float | None = None,
     ) -> None:
         """Send all coordinates.
 
@@ -82,14 +92,17 @@ class CoordsCommands(Driver):
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
             mode: The path to the target; left out, that of set_movement_type. Allowed: one of
                 ANGULAR (0), LINEAR (1). May be left out.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x25; document, lines 441-490.
         """
-        self._tell("send_coords", given(coords, speed, mode))
+        self._tell("send_coords", given(coords, speed, mode), ack_within=ack_within)
 
     def get_angles_coords(self) -> GetAnglesCoordsReply:
         """Read the joint angles and the coordinates.

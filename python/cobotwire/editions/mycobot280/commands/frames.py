@@ -19,7 +19,9 @@ class FramesCommands(Driver):
     In which frame, and for which point, coordinates are given.
     """
 
-    def set_tool_reference(self, coords: Sequence[float]) -> None:
+    def set_tool_reference(
+        self, coords: Sequence[float], *, ack_within: float | None = None
+    ) -> None:
         """Set the tool reference.
 
         Sets where the tool's point is, seen from the flange, in millimetres and degrees.
@@ -34,14 +36,17 @@ class FramesCommands(Driver):
         Args:
             coords: Position and orientation of the tool's point in the flange's frame. Allowed: 6
                 numbers (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x81; document, lines 1707-1734, 1932.
         """
-        self._tell("set_tool_reference", (coords,))
+        self._tell("set_tool_reference", (coords,), ack_within=ack_within)
 
     def get_tool_reference(self) -> Coords:
         """Read the tool reference.
@@ -62,7 +67,9 @@ class FramesCommands(Driver):
         reply = self._ask("get_tool_reference", ())
         return Coords(*reply["coords"])
 
-    def set_world_reference(self, coords: Sequence[float]) -> None:
+    def set_world_reference(
+        self, coords: Sequence[float], *, ack_within: float | None = None
+    ) -> None:
         """Set the world reference.
 
         Sets where the arm's pedestal stands in the world, in millimetres and degrees.
@@ -77,14 +84,17 @@ class FramesCommands(Driver):
         Args:
             coords: Position and orientation of the pedestal in the world's frame. Allowed: 6
                 numbers (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x83; document, lines 1792-1811, 1938.
         """
-        self._tell("set_world_reference", (coords,))
+        self._tell("set_world_reference", (coords,), ack_within=ack_within)
 
     def get_world_reference(self) -> Coords:
         """Read the world reference.
@@ -108,7 +118,9 @@ class FramesCommands(Driver):
         reply = self._ask("get_world_reference", ())
         return Coords(*reply["coords"])
 
-    def set_reference_frame(self, frame: ReferenceFrame | int) -> None:
+    def set_reference_frame(
+        self, frame: ReferenceFrame | int, *, ack_within: float | None = None
+    ) -> None:
         """Set the reference frame.
 
         Decides whether coordinates are given in the frame of the arm's pedestal or in the world's.
@@ -118,14 +130,17 @@ class FramesCommands(Driver):
 
         Args:
             frame: The frame in which coordinates are given. Allowed: one of BASE (0), WORLD (1).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x85; document, lines 1835-1851, 1935-1940.
         """
-        self._tell("set_reference_frame", (frame,))
+        self._tell("set_reference_frame", (frame,), ack_within=ack_within)
 
     def get_reference_frame(self) -> ReferenceFrame:
         """Read the reference frame.
@@ -145,7 +160,7 @@ class FramesCommands(Driver):
         reply = self._ask("get_reference_frame", ())
         return ReferenceFrame(reply["frame"])
 
-    def set_end_type(self, end: EndType | int) -> None:
+    def set_end_type(self, end: EndType | int, *, ack_within: float | None = None) -> None:
         """Set the end type.
 
         Decides whether coordinates describe the flange or the tool's point.
@@ -155,14 +170,17 @@ class FramesCommands(Driver):
 
         Args:
             end: The point that coordinates describe. Allowed: one of FLANGE (0), TOOL (1).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x89; document, lines 1880-1896, 1929-1934.
         """
-        self._tell("set_end_type", (end,))
+        self._tell("set_end_type", (end,), ack_within=ack_within)
 
     def get_end_type(self) -> EndType:
         """Read the end type.

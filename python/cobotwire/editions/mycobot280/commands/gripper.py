@@ -46,6 +46,8 @@ class GripperCommands(Driver):
         speed: int,
         gripper: int | None = None,
         torque: bool | None = None,
+        *,
+        ack_within: float | None = None,
     ) -> None:
         """Open or close the gripper.
 
@@ -62,17 +64,26 @@ class GripperCommands(Driver):
             gripper: Kind of gripper: 1 adaptive, 2 hand with five fingers, 3 parallel, 4 flexible;
                 no source says what 5 is. Allowed: one of 1, 2, 3, 4, 5. May be left out.
             torque: True for a gripper with force control. Allowed: True or False. May be left out.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x66; document, lines 1519-1536.
         """
-        self._tell("set_gripper_state", given(state, speed, gripper, torque))
+        self._tell("set_gripper_state", given(state, speed, gripper, torque), ack_within=ack_within)
 
     def set_gripper_value(
-        self, value: int, speed: int, gripper: int | None = None, torque: bool | None = None
+        self,
+        value: int,
+        speed: int,
+        gripper: int | None = None,
+        torque: bool | None = None,
+        *,
+        ack_within: float | None = None,
     ) -> None:
         """Set how far the gripper is open.
 
@@ -93,16 +104,19 @@ class GripperCommands(Driver):
             gripper: Kind of gripper: 1 adaptive, 3 parallel, 4 flexible; no source says what 5 is.
                 Allowed: one of 1, 3, 4, 5. May be left out.
             torque: True for a gripper with force control. Allowed: True or False. May be left out.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x67; document, lines 1538-1557.
         """
-        self._tell("set_gripper_value", given(value, speed, gripper, torque))
+        self._tell("set_gripper_value", given(value, speed, gripper, torque), ack_within=ack_within)
 
-    def set_gripper_calibration(self) -> None:
+    def set_gripper_calibration(self, *, ack_within: float | None = None) -> None:
         """Take the gripper's position as its zero.
 
         Takes the gripper's present position as its zero.
@@ -113,12 +127,18 @@ class GripperCommands(Driver):
         Every opening is counted from this zero; a wrong one makes the gripper squeeze or fall
         short.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0x68; document, lines 1559-1572.
         """
-        self._tell("set_gripper_calibration", ())
+        self._tell("set_gripper_calibration", (), ack_within=ack_within)
 
     def is_gripper_moving(self) -> bool:
         """Ask whether the gripper moves.
@@ -222,7 +242,7 @@ class GripperCommands(Driver):
         reply = self._ask("init_gripper", ())
         return bool(reply["succeeded"])
 
-    def set_gripper_protect_current(self, current: int) -> None:
+    def set_gripper_protect_current(self, current: int, *, ack_within: float | None = None) -> None:
         """Set the gripper's protective current.
 
         Sets the current at which the gripper protects itself.
@@ -234,11 +254,14 @@ class GripperCommands(Driver):
         Args:
             current: Current at which the gripper protects itself; that it is in milliamperes is
                 read from its range. Allowed: 1..500 milliampere.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0x39.
         """
-        self._tell("set_gripper_protect_current", (current,))
+        self._tell("set_gripper_protect_current", (current,), ack_within=ack_within)

@@ -16,7 +16,9 @@ class IoCommands(Driver):
     Digital inputs and outputs, and the colour of the light.
     """
 
-    def set_pin_mode(self, pin: int, mode: PinMode | int) -> None:
+    def set_pin_mode(
+        self, pin: int, mode: PinMode | int, *, ack_within: float | None = None
+    ) -> None:
         """Set what a pin of the Atom is used for.
 
         Makes a pin of the Atom an input or an output.
@@ -24,16 +26,19 @@ class IoCommands(Driver):
         Args:
             pin: Pin number as printed on the board. Allowed: 0..255.
             mode: What a pin is used for. Allowed: one of INPUT (0), OUTPUT (1), INPUT_PULLUP (2).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x60; document, lines 1411-1432.
         """
-        self._tell("set_pin_mode", (pin, mode))
+        self._tell("set_pin_mode", (pin, mode), ack_within=ack_within)
 
-    def set_digital_output(self, pin: int, high: bool) -> None:
+    def set_digital_output(self, pin: int, high: bool, *, ack_within: float | None = None) -> None:
         """Set a pin of the Atom.
 
         Sets the level of an output pin of the Atom.
@@ -43,14 +48,17 @@ class IoCommands(Driver):
         Args:
             pin: Pin number as printed on the Atom. Allowed: one of 19, 22, 23, 33, 39.
             high: True is the high level. Allowed: True or False.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x61; document, lines 1434-1451.
         """
-        self._tell("set_digital_output", (pin, high))
+        self._tell("set_digital_output", (pin, high), ack_within=ack_within)
 
     def get_digital_input(self, pin: int) -> bool:
         """Read a pin of the Atom.
@@ -74,7 +82,9 @@ class IoCommands(Driver):
         reply = self._ask("get_digital_input", (pin,))
         return bool(reply["high"])
 
-    def set_color(self, red: int, green: int, blue: int) -> None:
+    def set_color(
+        self, red: int, green: int, blue: int, *, ack_within: float | None = None
+    ) -> None:
         """Set the colour of the light.
 
         Sets the Atom's light from its three channels, each 0 to 255.
@@ -83,16 +93,19 @@ class IoCommands(Driver):
             red: One channel of the light; 0 is dark, 255 full. Allowed: 0..255.
             green: One channel of the light; 0 is dark, 255 full. Allowed: 0..255.
             blue: One channel of the light; 0 is dark, 255 full. Allowed: 0..255.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x6A; document, lines 1599-1617.
         """
-        self._tell("set_color", (red, green, blue))
+        self._tell("set_color", (red, green, blue), ack_within=ack_within)
 
-    def set_basic_output(self, pin: int, high: bool) -> None:
+    def set_basic_output(self, pin: int, high: bool, *, ack_within: float | None = None) -> None:
         """Set a pin of the base.
 
         Sets the level of an output pin of the M5Stack in the base.
@@ -104,14 +117,17 @@ class IoCommands(Driver):
         Args:
             pin: Pin number as printed on the base. Allowed: one of 2, 5, 35, 36.
             high: True is the high level. Allowed: True or False.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0xA0; document, lines 1619-1634.
         """
-        self._tell("set_basic_output", (pin, high))
+        self._tell("set_basic_output", (pin, high), ack_within=ack_within)
 
     def get_basic_input(self, pin: int) -> bool:
         """Read a pin of the base.
@@ -135,7 +151,9 @@ class IoCommands(Driver):
         reply = self._ask("get_basic_input", (pin,))
         return bool(reply["high"])
 
-    def set_pwm_output(self, channel: int, frequency: int, duty: int) -> None:
+    def set_pwm_output(
+        self, channel: int, frequency: int, duty: int, *, ack_within: float | None = None
+    ) -> None:
         """Set pulses on a pin of the Atom.
 
         Puts pulses on a pin of the Atom, with a frequency and a share of high level.
@@ -149,11 +167,14 @@ class IoCommands(Driver):
             channel: Pin number as printed on the board. Allowed: 0..255.
             frequency: Frequency of the pulses. Allowed: 0..32767 hertz.
             duty: Share of a pulse that is high, in 256ths; 128 is half. Allowed: 0..255.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x64.
         """
-        self._tell("set_pwm_output", (channel, frequency, duty))
+        self._tell("set_pwm_output", (channel, frequency, duty), ack_within=ack_within)

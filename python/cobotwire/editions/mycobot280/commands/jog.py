@@ -16,7 +16,14 @@ class JogCommands(Driver):
     Motion that goes on until it is stopped, and motion by steps.
     """
 
-    def jog_angle(self, joint: int, direction: RotationDirection | int, speed: int) -> None:
+    def jog_angle(
+        self,
+        joint: int,
+        direction: RotationDirection | int,
+        speed: int,
+        *,
+        ack_within: float | None = None,
+    ) -> None:
         """Jog a joint.
 
         Turns one joint in one direction, at a speed in percent of the fastest, until stop ends it.
@@ -32,16 +39,26 @@ class JogCommands(Driver):
             direction: The way in which a joint turns. Allowed: one of COUNTERCLOCKWISE (0),
                 CLOCKWISE (1).
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x30; document, lines 670-694.
         """
-        self._tell("jog_angle", (joint, direction, speed))
+        self._tell("jog_angle", (joint, direction, speed), ack_within=ack_within)
 
-    def jog_coord(self, axis: Axis | int, direction: TravelDirection | int, speed: int) -> None:
+    def jog_coord(
+        self,
+        axis: Axis | int,
+        direction: TravelDirection | int,
+        speed: int,
+        *,
+        ack_within: float | None = None,
+    ) -> None:
         """Jog a coordinate.
 
         Moves the end along or about one axis, at a speed in percent of the fastest, until stop ends
@@ -56,16 +73,21 @@ class JogCommands(Driver):
             direction: The way in which a coordinate changes. Allowed: one of BACKWARD (0), FORWARD
                 (1).
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x32; document, lines 729-753.
         """
-        self._tell("jog_coord", (axis, direction, speed))
+        self._tell("jog_coord", (axis, direction, speed), ack_within=ack_within)
 
-    def jog_increment(self, joint: int, increment: float, speed: int) -> None:
+    def jog_increment(
+        self, joint: int, increment: float, speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Jog a joint by a step.
 
         Turns one joint by an angle in degrees from where it is, at a speed in percent of the
@@ -77,16 +99,26 @@ class JogCommands(Driver):
             joint: Joint number; 1 is the base, 6 the flange. Allowed: 1..6.
             increment: The step by which the joint turns. Allowed: -327.68..327.67 degree.
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x33; document, lines 755-786.
         """
-        self._tell("jog_increment", (joint, increment, speed))
+        self._tell("jog_increment", (joint, increment, speed), ack_within=ack_within)
 
-    def jog_rpy(self, axis: RpyAxis | int, direction: TravelDirection | int, speed: int) -> None:
+    def jog_rpy(
+        self,
+        axis: RpyAxis | int,
+        direction: TravelDirection | int,
+        speed: int,
+        *,
+        ack_within: float | None = None,
+    ) -> None:
         """Jog a turn of the end.
 
         Turns the end about a fixed axis of the base's frame, at a speed in percent of the fastest,
@@ -103,16 +135,21 @@ class JogCommands(Driver):
             direction: The way in which a coordinate changes. Allowed: one of BACKWARD (0), FORWARD
                 (1).
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x31.
         """
-        self._tell("jog_rpy", (axis, direction, speed))
+        self._tell("jog_rpy", (axis, direction, speed), ack_within=ack_within)
 
-    def jog_increment_angle(self, joint: int, increment: float, speed: int) -> None:
+    def jog_increment_angle(
+        self, joint: int, increment: float, speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Jog a joint by a step.
 
         Turns one joint by an angle in degrees from where it is, at a speed in percent of the
@@ -127,16 +164,21 @@ class JogCommands(Driver):
             joint: Joint number; 1 is the base, 6 the flange. Allowed: 1..6.
             increment: The step by which the joint turns. Allowed: -327.68..327.67 degree.
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x33.
         """
-        self._tell("jog_increment_angle", (joint, increment, speed))
+        self._tell("jog_increment_angle", (joint, increment, speed), ack_within=ack_within)
 
-    def jog_increment_coord(self, axis: Axis | int, increment: float, speed: int) -> None:
+    def jog_increment_coord(
+        self, axis: Axis | int, increment: float, speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Jog a coordinate by a step.
 
         Moves the end along or about one axis by a step from where it is, at a speed in percent of
@@ -154,11 +196,14 @@ class JogCommands(Driver):
                 X, Y: -562.9..562.9 millimetre; for Z: -482.6..482.6 millimetre; for RX, RY, RZ:
                 -327.68..327.67 degree.
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x34.
         """
-        self._tell("jog_increment_coord", (axis, increment, speed))
+        self._tell("jog_increment_coord", (axis, increment, speed), ack_within=ack_within)

@@ -20,7 +20,7 @@ class MotionCommands(Driver):
     Where the joints are, where they shall go, and whether they are there.
     """
 
-    def set_fresh_mode(self, mode: FreshMode | int) -> None:
+    def set_fresh_mode(self, mode: FreshMode | int, *, ack_within: float | None = None) -> None:
         """Set what a new target does to a running motion.
 
         Decides whether targets are passed one after the other, or the newest one replaces those
@@ -29,14 +29,17 @@ class MotionCommands(Driver):
         Args:
             mode: What happens when a new target comes while the arm moves. Allowed: one of
                 INTERPOLATION (0), REFRESH (1).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x16; document, lines 158-176.
         """
-        self._tell("set_fresh_mode", (mode,))
+        self._tell("set_fresh_mode", (mode,), ack_within=ack_within)
 
     def get_angles(self) -> Angles:
         """Read the joint angles.
@@ -57,7 +60,9 @@ class MotionCommands(Driver):
         reply = self._ask("get_angles", ())
         return Angles(*reply["angles"])
 
-    def send_angle(self, joint: int, angle: float, speed: int) -> None:
+    def send_angle(
+        self, joint: int, angle: float, speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Send one joint to an angle.
 
         Moves one joint to an angle in degrees, at a speed in percent of the fastest; the other
@@ -72,16 +77,21 @@ class MotionCommands(Driver):
                 degree; for 3: -150..150 degree; for 4: -150..150 degree; for 5: -155..160 degree;
                 for 6: -180..180 degree.
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x21; document, lines 271-300.
         """
-        self._tell("send_angle", (joint, angle, speed))
+        self._tell("send_angle", (joint, angle, speed), ack_within=ack_within)
 
-    def send_angles(self, angles: Sequence[float], speed: int) -> None:
+    def send_angles(
+        self, angles: Sequence[float], speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Send all joints to angles.
 
         Moves all six joints to angles in degrees, at a speed in percent of the fastest.
@@ -94,16 +104,19 @@ class MotionCommands(Driver):
                 -140..140 degree; j3, j4 -150..150 degree; j5 -155..160 degree; j6 -180..180
                 degree).
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x22; document, lines 302-340.
         """
-        self._tell("send_angles", (angles, speed))
+        self._tell("send_angles", (angles, speed), ack_within=ack_within)
 
-    def pause(self) -> None:
+    def pause(self, *, ack_within: float | None = None) -> None:
         """Pause.
 
         Pauses the motion; resume goes on with it.
@@ -111,12 +124,18 @@ class MotionCommands(Driver):
         The acknowledgement may be late or never come; ask is_paused before relying on it. A pause
         is no emergency stop.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x26; document, lines 492-503.
         """
-        self._tell("pause", ())
+        self._tell("pause", (), ack_within=ack_within)
 
     def is_paused(self) -> bool:
         """Ask whether the motion is paused.
@@ -136,21 +155,27 @@ class MotionCommands(Driver):
         reply = self._ask("is_paused", ())
         return bool(reply["paused"])
 
-    def resume(self) -> None:
+    def resume(self, *, ack_within: float | None = None) -> None:
         """Resume.
 
         Goes on with the motion that pause held.
 
         The arm moves at once, towards a target that may have been set long before.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x28; document, lines 534-548.
         """
-        self._tell("resume", ())
+        self._tell("resume", (), ack_within=ack_within)
 
-    def stop(self) -> None:
+    def stop(self, *, ack_within: float | None = None) -> None:
         """Stop.
 
         Ends the motion.
@@ -160,12 +185,18 @@ class MotionCommands(Driver):
 
         It ends jogging too; this edition has no jog_stop.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x29; document, lines 550-563.
         """
-        self._tell("stop", ())
+        self._tell("stop", (), ack_within=ack_within)
 
     def is_in_position(self, target: Sequence[float], kind: TargetKind | int) -> bool:
         """Ask whether a target is reached.
@@ -214,7 +245,7 @@ class MotionCommands(Driver):
         reply = self._ask("is_moving", ())
         return bool(reply["moving"])
 
-    def clear_queue(self) -> None:
+    def clear_queue(self, *, ack_within: float | None = None) -> None:
         """Clear the queue.
 
         Throws away the targets that wait in the controller's queue.
@@ -222,12 +253,18 @@ class MotionCommands(Driver):
         No source says what becomes of the motion that is under way; sent while the arm moves, it
         may stop at once or go on to its target. Stop the arm first, and ask is_moving.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x05.
         """
-        self._tell("clear_queue", ())
+        self._tell("clear_queue", (), ack_within=ack_within)
 
     def check_async_or_sync(self) -> bool:
         """Ask whether motions are answered at their end.
@@ -269,7 +306,7 @@ class MotionCommands(Driver):
         reply = self._ask("get_fresh_mode", ())
         return FreshMode(reply["mode"])
 
-    def set_vision_mode(self, vision: bool) -> None:
+    def set_vision_mode(self, vision: bool, *, ack_within: float | None = None) -> None:
         """Turn vision mode on or off.
 
         Vision mode keeps the posture from flipping when coordinates follow each other in refresh
@@ -277,14 +314,17 @@ class MotionCommands(Driver):
 
         Args:
             vision: True turns vision mode on. Allowed: True or False.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x1D.
         """
-        self._tell("set_vision_mode", (vision,))
+        self._tell("set_vision_mode", (vision,), ack_within=ack_within)
 
     def get_radians(self) -> Radians:
         """Read the joint angles in radians.
@@ -305,7 +345,9 @@ class MotionCommands(Driver):
         reply = self._ask("get_radians", ())
         return Radians(*to_radians(reply["radians"]))
 
-    def send_radians(self, radians: Sequence[float], speed: int) -> None:
+    def send_radians(
+        self, radians: Sequence[float], speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Send all joints to angles in radians.
 
         Moves all six joints to angles in radians, at a speed in percent of the fastest.
@@ -321,16 +363,19 @@ class MotionCommands(Driver):
                 numbers (j1 -168..168 degree; j2 -140..140 degree; j3, j4 -150..150 degree; j5
                 -155..160 degree; j6 -180..180 degree).
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x22.
         """
-        self._tell("send_radians", (to_degrees(radians), speed))
+        self._tell("send_radians", (to_degrees(radians), speed), ack_within=ack_within)
 
-    def set_movement_type(self, mode: MoveMode | int) -> None:
+    def set_movement_type(self, mode: MoveMode | int, *, ack_within: float | None = None) -> None:
         """Set the path to coordinates.
 
         Decides on which path the end goes to a coordinate target.
@@ -339,14 +384,17 @@ class MotionCommands(Driver):
 
         Args:
             mode: The path to a coordinate target. Allowed: one of ANGULAR (0), LINEAR (1).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x87.
         """
-        self._tell("set_movement_type", (mode,))
+        self._tell("set_movement_type", (mode,), ack_within=ack_within)
 
     def get_movement_type(self) -> MoveMode:
         """Read the path to coordinates.

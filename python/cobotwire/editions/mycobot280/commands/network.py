@@ -39,7 +39,7 @@ class NetworkCommands(Driver):
         reply = self._ask("get_ssid_pwd", ())
         return WifiAccount(reply["ssid"], reply["password"])
 
-    def set_server_port(self, port: int) -> None:
+    def set_server_port(self, port: int, *, ack_within: float | None = None) -> None:
         """Set the TCP port.
 
         Sets the TCP port that the arm listens on.
@@ -54,14 +54,17 @@ class NetworkCommands(Driver):
 
         Args:
             port: TCP port. Allowed: 1..65535.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0xB2; document, lines 1684-1705.
         """
-        self._tell("set_server_port", (port,))
+        self._tell("set_server_port", (port,), ack_within=ack_within)
 
     def set_ssid_pwd(self, account: str, password: str) -> None:
         """Set the wireless account.

@@ -15,33 +15,45 @@ class PowerCommands(Driver):
     Whether the servos have power, and whether they hold the arm.
     """
 
-    def power_on(self) -> None:
+    def power_on(self, *, ack_within: float | None = None) -> None:
         """Power on.
 
         Powers the arm on.
 
         Servos that get power may take up the arm's load at once; keep clear of the arm.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x10; document, lines 55-68.
         """
-        self._tell("power_on", ())
+        self._tell("power_on", (), ack_within=ack_within)
 
-    def power_off(self) -> None:
+    def power_off(self, *, ack_within: float | None = None) -> None:
         """Power off.
 
         Powers the arm off and breaks the connection to the Atom.
 
         Without power no joint is held, and the arm falls; support it first.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x11; document, lines 70-83.
         """
-        self._tell("power_off", ())
+        self._tell("power_off", (), ack_within=ack_within)
 
     def is_power_on(self) -> bool:
         """Ask whether the arm has power.
@@ -61,7 +73,9 @@ class PowerCommands(Driver):
         reply = self._ask("is_power_on", ())
         return bool(reply["powered"])
 
-    def release_all_servos(self, undamped: bool | None = None) -> None:
+    def release_all_servos(
+        self, undamped: bool | None = None, *, ack_within: float | None = None
+    ) -> None:
         """Release all servos.
 
         Takes the power off all servos, so that every joint can be turned by hand.
@@ -74,14 +88,17 @@ class PowerCommands(Driver):
         Args:
             undamped: True lets the joints turn freely; left out, they are damped. Allowed: True or
                 False. May be left out.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x13; document, lines 114-127.
         """
-        self._tell("release_all_servos", given(undamped))
+        self._tell("release_all_servos", given(undamped), ack_within=ack_within)
 
     def is_controller_connected(self) -> bool:
         """Ask whether the Atom is connected.
@@ -101,7 +118,7 @@ class PowerCommands(Driver):
         reply = self._ask("is_controller_connected", ())
         return bool(reply["connected"])
 
-    def set_free_mode(self, free: bool) -> None:
+    def set_free_mode(self, free: bool, *, ack_within: float | None = None) -> None:
         """Turn free mode on or off.
 
         In free mode the servos give no torque, and the arm can be moved by hand.
@@ -115,14 +132,17 @@ class PowerCommands(Driver):
 
         Args:
             free: True switches the torque off, false ends free mode. Allowed: True or False.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x1A; document, lines 178-192.
         """
-        self._tell("set_free_mode", (free,))
+        self._tell("set_free_mode", (free,), ack_within=ack_within)
 
     def is_free_mode(self) -> bool:
         """Ask whether free mode is on.

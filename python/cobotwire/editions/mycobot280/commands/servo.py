@@ -20,7 +20,9 @@ class ServoCommands(Driver):
     The servos below the joints, one by one.
     """
 
-    def set_encoder(self, joint: int, encoder: int, speed: int) -> None:
+    def set_encoder(
+        self, joint: int, encoder: int, speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Send one joint to an encoder position.
 
         Moves one joint, or the gripper, to an encoder position in ticks, at a speed in percent of
@@ -31,14 +33,17 @@ class ServoCommands(Driver):
             encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn, and both 0 and
                 4096 can be sent. Allowed: 0..4096 tick.
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x3A; document, lines 805-835.
         """
-        self._tell("set_encoder", (joint, encoder, speed))
+        self._tell("set_encoder", (joint, encoder, speed), ack_within=ack_within)
 
     def get_encoder(self, joint: int) -> int:
         """Read the encoder of one joint.
@@ -66,7 +71,9 @@ class ServoCommands(Driver):
         reply = self._ask("get_encoder", (joint,))
         return int(reply["encoder"])
 
-    def set_encoders(self, encoders: Sequence[int], speed: int) -> None:
+    def set_encoders(
+        self, encoders: Sequence[int], speed: int, *, ack_within: float | None = None
+    ) -> None:
         """Send all joints to encoder positions.
 
         Moves all six joints to encoder positions in ticks, at a speed in percent of the fastest.
@@ -75,14 +82,17 @@ class ServoCommands(Driver):
             encoders: The six servo positions, base first. Allowed: 6 numbers (j1, j2, j3, j4, j5,
                 j6 0..4096 tick).
             speed: Speed as a share of the fastest. Allowed: 1..100 percent.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x3C; document, lines 872-912.
         """
-        self._tell("set_encoders", (encoders, speed))
+        self._tell("set_encoders", (encoders, speed), ack_within=ack_within)
 
     def get_encoders(self) -> Encoders:
         """Read the encoders of all joints.
@@ -147,7 +157,7 @@ class ServoCommands(Driver):
         reply = self._ask("get_joint_max_angle", (joint,))
         return float(reply["angle"])
 
-    def set_joint_min(self, joint: int, angle: float) -> None:
+    def set_joint_min(self, joint: int, angle: float, *, ack_within: float | None = None) -> None:
         """Set the smallest angle of a joint.
 
         Sets the smallest angle that a joint may take, in degrees.
@@ -165,16 +175,19 @@ class ServoCommands(Driver):
             angle: The smallest angle that the joint may take. Allowed: for 1: -168..168 degree; for
                 2: -140..140 degree; for 3: -150..150 degree; for 4: -150..150 degree; for 5:
                 -155..160 degree; for 6: -180..180 degree.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0x4C; document, lines 1133-1163.
         """
-        self._tell("set_joint_min", (joint, angle))
+        self._tell("set_joint_min", (joint, angle), ack_within=ack_within)
 
-    def set_joint_max(self, joint: int, angle: float) -> None:
+    def set_joint_max(self, joint: int, angle: float, *, ack_within: float | None = None) -> None:
         """Set the largest angle of a joint.
 
         Sets the largest angle that a joint may take, in degrees.
@@ -192,14 +205,17 @@ class ServoCommands(Driver):
             angle: The largest angle that the joint may take. Allowed: for 1: -168..168 degree; for
                 2: -140..140 degree; for 3: -150..150 degree; for 4: -150..150 degree; for 5:
                 -155..160 degree; for 6: -180..180 degree.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0x4D; document, lines 1165-1195.
         """
-        self._tell("set_joint_max", (joint, angle))
+        self._tell("set_joint_max", (joint, angle), ack_within=ack_within)
 
     def is_servo_enable(self, joint: int) -> bool:
         """Ask whether a servo is connected.
@@ -248,7 +264,13 @@ class ServoCommands(Driver):
         return bool(reply["enabled"])
 
     def set_servo_data(
-        self, joint: int, register: int, value: int, mode: ServoDataMode | int | None = None
+        self,
+        joint: int,
+        register: int,
+        value: int,
+        mode: ServoDataMode | int | None = None,
+        *,
+        ack_within: float | None = None,
     ) -> None:
         """Write a servo register.
 
@@ -274,14 +296,17 @@ class ServoCommands(Driver):
                 5..255.
             value: Content of a servo register of two bytes. Allowed: 0..4096 or 0..255.
             mode: How wide a servo register is. Allowed: one of BYTE (0), WORD (1). May be left out.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0x52; document, lines 1303-1331.
         """
-        self._tell("set_servo_data", given(joint, register, value, mode))
+        self._tell("set_servo_data", given(joint, register, value, mode), ack_within=ack_within)
 
     def get_servo_data(
         self, joint: int, register: int, mode: ServoDataMode | int | None = None
@@ -320,7 +345,7 @@ class ServoCommands(Driver):
         reply = self._ask("get_servo_data", given(joint, register, mode))
         return int(reply["value"])
 
-    def set_servo_calibration(self, joint: int) -> None:
+    def set_servo_calibration(self, joint: int, *, ack_within: float | None = None) -> None:
         """Take a joint's position as its zero.
 
         Takes the present position of a joint as its zero.
@@ -332,16 +357,19 @@ class ServoCommands(Driver):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange. Allowed: 1..6.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0x54; document, lines 1333-1351.
         """
-        self._tell("set_servo_calibration", (joint,))
+        self._tell("set_servo_calibration", (joint,), ack_within=ack_within)
 
-    def joint_brake(self, joint: int) -> None:
+    def joint_brake(self, joint: int, *, ack_within: float | None = None) -> None:
         """Brake a joint.
 
         Brakes the motor of one joint.
@@ -350,16 +378,21 @@ class ServoCommands(Driver):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange. Allowed: 1..6.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x55; document, lines 1353-1371.
         """
-        self._tell("joint_brake", (joint,))
+        self._tell("joint_brake", (joint,), ack_within=ack_within)
 
-    def release_servo(self, joint: int, undamped: bool | None = None) -> None:
+    def release_servo(
+        self, joint: int, undamped: bool | None = None, *, ack_within: float | None = None
+    ) -> None:
         """Release a servo.
 
         Takes the power off the servo of one joint, so that it can be turned by hand.
@@ -371,16 +404,19 @@ class ServoCommands(Driver):
             joint: Joint number; 1 is the base, 6 the flange. Allowed: 1..6.
             undamped: True lets the joint turn freely; left out, it is damped. Allowed: True or
                 False. May be left out.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x56; document, lines 1373-1389.
         """
-        self._tell("release_servo", given(joint, undamped))
+        self._tell("release_servo", given(joint, undamped), ack_within=ack_within)
 
-    def focus_servo(self, joint: int) -> None:
+    def focus_servo(self, joint: int, *, ack_within: float | None = None) -> None:
         """Power a servo.
 
         Powers the servo of one joint on.
@@ -389,16 +425,21 @@ class ServoCommands(Driver):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange. Allowed: 1..6.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x57; document, lines 1391-1409.
         """
-        self._tell("focus_servo", (joint,))
+        self._tell("focus_servo", (joint,), ack_within=ack_within)
 
-    def set_encoders_drag(self, encoders: Sequence[int], speeds: Sequence[int]) -> None:
+    def set_encoders_drag(
+        self, encoders: Sequence[int], speeds: Sequence[int], *, ack_within: float | None = None
+    ) -> None:
         """Send all joints to encoder positions, each at its speed.
 
         Moves all six joints to encoder positions in ticks, each at a speed of its own.
@@ -414,28 +455,37 @@ class ServoCommands(Driver):
                 j6 0..4096 tick).
             speeds: The speeds of the six servos, base first. Allowed: 6 numbers (j1, j2, j3, j4,
                 j5, j6 0..6000 step_per_second).
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: motion. Command id 0x3E.
         """
-        self._tell("set_encoders_drag", (encoders, speeds))
+        self._tell("set_encoders_drag", (encoders, speeds), ack_within=ack_within)
 
-    def focus_all_servos(self) -> None:
+    def focus_all_servos(self, *, ack_within: float | None = None) -> None:
         """Power all servos.
 
         Powers the servos of all joints on.
 
         Servos that get power may take up the arm's load at once; keep clear of the arm.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: power. Command id 0x57.
         """
-        self._tell("focus_all_servos", (0,))
+        self._tell("focus_all_servos", (0,), ack_within=ack_within)
 
     def get_servo_speeds(self) -> ServoSpeeds:
         """Read the speeds of the servos.
@@ -513,7 +563,7 @@ class ServoCommands(Driver):
         reply = self._ask("get_servo_temps", ())
         return ServoTemperatures(*reply["temperatures"])
 
-    def backup_servo_params(self, servo: int) -> None:
+    def backup_servo_params(self, servo: int, *, ack_within: float | None = None) -> None:
         """Save a servo's parameters.
 
         Saves the parameters of one servo, or of all (254), so that they can be restored.
@@ -525,16 +575,19 @@ class ServoCommands(Driver):
 
         Args:
             servo: Servo number, 1 to 6; 254 is all of them. Allowed: one of 1, 2, 3, 4, 5, 6, 254.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0xEA.
         """
-        self._tell("backup_servo_params", (servo,))
+        self._tell("backup_servo_params", (servo,), ack_within=ack_within)
 
-    def restore_servo_params(self, servo: int) -> None:
+    def restore_servo_params(self, servo: int, *, ack_within: float | None = None) -> None:
         """Restore a servo's parameters.
 
         Restores the saved parameters of one servo, or of all (254).
@@ -546,11 +599,14 @@ class ServoCommands(Driver):
 
         Args:
             servo: Servo number, 1 to 6; 254 is all of them. Allowed: one of 1, 2, 3, 4, 5, 6, 254.
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: persistent write. Command id 0xEB.
         """
-        self._tell("restore_servo_params", (servo,))
+        self._tell("restore_servo_params", (servo,), ack_within=ack_within)

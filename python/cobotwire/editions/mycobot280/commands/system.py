@@ -71,7 +71,7 @@ class SystemCommands(Driver):
         reply = self._ask("get_error_information", ())
         return int(reply["error"])
 
-    def clear_error_information(self) -> None:
+    def clear_error_information(self, *, ack_within: float | None = None) -> None:
         """Clear the error.
 
         Makes the controller forget its error.
@@ -79,12 +79,18 @@ class SystemCommands(Driver):
         What kept the arm from a motion may still be there; find it before the error is cleared and
         the next motion sent.
 
+        Args:
+            ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its
+                bytes are written.
+
         Raises:
+            UsageError: an argument is not allowed; nothing was sent.
             LinkError: the link is gone.
+            ReplyTimeout: it was not acknowledged within ``ack_within``.
 
         Safety: setting. Command id 0x08.
         """
-        self._tell("clear_error_information", ())
+        self._tell("clear_error_information", (), ack_within=ack_within)
 
     def read_next_error(self) -> tuple[int, ...]:
         """Read the joints' errors.

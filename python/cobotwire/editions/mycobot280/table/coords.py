@@ -33,6 +33,7 @@ COMMANDS = (
         notes=(
             "Disputed: x, y and z are carried in tenths of a millimetre. Read: x10, as the formula divides (confidence high).",
         ),
+        role="coordinates",
     ),
     Command(
         id=0x24,
@@ -90,6 +91,7 @@ COMMANDS = (
             "Disputed: x, y and z are carried in tenths of a millimetre. Read: x10, as the example sends it (confidence high).",
         ),
         ack=True,
+        role="coordinate target",
     ),
     Command(
         id=0x25,
@@ -160,6 +162,7 @@ COMMANDS = (
             "That a request without a mode takes the path of set_movement_type is read from the names; no source says it.",
         ),
         ack=True,
+        role="coordinate targets",
     ),
     Command(
         id=0xD5,

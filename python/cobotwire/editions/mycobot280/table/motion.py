@@ -67,6 +67,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="joints",
     ),
     Command(
         id=0x21,
@@ -125,6 +126,7 @@ COMMANDS = (
             "The protocol has no checksum; a request that is damaged on the line is simply another angle, and the arm obeys it.",
         ),
         ack=True,
+        role="joint target",
     ),
     Command(
         id=0x22,
@@ -170,6 +172,7 @@ COMMANDS = (
             "The protocol has no checksum; a request that is damaged on the line is simply another angle, and the arm obeys it.",
         ),
         ack=True,
+        role="joint targets",
     ),
     Command(
         id=0x26,
@@ -273,6 +276,7 @@ COMMANDS = (
             "It ends jogging too; this edition has no jog_stop.",
         ),
         ack=True,
+        role="stop",
     ),
     Command(
         id=0x2A,
@@ -320,6 +324,7 @@ COMMANDS = (
         notes=(
             "Disputed: The request always carries the kind of the target, as its last data byte. Read: LEN 0F: six words, then the kind (confidence high).",
         ),
+        role="reached",
     ),
     Command(
         id=0x2B,
@@ -343,6 +348,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="moving",
     ),
     Command(
         id=0x05,
@@ -523,6 +529,7 @@ COMMANDS = (
             "The limits are those of send_angles, with the same doubt; the maker's library does not check the angles of this call at all.",
         ),
         ack=True,
+        role="joint targets",
     ),
     Command(
         id=0x87,

@@ -80,6 +80,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="powered",
     ),
     Command(
         id=0x13,

@@ -1,0 +1,169 @@
+"""The page of bad lines: how a run's outcomes are judged, and how they are laid out."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from field_notes.case import DONE, Case
+from field_notes.cases import GROUPS
+from field_notes.notes import NOTES
+from field_notes.play import RIGHT, WRONG, Outcome
+
+BEGIN, END = "<!-- begin: make table -->", "<!-- end: make table -->"
+LINKS = {"pty": "pty", "tcp": "TCP"}
+TITLES = {"blocking": "blocking", "asyncio": "asyncio", "pymycobot": "pymycobot 4.0.7"}
+KINDS = ("right", "honest error", "-1 or None", "crash", WRONG, "sent too often", "hang")
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one client did with one case."""
+
+    case: Case
+    outcomes: list[Outcome]
+    seconds: float
+    frames: list[bytes]
+    garbled: int
+    hung: bool
+
+    def kinds(self) -> Counter[str]:
+        """How often each kind of end was reached."""
+        kinds = Counter(self._kind(outcome) for outcome in self.outcomes)
+        if self.hung:
+            kinds["hang"] += 1
+        return kinds
+
+    def worst(self) -> str:
+        """The kind that the row counts as."""
+        return max(self.kinds(), key=KINDS.index)
+
+    def _kind(self, outcome: Outcome) -> str:
+        if outcome.verdict in (RIGHT, "-1", "None") and self._wrong_on_the_line():
+            return WRONG
+        if outcome.verdict in (RIGHT, "-1", "None") and self._too_often():
+            return "sent too often"
+        if outcome.verdict in (RIGHT, WRONG):
+            return outcome.verdict
+        if outcome.verdict in ("-1", "None"):
+            return "-1 or None"
+        return "honest error" if outcome.meant else "crash"
+
+    def _orders(self) -> list[bytes]:
+        return [call.sends for call in self.case.calls if call.right == DONE and call.sends]
+
+    def _wrong_on_the_line(self) -> bool:
+        return any(order not in self.frames for order in self._orders())
+
+    def _too_often(self) -> bool:
+        return any(self.frames.count(order) > 1 for order in self._orders())
+
+    def text(self, limit: float) -> str:
+        """The cell of the table."""
+        parts = [self._ends(), self._time(limit), self._asked()]
+        return ", ".join(part for part in parts if part)
+
+    def _ends(self) -> str:
+        told = Counter(self._told(outcome) for outcome in self.outcomes)
+        if self.hung:
+            told["**hangs**"] += 1
+        if self._by_chance():
+            order = sorted(self.outcomes, key=lambda outcome: KINDS.index(self._kind(outcome)))
+            return f"from {self._told(order[0])} to {self._told(order[-1])}"
+        return "; ".join(told) if len(told) < len(self.outcomes) else "; ".join(told.elements())
+
+    def _by_chance(self) -> bool:
+        """Many calls that end in different ways: how many in which way differs from run to run."""
+        return len(self.outcomes) > 3 and len({self._kind(one) for one in self.outcomes}) > 1
+
+    def _told(self, outcome: Outcome) -> str:
+        kind = self._kind(outcome)
+        if kind == "right":
+            return "right"
+        if kind == "sent too often":
+            return f"gives {outcome.verdict if outcome.verdict != RIGHT else outcome.detail}"
+        if kind == WRONG and outcome.verdict != WRONG:
+            return f"**wrong, silently**: {self.frames[0].hex(' ').upper()} sent"
+        if kind == WRONG:
+            value = "" if len(self.outcomes) > 3 else f": {outcome.detail}"
+            return f"**wrong, silently**{value}"
+        return f"**{outcome.verdict}**" if kind == "crash" else outcome.verdict
+
+    def _time(self, limit: float) -> str:
+        if self.hung:
+            return f"ended after {limit:.0f} s"
+        if self._by_chance():
+            return ""
+        return "< 0.1 s" if self.seconds < 0.095 else f"{self.seconds:.1f} s"
+
+    def _asked(self) -> str:
+        calls = len(self.case.calls) * self.case.repeat
+        garbled = f", {self.garbled} bytes garbled" if self.garbled else ""
+        requests = len(self.frames)
+        if self.case.deaf or self._by_chance() or (requests == calls and not garbled):
+            return ""
+        often = f"{requests} request{'s' if requests > 1 else ''} for {calls} calls"
+        if calls == 1:
+            often = {2: "sent twice"}.get(requests, f"sent {requests} times")
+        return f"**{often}**{garbled}" if self._too_often() else often + garbled
+
+
+Results = Mapping[tuple[str, str, str], Row]
+
+
+def page(results: Results, clients: tuple[str, ...], limit: float) -> str:
+    """The generated part of the page."""
+    parts = [BEGIN, _summary(results, clients)]
+    for title, cases in GROUPS.items():
+        parts.append(f"### {title}")
+        parts.append(
+            _table([case for case in cases if _has(results, case)], results, clients, limit)
+        )
+    parts.append(_quoted(results))
+    parts.append(END)
+    return "\n\n".join(parts) + "\n"
+
+
+def _has(results: Results, case: Case) -> bool:
+    return any(name == case.name for name, _, _ in results)
+
+
+def _summary(results: Results, clients: tuple[str, ...]) -> str:
+    runs = len(results) // len(clients)
+    lines = [
+        f"| the worst that a caller got, of {runs} runs | "
+        + " | ".join(TITLES[who] for who in clients)
+        + " |"
+    ]
+    lines.append("|---|" + "---|" * len(clients))
+    counts = {
+        who: Counter(row.worst() for (_, _, by), row in results.items() if by == who)
+        for who in clients
+    }
+    for kind in KINDS:
+        cells = " | ".join(str(counts[who][kind]) for who in clients)
+        lines.append(f"| {kind} | {cells} |")
+    return "\n".join(lines)
+
+
+def _table(cases: list[Case], results: Results, clients: tuple[str, ...], limit: float) -> str:
+    lines = [
+        "| case | what the peer does | line | " + " | ".join(TITLES[w] for w in clients) + " |"
+    ]
+    lines.append("|---|---|---|" + "---|" * len(clients))
+    for case in cases:
+        for number, link in enumerate(case.links):
+            head = f"| {case.name} | {case.peer} " if number == 0 else "| | "
+            cells = " | ".join(results[case.name, link, who].text(limit) for who in clients)
+            lines.append(f"{head}| {LINKS[link]} | {cells} |")
+    return "\n".join(lines)
+
+
+def _quoted(results: Results) -> str:
+    lines = ["### The lines of the notes", ""]
+    for key, piece in NOTES.items():
+        names = [case.name for cases in GROUPS.values() for case in cases if key in case.notes]
+        if names:
+            lines.append(f"- {piece}\n  *{'; '.join(names)}*")
+    return "\n".join(lines)

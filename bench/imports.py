@@ -1,0 +1,89 @@
+"""What it costs to have cobotwire: the time of its import beside pymycobot's, and its size on disk.
+
+Each import runs in a process of its own, all candidates in turns; the import alone is timed, not
+the start of Python. The median counts. The names that a program uses are loaded when they are asked
+for, so there is a row for the name of the client, too.
+"""
+
+from __future__ import annotations
+
+import compileall
+import statistics
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+TURNS = 15
+TIMES_FASTER = 5.0
+LARGEST = 5 << 20
+TIMED = "import time; t = time.perf_counter(); {}; print(time.perf_counter() - t)"
+IMPORTS = {
+    "cobotwire": "import cobotwire",
+    "pymycobot": "import pymycobot",
+    "cobotwire's client": "from cobotwire import MyCobot",
+    "pymycobot's client": "from pymycobot import MyCobot280",
+}
+
+
+def main() -> None:
+    """Measure, and print ratios beside the limits."""
+    _times()
+    _size()
+
+
+def _times() -> None:
+    taken: dict[str, list[float]] = {name: [] for name in IMPORTS}
+    for turn in range(TURNS + 1):
+        for name, statement in IMPORTS.items():
+            seconds = _timed(statement)
+            # The first turn writes the caches.
+            if turn:
+                taken[name].append(seconds)
+    middle = {name: statistics.median(times) for name, times in taken.items()}
+    for ours, theirs, limit in (
+        ("cobotwire", "pymycobot", TIMES_FASTER),
+        ("cobotwire's client", "pymycobot's client", None),
+    ):
+        faster = middle[theirs] / middle[ours]
+        verdict = "" if limit is None else f"   {_within(faster >= limit)} {limit:.0f} x"
+        print(
+            f"{IMPORTS[ours]:30} {middle[ours] * 1e3:6.1f} ms   {faster:5.1f} x faster than "
+            f"{IMPORTS[theirs]} ({middle[theirs] * 1e3:.1f} ms){verdict}"
+        )
+
+
+def _timed(statement: str) -> float:
+    command = [sys.executable, "-c", TIMED.format(statement)]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)  # noqa: S603  (our own)
+    return float(result.stdout)
+
+
+def _size() -> None:
+    """The wheel, built anew, unpacked and compiled, as pip leaves it."""
+    with tempfile.TemporaryDirectory() as folder:
+        maturin = [sys.executable, "-m", "maturin", "build", "--release", "--quiet"]
+        subprocess.run(  # noqa: S603  (our own)
+            [*maturin, "--out", folder], cwd=ROOT, check=True, capture_output=True
+        )
+        wheel = next(Path(folder).glob("*.whl"))
+        packed = wheel.stat().st_size
+        unpacked = Path(folder) / "unpacked"
+        with zipfile.ZipFile(wheel) as archive:
+            archive.extractall(unpacked)
+        compileall.compile_dir(unpacked, quiet=1)
+        size = sum(file.stat().st_size for file in unpacked.rglob("*") if file.is_file())
+    print(
+        f"installed size without extras {size / 2**20:5.2f} MiB (packed {packed / 2**20:.2f} MiB)"
+        f"   {_within(size <= LARGEST)} 5 MiB"
+    )
+
+
+def _within(right: bool) -> str:
+    return "within" if right else "OVER"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""Which serial ports there are, and behind which of them an arm may stand."""
+
+from __future__ import annotations
+
+import glob
+import os
+from typing import NamedTuple
+
+from serial.tools import list_ports
+
+# The bridges on the controllers of these arms (M5Stack Basic and Atom, and what makers of carrier
+# boards take). By vendor and product of USB; the ids are their makers' own.
+BRIDGES: dict[tuple[int, int], str] = {
+    (0x10C4, 0xEA60): "CP2102/CP2104, the bridge of many M5Stack controllers",
+    (0x1A86, 0x55D4): "CH9102, the bridge of newer M5Stack and Atom controllers",
+    (0x1A86, 0x7523): "CH340, the bridge of some carrier boards",
+    (0x0403, 0x6001): "FT232R, the bridge of Atom controllers",
+    (0x0403, 0x6015): "FT231X, the bridge of some carrier boards",
+    (0x303A, 0x1001): "the USB port of an ESP32-S3 or -C3 itself, as on AtomS3",
+}
+# The built-in ports to which arms with a computer in their base have their controller wired. That
+# of the Jetson is none that pyserial looks for.
+WIRED = {
+    "/dev/ttyAMA": "the built-in port of a Raspberry Pi, to which Pi versions have their arm wired",
+    "/dev/ttyTHS": "the built-in port of a Jetson, to which its versions have their arm wired",
+}
+
+
+class Port(NamedTuple):
+    """A serial port of this machine.
+
+    Attributes:
+        device: what to open.
+        likely: whether an arm may well stand behind it.
+        why: what speaks for it, or that nothing does.
+        accessible: whether this user may open it; it may be open elsewhere all the same.
+        description: what the system calls it.
+        usb: vendor and product, ``10C4:EA60``; empty for what is no USB device.
+        serial_number: of the USB device; empty if it has none.
+    """
+
+    device: str
+    likely: bool
+    why: str
+    accessible: bool
+    description: str = ""
+    usb: str = ""
+    serial_number: str = ""
+
+
+def ports() -> list[Port]:
+    """The ports of this machine, likely ones first. None of them is opened."""
+    found = {
+        info.device: _port(
+            info.device, info.vid, info.pid, info.description or "", info.serial_number or ""
+        )
+        for info in list_ports.comports()
+    }
+    for prefix in WIRED:
+        for device in glob.glob(f"{prefix}*"):
+            found.setdefault(device, _port(device, None, None, "", ""))
+    return sorted(found.values(), key=lambda port: (not port.likely, port.device))
+
+
+def judge(device: str, vendor: int | None, product: int | None) -> tuple[bool, str]:
+    """Whether an arm may stand behind a port, and why."""
+    if vendor is not None and product is not None:
+        bridge = BRIDGES.get((vendor, product))
+        return (True, bridge) if bridge else (False, "a USB device that no such arm is known by")
+    for prefix, why in WIRED.items():
+        if device.startswith(prefix):
+            return True, why
+    return False, "no USB device, nor a port to which such an arm is known to be wired"
+
+
+def _port(
+    device: str, vendor: int | None, product: int | None, description: str, serial_number: str
+) -> Port:
+    likely, why = judge(device, vendor, product)
+    return Port(
+        device,
+        likely,
+        why,
+        # On Windows this is always so; there it is the opening that tells.
+        os.access(device, os.R_OK | os.W_OK) or os.name != "posix",
+        description if description != "n/a" else "",
+        "" if vendor is None or product is None else f"{vendor:04X}:{product:04X}",
+        serial_number,
+    )

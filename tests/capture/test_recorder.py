@@ -1,0 +1,184 @@
+"""Chunks of a line to packets: every byte, both ways, at its time."""
+
+from __future__ import annotations
+
+import errno
+import io
+import logging
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+
+from capture.lines import FRAMES, Chunk, chunks, line_bytes, reader
+from cobotwire import MyCobot
+from cobotwire import codec as codecs
+from cobotwire.capture import CaptureWriter, Packet, Recorder, Recording, read
+from cobotwire.codec.interface import Codec
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.errors import CaptureError, UsageError
+from cobotwire.sim import PtyServer
+from cobotwire.transport import TappedLink, open_link
+
+ASK, ANGLES = FRAMES[0], FRAMES[1]
+
+
+def recorded(codec: Codec | None, given_chunks: list[Chunk]) -> list[Packet]:
+    file = io.BytesIO()
+    writer = CaptureWriter(file)
+    recorder = Recorder(writer, codec)
+    for chunk in given_chunks:
+        recorder(chunk)
+    recorder.close()
+    writer.finish()
+    return list(reader(file.getvalue()))
+
+
+def pieces_of(packets: list[Packet], way: str) -> list[tuple[int, int]]:
+    """Each byte's value and time, in the order of the line."""
+    found: list[tuple[int, int]] = []
+    for packet in packets:
+        if packet.direction == way:
+            times = [t for size, t in packet.pieces for _ in range(size)]
+            found += zip(packet.data, times or [packet.time_ns] * len(packet.data))
+    return found
+
+
+@given(given_chunks=chunks())
+def test_the_packets_of_a_direction_are_the_bytes_of_the_line(
+    given_chunks: list[Chunk],
+) -> None:
+    for codec in (None, codecs.load(TABLE)):
+        packets = recorded(codec, given_chunks)
+        start = time.time_ns() - time.monotonic_ns()
+        for way in ("sent", "heard"):
+            bytes_ = [
+                (b, round(c.time * 1e9)) for c in given_chunks if c.direction == way for b in c.data
+            ]
+            found = pieces_of(packets, way)
+            assert [b for b, _ in found] == [b for b, _ in bytes_]
+            # The anchor is the recorder's own; what counts is that all times have the same.
+            assert len({got - was for (_, got), (_, was) in zip(found, bytes_)}) <= 1
+            assert all(abs(got - was - start) < 10**10 for (_, got), (_, was) in zip(found, bytes_))
+        assert all(packet.data for packet in packets)
+
+
+def test_a_packet_is_a_frame_or_noise(codec: Codec) -> None:
+    panic = b"Guru Meditation"
+    packets = recorded(
+        codec,
+        [Chunk(1.0, "sent", ASK + ASK), Chunk(1.01, "heard", FRAMES[2] + panic + ANGLES)],
+    )
+    assert [(p.direction, p.kind, p.data) for p in packets] == [
+        ("sent", "frame", ASK),
+        ("sent", "frame", ASK),
+        ("heard", "frame", FRAMES[2]),
+        ("heard", "noise", panic),
+        ("heard", "frame", ANGLES),
+    ]
+    assert packets[3].reason == "no-header"
+
+
+def test_what_the_edition_lacks_is_one_span_with_its_first_reason(codec: Codec) -> None:
+    unknown = bytes.fromhex("FE FE 03 10 01 FA")
+    (packet,) = recorded(codec, [Chunk(1.0, "heard", unknown)])
+    assert (packet.kind, packet.reason, packet.data) == ("noise", "unknown-id", unknown)
+
+
+def test_a_frame_in_pieces_keeps_the_time_of_each(codec: Codec) -> None:
+    packets = recorded(codec, [Chunk(5.0, "heard", ANGLES[:8]), Chunk(5.1, "heard", ANGLES[8:])])
+    (packet,) = packets
+    assert packet.data == ANGLES
+    assert [piece.size for piece in packet.pieces] == [8, 9]
+    assert packet.pieces[0].time_ns == packet.time_ns
+    assert packet.pieces[1].time_ns == packet.time_ns + 100_000_000
+
+
+def test_half_a_frame_is_not_kept_for_ever(codec: Codec) -> None:
+    # The rest never comes; what is asked later shows that time has passed.
+    packets = recorded(codec, [Chunk(5.0, "heard", ANGLES[:8]), Chunk(9.0, "sent", ASK)])
+    assert b"".join(p.data for p in packets if p.direction == "heard") == ANGLES[:8]
+    assert packets[0].direction == "heard"
+
+
+def test_a_drivers_traffic_is_recorded_as_it_goes(server: PtyServer, tmp_path: Path) -> None:
+    traffic: list[Chunk] = []
+    path = tmp_path / "arm.pcapng"
+    codec = codecs.load(TABLE)
+    with Recording(path, codec, url=server.url, baudrate=115200) as recording:
+
+        def trace(moment: Any) -> None:
+            traffic.append(Chunk(moment.time, moment.direction, moment.data))
+            recording(moment)
+
+        with MyCobot(server.url, trace=trace) as arm:
+            arm.power_on()
+            arm.get_angles()
+    with read(path) as capture:
+        packets = list(capture)
+    assert capture.finished
+    assert capture.interfaces == [(server.url, "mycobot", 115200)]
+    for way in ("sent", "heard"):
+        assert line_bytes(packets, way) == b"".join(t.data for t in traffic if t.direction == way)
+    assert {packet.kind for packet in packets} == {"frame"}
+    assert abs(packets[0].time_ns - time.time_ns()) < 60e9
+
+
+def test_a_recording_is_not_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "there.pcapng"
+    path.write_bytes(b"mine")
+    with pytest.raises(UsageError, match="a file that is not there yet"):
+        Recording(path, None)
+    assert path.read_bytes() == b"mine"
+    with pytest.raises(UsageError, match="No such file"):
+        Recording(tmp_path / "no" / "folder", None)
+
+
+KILLED = """
+import os, signal, sys
+from capture.lines import Chunk, FRAMES
+from cobotwire import codec as codecs
+from cobotwire.capture import Recording
+from cobotwire.editions.mycobot import TABLE
+recording = Recording(sys.argv[1], codecs.load(TABLE))
+for i in range(100):
+    recording(Chunk(i / 100, "heard", FRAMES[1]))
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_killed_process_leaves_every_whole_frame(tmp_path: Path) -> None:
+    path = tmp_path / "killed.pcapng"
+    tests = Path(__file__).parents[1]
+    result = subprocess.run([sys.executable, "-c", KILLED, str(path)], cwd=tests, check=False)
+    assert result.returncode == -signal.SIGKILL
+    capture = read(path)
+    assert len(list(capture)) == 100
+    assert not capture.finished
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="only Linux has a disk always full")
+def test_a_full_disk_ends_the_recording_but_not_the_call(
+    caplog: pytest.LogCaptureFixture, server: PtyServer
+) -> None:
+    with open("/dev/full", "wb", buffering=0) as full:
+        good = io.BytesIO()
+        writer = CaptureWriter(good)
+        recorder = Recorder(writer, codecs.load(TABLE), name="full.pcapng")
+        writer._file = full
+        link = TappedLink(open_link(server.url, 115200), recorder.record)
+        with caplog.at_level(logging.ERROR), MyCobot(link) as arm:
+            arm.power_on()
+            arm.get_angles()
+        assert caplog.text.count("recording to full.pcapng ended") == 1
+        with pytest.raises(CaptureError, match="recording ended early") as caught:
+            recorder.close()
+        assert caught.value.offset == len(good.getvalue())
+        assert isinstance(caught.value.__cause__, OSError)
+        assert caught.value.__cause__.errno == errno.ENOSPC

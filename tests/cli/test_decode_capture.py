@@ -1,0 +1,97 @@
+"""``call --record``, and ``decode`` of that: each frame with its time, in its direction."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cobotwire.capture import CaptureWriter, Interface, Packet, read
+from cobotwire.sim import PtyServer
+from scripted_peer import ScriptedPeer
+
+COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
+ASK = bytes.fromhex("FE FE 02 20 FA")
+ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
+
+
+def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+@pytest.fixture
+def recorded(tmp_path: Path) -> Path:
+    """A call on a bad line: an echo, a servo leak, and a reply with a pause inside."""
+    path = tmp_path / "arm.pcapng"
+    with ScriptedPeer([ASK, LEAK + ANGLES[:8], 0.1, ANGLES[8:]]) as peer:
+        result = run("call", "get_angles", "--port", peer.url, "--record", path)
+    assert (result.returncode, result.stderr) == (0, "")
+    return path
+
+
+def test_frames_have_times_and_directions(recorded: Path) -> None:
+    result = run("decode", recorded)
+    assert (result.returncode, result.stderr) == (1, "")
+    asked, echo, leak, reply = (line.split() for line in result.stdout.splitlines())
+    assert asked[:4] == ["0.000000", ">", "0", "frame"]
+    assert " ".join(asked[9:]) == "request: get_angles()"
+    assert echo[1:4] == ["<", "0", "other-way"]
+    assert " ".join(echo[9:]) == "echo of our own get_angles"
+    assert leak[1:4] == ["<", "5", "servo"]
+    assert reply[1:4] == ["<", "13", "frame"]
+    assert "reply:" in reply
+    assert "request:" not in reply
+    assert 0 <= float(echo[0]) <= float(leak[0]) <= float(reply[0]) < 10
+
+
+def test_json_says_when_and_which_way(recorded: Path) -> None:
+    result = run("decode", recorded, "--json", "--summary")
+    *entries, summary = map(json.loads, result.stdout.splitlines())
+    packets = list(read(recorded))
+    assert entries[0]["time_ns"] == packets[0].time_ns
+    assert [entry["direction"] for entry in entries] == ["sent", "heard", "heard", "heard"]
+    assert [entry["kind"] for entry in entries] == ["frame", "noise", "noise", "frame"]
+    assert entries[2]["finding"] == "servo"
+    assert [reading["command"] for reading in entries[3]["readings"]] == ["get_angles"]
+    assert summary["bytes"] == sum(len(packet.data) for packet in packets)
+    assert sum(summary["noise"].values()) == len(ASK + LEAK)
+
+
+def test_a_capture_that_breaks_off_says_so(recorded: Path, tmp_path: Path) -> None:
+    whole = recorded.read_bytes()
+    cut = tmp_path / "cut.pcapng"
+    cut.write_bytes(whole[: whole.rindex(ANGLES[:8]) + 12])
+    result = run("decode", cut)
+    assert "ends in the middle of a packet" in result.stderr
+    assert "request: get_angles()" in result.stdout
+
+
+def test_packets_without_a_direction_are_read_as_the_caller_says(tmp_path: Path) -> None:
+    path = tmp_path / "other.pcapng"
+    with path.open("wb") as file:
+        writer = CaptureWriter(file, "another program")
+        line = writer.interface(Interface("", "", 0))
+        writer.packet(Packet(1_000, "unknown", ANGLES[:5], "bytes", interface=line))
+        writer.packet(Packet(2_000, "unknown", ANGLES[5:], "bytes", interface=line))
+        writer.finish()
+    result = run("decode", path, "--direction", "reply")
+    assert result.returncode == 0
+    assert result.stdout.split()[:4] == ["0.000000", "?", "0", "frame"]
+
+
+def test_a_recording_is_not_overwritten_and_nothing_is_sent(
+    server: PtyServer, tmp_path: Path
+) -> None:
+    path = tmp_path / "there.pcapng"
+    path.write_bytes(b"precious")
+    result = run("call", "power_on", "--port", server.url, "--record", path)
+    assert result.returncode == 2
+    assert "a file that is not there yet" in result.stderr
+    assert path.read_bytes() == b"precious"
+    assert not server.arm.state.powered

@@ -1,0 +1,103 @@
+"""``cobotwire monitor`` as a process: lines, JSON, a table on a terminal, and its end."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from cobotwire import MyCobot
+from cobotwire.capture import read
+from cobotwire.sim import PtyServer
+from scripted_peer import ScriptedPeer
+
+COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "monitor"]
+ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
+
+
+def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def test_lines_where_there_is_no_terminal(server: PtyServer) -> None:
+    result = run(server.url, "--count", "3", "--rate", "50")
+    assert (result.returncode, result.stderr) == (0, "")
+    lines = result.stdout.splitlines()
+    assert len(lines) == 3
+    assert all("get_angles" in line and "get_coords" in line for line in lines)
+    assert "\x1b" not in result.stdout
+
+
+def test_json_tells_values_errors_and_noise() -> None:
+    with ScriptedPeer([LEAK + ANGLES]) as peer:
+        result = run(peer.url, "--count", "2", "--json")
+    first, second = map(json.loads, result.stdout.splitlines())
+    assert first["values"]["get_angles"]["j1"] == 1.4
+    assert first["values"]["get_coords"] is None
+    assert (first["unanswered"], second["unanswered"]) == (1, 3)
+    assert first["noise"] == len(LEAK)
+    assert first["diagnosis"].startswith("servo bus leak")
+    assert "no answer to" in second["error"]
+
+
+def test_the_rate_is_kept(server: PtyServer) -> None:
+    result = run(server.url, "--count", "11", "--rate", "20", "--json")
+    samples = [json.loads(line) for line in result.stdout.splitlines()]
+    assert samples[-1]["time"] >= 0.5 - 0.05
+    assert samples[-1]["rate"] <= 21
+    assert run(server.url, "--rate", "0").returncode == 2
+
+
+def test_ctrl_c_leaves_port_arm_and_recording_in_order(server: PtyServer, tmp_path: Path) -> None:
+    path = tmp_path / "watched.pcapng"
+    process = subprocess.Popen(
+        [*COMMAND, server.url, "--rate", "100", "--record", str(path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        # A test run in the background has SIGINT ignored, and so would its children.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    assert process.stdout is not None
+    for _ in range(5):
+        assert b"get_angles" in process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=30)
+    assert (process.returncode, error) == (0, b"")
+    capture = read(path)
+    assert len(list(capture)) >= 10
+    assert capture.finished
+    with MyCobot(server.url) as arm:
+        assert arm.is_power_on() is False
+
+
+def test_a_link_that_goes_has_its_own_code() -> None:
+    with ScriptedPeer([ANGLES, None]) as peer:
+        result = run(peer.url)
+    assert result.returncode == 3
+    assert "Traceback" not in result.stderr
+
+
+def test_a_table_on_a_terminal(server: PtyServer) -> None:
+    terminal, inner = pty.openpty()
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}
+    process = subprocess.Popen(
+        [*COMMAND, server.url, "--count", "2"], stdout=inner, stderr=inner, env=environment
+    )
+    os.close(inner)
+    shown = b""
+    try:
+        while chunk := os.read(terminal, 4096):
+            shown += chunk
+    except OSError:
+        pass  # the other end is closed
+    os.close(terminal)
+    assert process.wait(timeout=30) == 0
+    assert b"get_angles" in shown
+    assert "│".encode() in shown

@@ -1,0 +1,148 @@
+"""``cobotwire replay``: a real conversation, recorded, shown and held again."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from cobotwire import MyCobot, ReplyTimeout
+from cobotwire import codec as codecs
+from cobotwire.capture import Recording, read
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.sim import PtyServer
+from cobotwire.transport import TappedLink, open_link
+
+COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "replay"]
+ANGLES = (10.0, -20.0, 30.0, 0.0, 5.5, 0.0)
+
+
+def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def converse(url: str, tap: Recording | None = None) -> list[object]:
+    """A conversation, and its answers."""
+    link = open_link(url, 115200)
+    with MyCobot(link if tap is None else TappedLink(link, tap.record)) as arm:
+        said: list[object] = [arm.is_power_on()]
+        arm.power_on()
+        said.append(arm.is_power_on())
+        arm.set_digital_output(23, True)
+        said.append(arm.get_angles())
+        return said
+
+
+@pytest.fixture
+def recorded(server: PtyServer, tmp_path: Path) -> tuple[Path, list[object]]:
+    """A capture, and what the arm answered in it."""
+    path = tmp_path / "arm.pcapng"
+    with Recording(path, codecs.load(TABLE), url=server.url, baudrate=115200) as recording:
+        answers = converse(server.url, recording)
+    return path, answers
+
+
+def test_a_timeline_says_what_went_over_the_line(recorded: tuple[Path, list[object]]) -> None:
+    result = run(recorded[0])
+    assert result.returncode == 0
+    assert result.stderr == ""
+    lines = result.stdout.splitlines()
+    assert lines[0] == "  0.000000 > FE FE 02 12 FA   is_power_on()"
+    assert (
+        lines[1].endswith(" < FE FE 03 12 00 FA   -> is_power_on(powered=no)") or "->" in lines[1]
+    )
+    assert any("power_on()" in line for line in lines)
+    assert len(lines) == len(list(read(recorded[0])))
+
+
+def test_json_is_an_object_a_packet(recorded: tuple[Path, list[object]]) -> None:
+    result = run(recorded[0], "--json")
+    entries = [json.loads(line) for line in result.stdout.splitlines()]
+    packets = list(read(recorded[0]))
+    assert [bytes.fromhex(entry["data"]) for entry in entries] == [p.data for p in packets]
+    assert [entry["time_ns"] for entry in entries] == [p.time_ns for p in packets]
+    assert entries[0]["direction"] == "sent"
+    assert entries[0]["kind"] == "frame"
+
+
+def test_the_recorded_arm_gives_the_same_answers(recorded: tuple[Path, list[object]]) -> None:
+    path, answers = recorded
+    process = subprocess.Popen(
+        [*COMMAND, str(path), "--serve"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert process.stdout is not None
+        url = process.stdout.readline().strip()
+        assert converse(url) == answers
+        # A second time, from the beginning.
+        assert converse(url) == answers
+        with MyCobot(url, timeout=0.2) as arm, pytest.raises(ReplyTimeout):
+            arm.get_coords()
+        process.send_signal(signal.SIGTERM)
+        output, errors = process.communicate(timeout=10)
+        assert process.returncode == 0
+        assert errors == ""
+        assert "FE FE 02 12 FA   answered by 6 bytes" in output
+        assert "FE FE 02 23 FA   was not recorded" in output
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_a_recording_that_breaks_off_says_where(recorded: tuple[Path, list[object]]) -> None:
+    path, _ = recorded
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-70])
+    result = run(path)
+    assert result.returncode == 0
+    assert "> FE FE 02 12 FA" in result.stdout
+    assert "ends in the middle of a packet; what comes before byte" in result.stderr
+
+
+def test_a_recording_that_was_not_ended_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "open.pcapng"
+    recording = Recording(path, codecs.load(TABLE))
+    recording.record("sent", bytes.fromhex("FE FE 02 12 FA"), time.monotonic())
+    result = run(path)
+    assert "is_power_on()" in result.stdout
+    assert "was not ended in order" in result.stderr
+    recording.close()
+
+
+@pytest.mark.parametrize(
+    ("content", "code", "words"),
+    [
+        (None, 2, "No such file"),
+        (b"FE FE 02 12 FA", 6, "no pcapng file"),
+        (b"\n\r\r\n" + bytes(40), 6, "at byte 0"),
+    ],
+)
+def test_what_is_no_recording_is_told(
+    tmp_path: Path, content: bytes | None, code: int, words: str
+) -> None:
+    path = tmp_path / "file"
+    if content is not None:
+        path.write_bytes(content)
+    result = run(path)
+    assert result.returncode == code
+    assert words in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["--line", "7"], "line is 7; allowed: 0..0"), (["--speed", "0"], "speed is 0.0")],
+)
+def test_wrong_options_are_told(
+    recorded: tuple[Path, list[object]], words: list[str], said: str
+) -> None:
+    result = run(recorded[0], "--serve", *words)
+    assert result.returncode == 2
+    assert said in result.stderr

@@ -1,0 +1,91 @@
+"""Each line of the field notes against a scripted peer: both clients, a real pty and real TCP.
+
+The cases are data in ``tests/field_notes``; ``make table`` shows what pymycobot does with them.
+"""
+
+from __future__ import annotations
+
+import re
+import threading
+
+import pytest
+
+import vectors
+from cobotwire.editions import mycobot, mycobot280
+from field_notes.case import DONE, Case
+from field_notes.cases import CASES
+from field_notes.notes import ELSEWHERE, FIGURES, NOTES
+from field_notes.peer import COUNTING_PEERS
+from field_notes.play import Outcome, play
+
+FIELD_NOTES = vectors.ROOT.parent / "shared" / "protocol" / "field-notes.md"
+RUNS = [
+    pytest.param(case, link, who, id=f"{case.name}, {link}, {who}")
+    for case in CASES.values()
+    for link in case.links
+    for who in ("blocking", "asyncio")
+]
+
+
+def _played(case: Case, who: str, url: str) -> tuple[list[Outcome], float]:
+    """Each of the case's clients in a thread of its own."""
+    outcomes: list[Outcome] = []
+    longest: list[float] = []
+
+    def work(client: int) -> None:
+        ended, seconds = play(case, who, url, client)
+        outcomes.extend(ended)
+        longest.append(seconds)
+
+    threads = [threading.Thread(target=work, args=(client,)) for client in range(case.clients)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return outcomes, max(longest)
+
+
+@pytest.mark.parametrize(("case", "link", "who"), RUNS)
+def test_a_line_of_the_notes_does_to_us_what_the_case_says(case: Case, link: str, who: str) -> None:
+    with COUNTING_PEERS[link](case) as peer:
+        outcomes, seconds = _played(case, who, peer.url)
+        peer.settle()
+    verdicts = [outcome.verdict for outcome in outcomes]
+    if case.clients > 1:
+        verdicts.sort(key=case.ours.index)
+    assert verdicts == list(case.ours), outcomes
+    assert seconds < case.within
+    assert peer.garbled == 0
+    if case.asked is not None:
+        assert len(peer.frames) == case.asked
+    for call in case.calls:
+        if call.right == DONE and call.sends:
+            assert peer.frames.count(call.sends) == 1
+
+
+def test_no_edition_sends_the_query_that_froze_an_arm() -> None:
+    for edition in (mycobot, mycobot280):
+        assert 0x19 not in {command.id for command in edition.TABLE.commands}
+
+
+def test_every_line_of_the_notes_has_a_case_or_says_who_holds_it() -> None:
+    named = {note for case in CASES.values() for note in case.notes}
+    assert named | set(ELSEWHERE) | set(FIGURES) == set(NOTES)
+    for case in CASES.values():
+        assert case.notes, case.name
+    for place in ELSEWHERE.values():
+        path, _, name = place.partition("::")
+        assert f"def {name}(" in (vectors.ROOT / path).read_text(), place
+
+
+@pytest.mark.skipif(not FIELD_NOTES.exists(), reason="the field notes lie beside the repository")
+def test_the_pieces_make_up_all_of_the_notes() -> None:
+    text = " ".join(FIELD_NOTES.read_text().split("\n## ", 1)[1].split())
+    for key, piece in NOTES.items():
+        assert piece in text, key
+        text = text.replace(piece, "")
+    left = re.sub(r"Noise seen on .*? line|## Timing|## What the usual .*? port\)", "", text)
+    left = left.replace(
+        "These are the cases that this project exists to end: each belongs in the tests.", ""
+    )
+    assert re.findall(r"\w+", left) == [], left

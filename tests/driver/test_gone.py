@@ -1,0 +1,77 @@
+"""Ports that are not there, are taken, or go away: a LinkError at once, for everybody."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import pytest
+
+from both_ways import Opener
+from cobotwire import LinkError, MyCobot, RetryPolicy
+from cobotwire.editions.mycobot import Angles
+from scripted_peer import ScriptedPeer
+
+ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+READ = Angles(1.4, 0.61, -0.26, -1.93, 1.75, -1.75)
+ASK = bytes.fromhex("FE FE 02 20 FA")
+ONCE = RetryPolicy(tries=1)
+
+
+def test_no_such_port(open_arm: Opener) -> None:
+    with pytest.raises(
+        LinkError, match="/dev/nosuchport: cannot be opened: No such file"
+    ) as caught:
+        open_arm("/dev/nosuchport")
+    assert isinstance(caught.value, OSError)
+
+
+def test_a_closed_port(open_arm: Opener) -> None:
+    with ScriptedPeer() as peer, open_arm(peer.url) as arm:
+        arm.close()
+        arm.close()
+        with pytest.raises(LinkError, match="closed"):
+            arm.power_on()
+        with pytest.raises(LinkError, match="closed"):
+            arm.get_angles()
+        assert peer.heard == b""
+
+
+def test_a_port_that_goes_away_while_waiting(open_arm: Opener, peer_on: Any) -> None:
+    with peer_on([ANGLES[:5], 0.1, None]) as peer, open_arm(peer.url, timeout=5) as arm:
+        started = time.monotonic()
+        with pytest.raises(LinkError):
+            arm.get_angles()
+        assert time.monotonic() - started < 1
+        with pytest.raises(LinkError):
+            arm.get_angles()
+
+
+def test_a_port_that_goes_away_is_told_to_everybody_who_waits(
+    open_arm: Opener, peer_on: Any
+) -> None:
+    told: list[BaseException] = []
+
+    def ask(joint: int) -> None:
+        try:
+            arm.get_encoder(joint)
+        except LinkError as error:
+            told.append(error)
+
+    with peer_on([0.2, None]) as peer, open_arm(peer.url, timeout=5) as arm:
+        started = time.monotonic()
+        threads = [threading.Thread(target=ask, args=(joint,)) for joint in range(1, 5)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert time.monotonic() - started < 2
+    assert len(told) == 4
+    assert len({id(error) for error in told}) == 4
+
+
+def test_a_port_that_another_program_has_open(open_arm: Opener) -> None:
+    with ScriptedPeer() as peer, MyCobot(peer.url):
+        with pytest.raises(LinkError, match="another program has it open"):
+            open_arm(peer.url)

@@ -1,0 +1,135 @@
+"""Motions that are waited for, on the simulated arm: reached, too slow, stuck, interrupted."""
+
+from __future__ import annotations
+
+import _thread
+import asyncio
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from both_ways import Opener, openers
+from cobotwire import MotionTimeout, ReplyTimeout, UsageError
+from cobotwire.editions.mycobot280 import TABLE, Angles, AsyncMyCobot280, MyCobot280, TargetKind
+from cobotwire.session import Traffic
+from cobotwire.session.motion import Ask, Pause, Went, until_reached
+from cobotwire.sim import PtyServer, SimulatedArm
+
+STOP = bytes.fromhex("FE FE 02 29 FA")
+THERE = [10.0, -20.0, 30.0, 0.0, 0.29, -5.0]
+OPENERS = openers(MyCobot280, AsyncMyCobot280)
+
+
+@pytest.fixture
+def simulated() -> SimulatedArm:
+    return SimulatedArm(TABLE)
+
+
+@pytest.fixture(params=list(OPENERS))
+def arm(request: pytest.FixtureRequest, simulated: SimulatedArm) -> Iterator[Any]:
+    """Either client, on an arm that is powered."""
+    opening: Opener = OPENERS[request.param]
+    with PtyServer(simulated) as server, opening(server.url) as opened:
+        opened.power_on(ack_within=1.0)
+        yield opened
+
+
+def test_a_move_returns_when_the_arm_is_there(arm: Any) -> None:
+    arm.move_angles(THERE, 50)
+    assert arm.get_angles() == Angles(*THERE)
+    assert arm.is_moving() is False
+
+
+def test_a_move_to_coordinates_returns_when_the_arm_is_there(arm: Any) -> None:
+    target = [120.0, 10.0, 200.0, 0.0, 0.0, 90.0]
+    arm.move_coords(target, 100)
+    assert list(arm.get_coords()) == target
+
+
+def test_a_move_that_is_not_waited_for_returns_at_once(arm: Any) -> None:
+    arm.move_angles([150, 0, 0, 0, 0, 0], 10, wait=False)
+    assert arm.is_moving() is True
+    with pytest.raises(MotionTimeout):
+        arm.wait_until_reached([150, 0, 0, 0, 0, 0], TargetKind.ANGLES, timeout=0.2)
+    arm.send_angles([0, 0, 0, 0, 0, 0], 100, ack_within=1.0)
+
+
+def test_too_slow_a_move_is_told_and_goes_on(arm: Any) -> None:
+    started = time.monotonic()
+    with pytest.raises(MotionTimeout, match="has not reached") as caught:
+        arm.move_angles([150, 0, 0, 0, 0, 0], 10, timeout=0.5)
+    assert 0.4 < time.monotonic() - started < 1.0
+    assert isinstance(caught.value, TimeoutError)
+    assert caught.value.standing is False
+    assert arm.is_moving() is True
+
+
+def test_an_arm_that_stops_short_is_told_before_the_time_is_over(
+    arm: Any, simulated: SimulatedArm
+) -> None:
+    simulated.state.maximum[2] = 10.0  # such a target is refused without a word
+    started = time.monotonic()
+    with pytest.raises(MotionTimeout, match="stands still short of"):
+        arm.move_angles(THERE, 50, timeout=20)
+    assert time.monotonic() - started < 3
+
+
+def test_a_target_beyond_the_limits_is_refused_before_a_byte_is_sent(arm: Any) -> None:
+    with pytest.raises(UsageError):
+        arm.move_angles([169, 0, 0, 0, 0, 0], 50)
+    with pytest.raises(UsageError, match="timeout"):
+        arm.move_angles(THERE, 50, timeout=-1)
+    assert arm.is_moving() is False
+
+
+def test_ctrl_c_stops_the_arm(simulated: SimulatedArm) -> None:
+    traffic: list[Traffic] = []
+    with PtyServer(simulated) as server, MyCobot280(server.url, trace=traffic.append) as arm:
+        arm.power_on(ack_within=1.0)
+        threading.Timer(0.3, _thread.interrupt_main).start()
+        with pytest.raises(KeyboardInterrupt):
+            arm.move_angles([150, 0, 0, 0, 0, 0], 10)
+        assert [one.data for one in traffic if one.direction == "sent"][-1] == STOP
+        assert arm.is_moving() is False
+
+
+def test_a_move_that_is_cancelled_stops_the_arm(simulated: SimulatedArm) -> None:
+    async def drive(url: str) -> bool:
+        async with AsyncMyCobot280(url) as arm:
+            await arm.power_on(ack_within=1.0)
+            with pytest.raises(TimeoutError):
+                async with asyncio.timeout(0.3):
+                    await arm.move_angles([150, 0, 0, 0, 0, 0], 10)
+            return await arm.is_moving()
+
+    with PtyServer(simulated) as server:
+        assert asyncio.run(drive(server.url)) is False
+
+
+def test_silent_firmware_does_not_hold_up_orders_and_says_so_if_asked() -> None:
+    silent = SimulatedArm(TABLE, acks=False)
+    for opening in OPENERS.values():
+        with PtyServer(silent) as server, opening(server.url) as arm:
+            started = time.monotonic()
+            for _ in range(50):
+                arm.set_color(1, 2, 3)
+            assert time.monotonic() - started < 0.3
+            with pytest.raises(ReplyTimeout, match=r"set_color\(red=1, green=2, blue=3\)"):
+                arm.set_color(1, 2, 3, ack_within=0.1)
+
+
+def test_what_is_asked_and_when_is_decided_by_numbers_alone() -> None:
+    steps = until_reached(TABLE, THERE, 0, limit=1.0, started=100.0)
+    assert next(steps) == Ask("is_in_position", (THERE, 0), 1.0)
+    # An unanswered question is no failure.
+    step = steps.send(Went(100.3))
+    assert isinstance(step, Ask)
+    assert (step.name, step.values) == ("is_moving", ())
+    assert step.longest == pytest.approx(0.7)
+    assert steps.send(Went(100.31, {"moving": 1})) == Pause(100.31)
+    assert isinstance(steps.send(Went(100.4)), Ask)
+    with pytest.raises(StopIteration):
+        steps.send(Went(100.5, {"reached": 1}))

@@ -1,0 +1,39 @@
+"""Minutes of a stream in accelerated time; the whole day is bench/streaming.py."""
+
+from __future__ import annotations
+
+import gc
+import tracemalloc
+from itertools import islice
+
+from accelerated import LATE, LOST, Checker, accelerated
+
+SAMPLES = 24_000
+
+
+def test_minutes_of_streaming_keep_memory_flat_and_samples_in_order() -> None:
+    with accelerated(rate=100.0) as (arm, stream):
+        checker = Checker(arm)
+        begun = arm.now
+
+        def take(count: int) -> int:
+            for sample in islice(stream, count):
+                one = sample.readings[0]
+                checker.check(sample.number, sample.slot, one.value, one.asked_at, one.answered_at)
+            gc.collect()
+            return tracemalloc.get_traced_memory()[0]
+
+        tracemalloc.start()
+        try:
+            early = take(SAMPLES // 10)
+            late = take(SAMPLES - SAMPLES // 10)
+        finally:
+            tracemalloc.stop()
+        assert late - early < 10_000, "bytes"
+        report = stream.report
+        assert arm.now - begun > 240
+        assert report.samples == SAMPLES
+        # What did not come, or too late, is missed and counted, and all slots are accounted for.
+        assert report.unanswered == arm.asked // LOST + arm.asked // LATE
+        assert report.unread == 0
+        assert abs(report.slots - (arm.now - begun) * 100) <= 1.5

@@ -1,0 +1,132 @@
+"""Plays a case's calls on one client, whichever library it is of, and says how each ended."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from both_ways import InLoop
+from cobotwire import CobotwireError
+from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
+from field_notes.case import DONE, Call, Case
+
+RIGHT, WRONG = "right", "wrong, silently"
+
+
+class Outcome(NamedTuple):
+    """How a call ended.
+
+    Attributes:
+        verdict: ``right``, ``wrong, silently``, ``-1``, ``None`` or the name of an error.
+        detail: the value, or the words of the error.
+        meant: whether an error is one that the library raises on purpose, or the system.
+    """
+
+    verdict: str
+    detail: str
+    meant: bool = True
+
+
+def open_blocking(url: str) -> Any:
+    """Our blocking client."""
+    return MyCobot280(url)
+
+
+def open_asyncio(url: str) -> Any:
+    """Our asyncio client, in a loop of its own thread."""
+    return InLoop(AsyncMyCobot280, url)
+
+
+def open_pymycobot(url: str) -> Any:
+    """The maker's library; imported here, since the tests of ours do not need it."""
+    if url.startswith("socket://"):
+        from pymycobot import MyCobot280Socket
+
+        host, port = url.removeprefix("socket://").split(":")
+        return MyCobot280Socket(host, int(port))
+    from pymycobot import MyCobot280 as Theirs
+
+    return Theirs(url, "115200")
+
+
+OPENERS: dict[str, Callable[[str], Any]] = {
+    "blocking": open_blocking,
+    "asyncio": open_asyncio,
+    "pymycobot": open_pymycobot,
+}
+
+
+def play(case: Case, who: str, url: str, client: int = 0) -> tuple[list[Outcome], float]:
+    """All calls of this client, and the seconds that they took; opening is not timed."""
+    try:
+        arm = OPENERS[who](url)
+    except Exception as error:
+        return [_failed(error)], 0.0
+    options = who == "pymycobot"
+    started = time.monotonic()
+    if case.threads:
+        outcomes = _in_threads(case, arm, options)
+    else:
+        outcomes = _in_turn(case.calls[client :: case.clients], case, arm, options)
+    seconds = time.monotonic() - started
+    if who != "pymycobot":
+        arm.__exit__(None, None, None)
+    return outcomes, seconds
+
+
+def _in_turn(calls: tuple[Call, ...], case: Case, arm: Any, options: bool) -> list[Outcome]:
+    outcomes: list[Outcome] = []
+    for _ in range(case.repeat):
+        for call in calls:
+            outcome = _called(call, arm, options)
+            if case.deaf and outcome.verdict == RIGHT:
+                continue
+            outcomes.append(outcome)
+            if case.deaf:
+                return outcomes
+    return outcomes
+
+
+def _in_threads(case: Case, arm: Any, options: bool) -> list[Outcome]:
+    outcomes: list[Outcome] = []
+
+    def work(call: Call) -> None:
+        outcomes.extend(_in_turn((call,), case, arm, options))
+
+    threads = [threading.Thread(target=work, args=(call,)) for call in case.calls]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return outcomes
+
+
+def _called(call: Call, arm: Any, options: bool) -> Outcome:
+    try:
+        value = getattr(arm, call.method)(
+            *call.arguments, **(call.their_options if options else {})
+        )
+    except Exception as error:
+        return _failed(error)
+    return _judged(call, value)
+
+
+def _judged(call: Call, value: Any) -> Outcome:
+    plain = list(value) if isinstance(value, tuple) else value
+    if plain == call.right or call.right == DONE:
+        return Outcome(RIGHT, repr(plain))
+    if plain is None or plain == -1:
+        return Outcome(repr(plain), "")
+    return Outcome(WRONG, repr(plain))
+
+
+def _failed(error: Exception) -> Outcome:
+    kind = type(error)
+    name = (
+        kind.__name__
+        if kind.__module__ in ("builtins", "cobotwire.errors")
+        else (f"{kind.__module__.split('.')[0]}.{kind.__name__}")
+    )
+    return Outcome(name, str(error), isinstance(error, CobotwireError | OSError))

@@ -1,0 +1,106 @@
+"""The far end of a link, held by the test itself: a pty or a TCP connection."""
+
+from __future__ import annotations
+
+import os
+import socket
+import tty
+from types import TracebackType
+from typing import Self
+
+from cobotwire.transport import Link, open_link
+
+FAST = 4_000_000
+
+
+class PtyEnd:
+    """The master of a pty; ``url`` is what to open."""
+
+    kind = "serial"
+
+    def __init__(self) -> None:
+        self._master, slave = os.openpty()
+        tty.setraw(slave)
+        self.url = os.ttyname(slave)
+        self._slave = slave
+
+    def accept(self) -> None:
+        # The link alone has it open now, so that closing the master is unplugging.
+        os.close(self._slave)
+        self._slave = -1
+
+    def say(self, data: bytes) -> None:
+        assert os.write(self._master, data) == len(data)
+
+    def hear(self, size: int) -> bytes:
+        heard = b""
+        while len(heard) < size:
+            heard += os.read(self._master, size - len(heard))
+        return heard
+
+    def unplug(self) -> None:
+        for descriptor in (self._master, self._slave):
+            if descriptor >= 0:
+                os.close(descriptor)
+        self._master = self._slave = -1
+
+
+class TcpEnd:
+    """A server that takes one connection at a time."""
+
+    kind = "socket"
+
+    def __init__(self) -> None:
+        self._server = socket.create_server(("127.0.0.1", 0))
+        self.url = f"socket://127.0.0.1:{self._server.getsockname()[1]}"
+        self._peer: socket.socket | None = None
+
+    def accept(self) -> None:
+        self._peer, _ = self._server.accept()
+        self._peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def say(self, data: bytes) -> None:
+        assert self._peer is not None
+        self._peer.sendall(data)
+
+    def hear(self, size: int) -> bytes:
+        assert self._peer is not None
+        heard = b""
+        while len(heard) < size:
+            heard += self._peer.recv(size - len(heard))
+        return heard
+
+    def hang_up(self) -> None:
+        """Close the connection; the server goes on listening."""
+        assert self._peer is not None
+        self._peer.close()
+        self._peer = None
+
+    def unplug(self) -> None:
+        if self._peer is not None:
+            self._peer.close()
+        self._server.close()
+
+
+End = PtyEnd | TcpEnd
+
+
+class Line:
+    """A link and its far end, for the length of a ``with`` block."""
+
+    def __init__(self, kind: str, baudrate: int = FAST) -> None:
+        self.end: End = PtyEnd() if kind == "serial" else TcpEnd()
+        self.link: Link = open_link(self.end.url, baudrate)
+        self.end.accept()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.link.close()
+        self.end.unplug()

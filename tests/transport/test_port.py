@@ -1,0 +1,175 @@
+"""What only serial ports have: locks, control lines, the terminal's modes."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import resource
+import struct
+import subprocess
+import sys
+import termios
+from typing import Any
+
+import pytest
+from serial.tools import list_ports
+
+from cobotwire.errors import LinkError
+from cobotwire.transport import open_link
+from cobotwire.transport.serial.opening import ask_low_latency
+from cobotwire.transport.serial.port import keep_others_out
+from cobotwire.transport.waiting import SELECTABLE, Waiter
+from transport.ends import FAST, Line, PtyEnd
+
+OPEN = """
+import sys
+from cobotwire import LinkError
+from cobotwire.transport import open_link
+try:
+    open_link(sys.argv[1], 115200)
+except LinkError as error:
+    print(error)
+else:
+    print("opened")
+"""
+
+
+# Becomes nobody only when Python is loaded: its files may be in a folder of root's.
+OPEN_WITHOUT_LOCK = """
+import os, sys
+os.setuid(65534)
+try:
+    os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY)
+except OSError as error:
+    print(error.strerror)
+else:
+    print("opened")
+"""
+
+
+def in_another_process(script: str, *arguments: str) -> str:
+    result = subprocess.run(
+        [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=True
+    )
+    return result.stdout.strip()
+
+
+def test_the_second_process_on_a_port_is_told_so() -> None:
+    with Line("serial") as line:
+        told = in_another_process(OPEN, line.end.url)
+        assert told == f"{line.end.url}: cannot be opened: another program has it open"
+        line.link.close()
+    end = PtyEnd()
+    assert in_another_process(OPEN, end.url) == "opened"
+    end.unplug()
+
+
+def test_the_second_link_of_this_process_is_told_so_too() -> None:
+    with Line("serial") as line:
+        with pytest.raises(LinkError, match="another program has it open"):
+            open_link(line.end.url, 115200)
+        with pytest.raises(LinkError, match="another program has it open"):
+            open_link(f"spy://{line.end.url}", 115200)
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can become somebody who is not root")
+def test_programs_that_ask_for_no_lock_are_kept_out_as_well() -> None:
+    end = PtyEnd()
+    os.chmod(end.url, 0o666)
+    try:
+        assert in_another_process(OPEN_WITHOUT_LOCK, end.url) == "opened"
+        keep_others_out(end._slave)
+        assert in_another_process(OPEN_WITHOUT_LOCK, end.url) == "Device or resource busy"
+    finally:
+        end.unplug()
+
+
+def test_dtr_and_rts_are_lowered_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[tuple[int, int]] = []
+    real = fcntl.ioctl
+
+    def watch(descriptor: Any, request: int, *rest: Any) -> Any:
+        if request in (termios.TIOCMBIC, termios.TIOCMBIS):
+            calls.append((request, struct.unpack("I", rest[0])[0]))
+        return real(descriptor, request, *rest)
+
+    # A pty has no such lines, so that nothing else here can show what they are set to.
+    monkeypatch.setattr(fcntl, "ioctl", watch)
+    with Line("serial"):
+        assert calls[0] == (termios.TIOCMBIC, termios.TIOCM_DTR | termios.TIOCM_RTS)
+        assert all(request == termios.TIOCMBIC for request, _ in calls)
+
+
+def test_the_terminal_is_raw_and_nothing_in_the_data_stops_it() -> None:
+    with Line("serial") as line:
+        descriptor = line.link.fileno()
+        assert descriptor is not None
+        incoming, outgoing, control, local, *_ = termios.tcgetattr(descriptor)
+        assert incoming & (termios.IXON | termios.IXOFF | termios.IXANY | termios.ICRNL) == 0
+        assert outgoing & termios.OPOST == 0
+        assert local & (termios.ECHO | termios.ICANON | termios.ISIG) == 0
+        assert control & getattr(termios, "CRTSCTS", 0) == 0
+
+
+def test_a_port_without_low_latency_mode_is_opened_all_the_same() -> None:
+    with Line("serial") as line:
+        assert line.link.low_latency is False
+
+
+def test_low_latency_is_asked_for() -> None:
+    asked = []
+
+    class Port:
+        def set_low_latency_mode(self, wanted: bool) -> None:
+            asked.append(wanted)
+
+    # No port here has it.
+    assert ask_low_latency(Port()) is True
+    assert asked == [True]
+
+
+def test_a_descriptor_too_high_for_select_is_waited_for() -> None:
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = SELECTABLE + 100
+    if soft <= wanted:
+        if hard <= wanted:
+            pytest.skip(f"this system allows {hard} open files, the test needs {wanted}")
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted + 1, hard))
+    with Line("serial") as line:
+        descriptor = line.link.fileno()
+        assert descriptor is not None
+        high = fcntl.fcntl(descriptor, fcntl.F_DUPFD, wanted)
+        waiter = Waiter()
+        try:
+            assert waiter.wait(high, 0, writing=True)
+            assert not waiter.wait(high, 0.01)
+            line.end.say(b"x")
+            assert waiter.wait(high, 5.0)
+        finally:
+            os.close(high)
+            waiter.close()
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+def test_a_baud_rate_that_no_table_lists_is_set() -> None:
+    with Line("serial", baudrate=FAST + 1) as line:
+        line.link.write(b"x")
+        assert line.end.hear(1) == b"x"
+
+
+def test_a_port_may_be_named_by_its_hardware(monkeypatch: pytest.MonkeyPatch) -> None:
+    ends = [PtyEnd(), PtyEnd()]
+    plugged = ends[:1]
+    # No such hardware here; what pyserial finds is a pty, and after a while another one.
+    monkeypatch.setattr(list_ports, "grep", lambda text: [(end.url, "", "") for end in plugged])
+    link = open_link("hwgrep://1A86:55D4", FAST)
+    assert link.kind == "serial"
+    link.write(b"first")
+    assert ends[0].hear(5) == b"first"
+    plugged[:] = ends[1:]
+    link.reopen()
+    link.write(b"second")
+    assert ends[1].hear(6) == b"second"
+    link.close()
+    for end in ends:
+        end.unplug()
