@@ -39,6 +39,8 @@ gen: .venv/.tools ## write the generated files from spec/
 bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/resync.py
+	$(BIN)/python bench/lock.py
+	$(BIN)/python bench/speed.py
 
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench

@@ -17,16 +17,16 @@ from rich.console import Console
 
 import speed_peers as peers
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec, Columns, Frame, Scan
+from cobotwire.codec.interface import Codec, Columns, Noise, Scan
 from cobotwire.editions.mycobot280 import TABLE
 from damage import noisy
-from speed_table import Asked, Ratio, Timed, measure, ratios, show, write_json
+from speed_table import Asked, Ratio, Timed, Told, measure, ratios, show, write_json
 from streams import stream_a
 
 ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
 CHUNK = 4096
-# What pymycobot and the textbook decoder read in a round; the time is that of a whole stream.
-SLOW, SLOWEST = 100_000, 2_000
+# What pymycobot reads in a round; the time is that of a whole stream.
+SLOWEST = 2_000
 MIB = 1 << 20
 
 
@@ -69,7 +69,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     """Scans and columns of stream A, and of one with 10 % noise."""
     line = stream_a(TABLE, frames)
     clean, bad = line.data, noisy(TABLE, line).data
-    few = stream_a(TABLE, SLOWEST).data
+    few = stream_a(TABLE, SLOWEST)
     timed = {
         "memcpy": Timed(peers.memcpy(clean)),
         "memcpy of the noisy one": Timed(peers.memcpy(bad)),
@@ -80,7 +80,10 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         "raw": Timed(Reused(partial(codec.decode_columns, clean, "reply", raw=True))),
         "noisy raw": Timed(Reused(partial(codec.decode_columns, bad, "reply", raw=True))),
         "NumPy": Timed(partial(peers.numpy_columns, clean)),
-        "pymycobot": Timed(peers.pymycobot_reads(few), scale=frames / SLOWEST),
+        "pymycobot": Timed(
+            peers.pymycobot_reads(few.data, few.starts.tolist()), scale=frames / SLOWEST
+        ),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few.data), scale=frames / SLOWEST),
     }
     return timed, [
         Asked("framing scan to offsets", "scan", "memcpy", 1.6),
@@ -89,6 +92,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         Asked("float64 columns, fresh", "fresh", "memcpy", 8),
         Asked("float64 columns, fresh", "fresh", "NumPy", 10, faster=True),
         Asked("float64 columns, fresh", "fresh", "pymycobot", 3000, faster=True),
+        Told("float64 columns, fresh", "fresh", "pymycobot, no port"),
         Asked("raw columns, out=", "raw", "memcpy", 2.5),
         Asked("the same, 10 % noise", "noisy raw", "memcpy of the noisy one", 3),
     ]
@@ -97,7 +101,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
 def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     """Messages as Python objects."""
     data = stream_a(TABLE, frames).data
-    some, few = stream_a(TABLE, SLOW).data, stream_a(TABLE, SLOWEST).data
+    few = stream_a(TABLE, SLOWEST)
 
     def iterated() -> None:
         for frame in _frames(codec, data):
@@ -112,8 +116,11 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         return [frame.values for frame in codec.framer("reply").feed(data)]  # type: ignore[union-attr]
 
     timed = {
-        "find": Timed(partial(peers.find_and_struct, some), scale=frames / SLOW),
-        "pymycobot": Timed(peers.pymycobot_reads(few), scale=frames / SLOWEST),
+        "find": Timed(lambda: peers.FindDecoder(TABLE).feed(data)),
+        "pymycobot": Timed(
+            peers.pymycobot_reads(few.data, few.starts.tolist()), scale=frames / SLOWEST
+        ),
+        "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few.data), scale=frames / SLOWEST),
         "list": Timed(lambda: codec.framer("reply").feed(data)),
         "iterated": Timed(iterated),
         "chunks": Timed(in_chunks),
@@ -123,6 +130,7 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         Asked("lazy messages, a list", "list", "find", 35, faster=True),
         Asked("lazy messages, each value read once", "iterated", "find", 12, faster=True),
         Asked("lazy messages in 4 KiB chunks", "chunks", "pymycobot", 400, faster=True),
+        Told("lazy messages in 4 KiB chunks", "chunks", "pymycobot, no port"),
         Asked("eager values, held in a list", "eager", "find", 7, faster=True),
         Asked("eager values, held in a list", "eager", "pymycobot", 60, faster=True),
     ]
@@ -133,7 +141,7 @@ def _frames(codec: Codec, data: bytes) -> Any:
     framer = codec.framer("reply")
     for start in range(0, len(data), 1 << 16):
         for event in framer.feed(data[start : start + (1 << 16)]):
-            if isinstance(event, Frame):
+            if not isinstance(event, Noise):
                 yield event
 
 
@@ -141,12 +149,16 @@ def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
     """One frame at a time."""
     frame = codec.encode("get_angles", "reply", (ANGLES,))
     framer = codec.framer("reply")
+    textbook = peers.FindDecoder(TABLE)
     values = (ANGLES, 30)
     many = 20_000
     timed = {
         "a no-op call": Timed(lambda: None, many),
-        "find": Timed(lambda: peers.find_and_struct(frame), many),
-        "pymycobot": Timed(peers.pymycobot_reads(frame * SLOWEST), scale=1 / SLOWEST),
+        "find": Timed(lambda: textbook.feed(frame), many),
+        "pymycobot": Timed(
+            peers.pymycobot_reads(frame * SLOWEST, range(0, SLOWEST * len(frame), len(frame))),
+            scale=1 / SLOWEST,
+        ),
         "feed": Timed(lambda: [event.values for event in framer.feed(frame)], many),  # type: ignore[union-attr]
         "encode": Timed(lambda: codec.encode("send_angles", "request", values), many),
         "struct": Timed(lambda: peers.struct_send_angles(ANGLES, 30), many),

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import itertools
+import os
 import struct
-from collections.abc import Callable
+import tty
+from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 from unittest import mock
 
 import numpy as np
+import serial
 
+from cobotwire.table import Table
 from readers import pymycobot_peer
 
-# What a careful person writes: a table of unpackers by id and LEN.
-WORDS = struct.Struct(">6h")
 ANGLES, COORDS = 0x20, 0x23
 
 
@@ -26,29 +29,56 @@ def memcpy(data: bytes) -> Callable[[], object]:
     return lambda: np.copyto(target, source)
 
 
-def find_and_struct(data: bytes) -> list[tuple[int, int, Any]]:
-    """The frames of ``data`` by ``bytes.find``, decoded by ``struct``: offset, id and values."""
-    found: list[tuple[int, int, Any]] = []
-    at = data.find(b"\xfe\xfe")
-    size = len(data)
-    while at >= 0 and at + 4 < size:
-        length = data[at + 2]
-        end = at + 3 + length
-        if 2 <= length <= 26 and end <= size and data[end - 1] == 0xFA:
-            id = data[at + 3]
-            values: Any
-            if id == ANGLES and length == 14:
-                values = tuple([word / 100 for word in WORDS.unpack_from(data, at + 4)])
-            elif id == COORDS and length == 14:
-                x, y, z, rx, ry, rz = WORDS.unpack_from(data, at + 4)
-                values = (x / 10, y / 10, z / 10, rx / 100, ry / 100, rz / 100)
-            else:
-                values = tuple(data[at + 4 : end - 1])
-            found.append((at, id, values))
+class Found(NamedTuple):
+    """What the textbook decoder gives."""
+
+    offset: int
+    name: str
+    values: tuple[float, ...]
+
+
+class FindDecoder:
+    """What a careful person writes in Python: ``bytes.find`` and ``struct`` over a kept buffer.
+
+    It knows the replies by id and LEN, keeps what is not whole, and scans on at the next byte
+    where a candidate fails.
+    """
+
+    def __init__(self, table: Table) -> None:
+        self.buffer = b""
+        self.offset = 0
+        self.kinds: dict[tuple[int, int], tuple[str, struct.Struct, list[float]]] = {}
+        for command in table.commands:
+            for form in command.reply:
+                numbers = [n for part in form.fields for n in part.cases[0].numbers]
+                codes = "".join({1: "B", 2: "h", 4: "i"}[number.width] for number in numbers)
+                key = command.id, table.frame.length(form.size)
+                scales = [number.divide / number.multiply for number in numbers]
+                self.kinds.setdefault(key, (command.name, struct.Struct(">" + codes), scales))
+
+    def feed(self, data: bytes) -> list[Found]:
+        """Take bytes; give the messages in them."""
+        data = self.buffer + data
+        found = []
+        at = data.find(b"\xfe\xfe")
+        size = len(data)
+        while at >= 0 and at + 4 < size:
+            end = at + 3 + data[at + 2]
+            kind = self.kinds.get((data[at + 3], data[at + 2]))
+            if kind is None or (end <= size and data[end - 1] != 0xFA):
+                at = data.find(b"\xfe\xfe", at + 1)
+                continue
+            if end > size:
+                break
+            name, unpacker, scales = kind
+            words = unpacker.unpack_from(data, at + 4)
+            values = tuple([word / scale for word, scale in zip(words, scales)])
+            found.append(Found(self.offset + at, name, values))
             at = data.find(b"\xfe\xfe", end)
-        else:
-            at = data.find(b"\xfe\xfe", at + 1)
-    return found
+        keep = at if at >= 0 else size - data.endswith(b"\xfe")
+        self.offset += keep
+        self.buffer = data[keep:]
+        return found
 
 
 def numpy_columns(data: bytes) -> dict[int, tuple[Any, Any]]:
@@ -71,26 +101,45 @@ def numpy_columns(data: bytes) -> dict[int, tuple[Any, Any]]:
     return found
 
 
-def pymycobot_reads(data: bytes) -> Callable[[], list[Any]]:
-    """Pymycobot's own ``_read`` and ``_process_received``, frame after frame, from memory.
+def pymycobot_reads(data: bytes, starts: Sequence[int]) -> Callable[[], list[Any]]:
+    """Pymycobot's own ``_read`` and ``_process_received`` on pyserial, as its users run them.
 
-    Its port gives a byte a call, as its code asks for, and its clock stands still.
+    The port is a pseudo-terminal that is filled before each 100 frames are read, so that nothing is
+    waited for; to fill it takes one system call.
     """
+    _, peer = pymycobot_peer()
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    peer._serial_port = serial.Serial(os.ttyname(slave), 1_000_000, timeout=0.1)
+    cuts = [*starts[::100], len(data)]
+    pieces = [data[a:b] for a, b in pairwise(cuts)]
+
+    def read() -> list[Any]:
+        found = []
+        for place, piece in enumerate(pieces):
+            os.write(master, piece)
+            for _ in starts[100 * place : 100 * place + 100]:
+                found.append(_pymycobot_values(peer, peer._read(0x20)))
+        return found
+
+    return read
+
+
+def pymycobot_reads_memory(data: bytes) -> Callable[[], list[Any]]:
+    """The same without pyserial: each byte from a list, by the fastest call that there is."""
     common, peer = pymycobot_peer()
     clock = SimpleNamespace(time=lambda: 0.0)
 
     def read() -> list[Any]:
         line = iter([data[at : at + 1] for at in range(len(data))])
-        peer._serial_port = SimpleNamespace(read=partial(next, line, b""))
+        peer._serial_port = SimpleNamespace(read=partial(next, line))
         found = []
         with mock.patch.object(common, "time", clock):
             for _ in itertools.count():
                 try:
                     frame = peer._read(0x20)
-                except struct.error:
-                    break
-                if not frame:
-                    break
+                except StopIteration:
+                    break  # the line is over; to wait for more is not what is timed
                 found.append(_pymycobot_values(peer, frame))
         return found
 

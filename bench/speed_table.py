@@ -45,6 +45,11 @@ class Asked:
     faster: bool = False
 
 
+def Told(row: str, ours: str, peer: str) -> Asked:
+    """A ratio that nobody asks for, and that one should know."""
+    return Asked(row, ours, peer, 0, faster=True)
+
+
 @dataclass(frozen=True)
 class Ratio:
     """A ratio as it was measured: the median over the rounds, each beside its peer's round."""
@@ -90,6 +95,8 @@ def show(title: str, found: Sequence[Ratio], console: Console) -> None:
         asked = ratio.asked
         bound = f"{asked.limit:g} x faster" if asked.faster else f"{asked.limit:g} x"
         verdict = "[green]met[/]" if ratio.met else "[red]NOT MET[/]"
+        if not asked.limit:
+            bound, verdict = "", ""
         measured = f"{ratio.measured:,.2f} x"
         table.add_row(asked.row, asked.peer, measured, bound, verdict, human(ratio.ours_seconds))
     console.print(table)

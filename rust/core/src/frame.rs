@@ -89,11 +89,7 @@ impl<'a> Frame<'a> {
 
 /// A frame with its own bytes: those of an ordinary one in place, without an allocation.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OwnedFrame {
-    length: u8,
-    id: u8,
-    bytes: Bytes,
-}
+pub struct OwnedFrame(Bytes);
 
 /// So many bytes stand in place: more than the longest frame of the arms known today.
 const IN_PLACE: usize = 30;
@@ -109,34 +105,37 @@ impl From<Frame<'_>> for OwnedFrame {
     fn from(frame: Frame<'_>) -> Self {
         let mut place = [0; IN_PLACE];
         let size = u8::try_from(frame.bytes.len()).unwrap_or(u8::MAX);
-        let bytes = match place.get_mut(..frame.bytes.len()) {
+        Self(match place.get_mut(..frame.bytes.len()) {
             Some(start) => {
                 start.copy_from_slice(frame.bytes);
                 Bytes::InPlace(size, place)
             }
             None => Bytes::Apart(frame.bytes.into()),
-        };
-        Self {
-            length: frame.length,
-            id: frame.id,
-            bytes,
-        }
+        })
     }
 }
 
 impl OwnedFrame {
-    /// The frame.
+    /// All of it, from header to check.
     #[inline]
     #[must_use]
-    pub fn get(&self) -> Frame<'_> {
-        let bytes = match &self.bytes {
+    pub fn bytes(&self) -> &[u8] {
+        match &self.0 {
             Bytes::InPlace(size, place) => place.get(..usize::from(*size)).unwrap_or_default(),
             Bytes::Apart(bytes) => bytes,
-        };
+        }
+    }
+
+    /// The frame, in the format that it was found in.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, format: &FrameFormat) -> Frame<'_> {
+        let bytes = self.bytes();
+        let byte = |at: usize| bytes.get(at).copied().unwrap_or_default();
         Frame {
             bytes,
-            length: self.length,
-            id: self.id,
+            length: byte(format.length_at()),
+            id: byte(format.overhead()),
         }
     }
 }

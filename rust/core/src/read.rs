@@ -29,7 +29,7 @@ pub(crate) struct Reader<'a> {
 impl Reader<'_> {
     /// All of them, or the first number that is not allowed.
     pub(crate) fn values(&self) -> Result<Vec<Value>, BadRaw> {
-        let mut values = Vec::with_capacity(self.layout.size() + self.layout.fields().len());
+        let mut values = Vec::with_capacity(self.layout.values());
         for (index, field) in self.layout.fields().iter().enumerate() {
             let case = self.case(field)?;
             if field.many {
@@ -99,15 +99,14 @@ impl Reader<'_> {
 }
 
 /// The whole number that starts there, after the sign rule.
+#[inline]
 pub(crate) fn whole(number: &Number, data: &[u8], start: usize) -> i64 {
-    let bytes = data
-        .get(start..start + number.width)
-        .unwrap_or_default()
-        .iter();
-    let join = |word: i64, byte: &u8| word << 8 | i64::from(*byte);
-    let word = match number.order {
-        Order::Big => bytes.fold(0, join),
-        Order::Little => bytes.rev().fold(0, join),
+    let bytes = data.get(start..start + number.width).unwrap_or_default();
+    let word = match (bytes, number.order) {
+        ([byte], _) => i64::from(*byte),
+        (&[high, low], Order::Big) => i64::from(u16::from_be_bytes([high, low])),
+        (_, Order::Big) => bytes.iter().fold(0, join),
+        (_, Order::Little) => bytes.iter().rev().fold(0, join),
     };
     if word > number.signed_at {
         word - (1 << (8 * number.width))
@@ -116,7 +115,12 @@ pub(crate) fn whole(number: &Number, data: &[u8], start: usize) -> i64 {
     }
 }
 
+fn join(word: i64, byte: &u8) -> i64 {
+    word << 8 | i64::from(*byte)
+}
+
 /// One rounding, that of the division: both casts are exact, as the table is checked for.
+#[inline]
 pub(crate) fn physical(number: &Number, whole: i64) -> Value {
     if number.scaled() {
         Value::Real((whole * number.multiply) as f64 / number.divide as f64)

@@ -32,22 +32,27 @@ pub struct Layout {
     fields: Vec<Field>,
     starts: Vec<usize>,
     size: usize,
+    /// How many values a message of this form has at most, rows and their elements counted.
+    values: usize,
 }
 
 impl Layout {
     /// A layout of these fields, in the order of the wire.
     #[must_use]
     pub fn new(fields: Vec<Field>) -> Self {
-        let mut size = 0;
+        let (mut size, mut values) = (0, 0);
         let mut starts = Vec::with_capacity(fields.len());
         for field in &fields {
             starts.push(size);
             size = usize::saturating_add(size, field.size());
+            let counts = field.cases.iter().map(|case| case.numbers.len());
+            values += 1 + counts.max().unwrap_or_default();
         }
         Self {
             fields,
             starts,
             size,
+            values,
         }
     }
 
@@ -68,6 +73,11 @@ impl Layout {
         let index = field.selector?;
         let selector = self.fields.get(index)?;
         Some((index, selector, selector.numbers(0).first()?))
+    }
+
+    /// How many values a message of this form has at most, rows and their elements counted.
+    pub(crate) fn values(&self) -> usize {
+        self.values
     }
 
     /// Where a field starts among the data bytes.

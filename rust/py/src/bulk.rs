@@ -16,10 +16,11 @@ use crate::memory::{Memory, large_pages};
 use crate::names::Names;
 use crate::parts::{old_columns, old_offsets, spans};
 
-/// From so many bytes on the lock is released.
-const LARGE: usize = 1 << 16;
+/// From so many bytes on the lock is released: to get it back from a busy thread takes 5 ms, and to
+/// read so many takes about one, a fifth of what such a thread keeps it for itself (`bench/lock.py`).
+const LARGE: usize = 1 << 20;
 /// Bytes that another thread could change meanwhile are copied in pieces of this size.
-const PIECE: usize = 1 << 18;
+const PIECE: usize = 1 << 20;
 
 /// Something that a stream is fed to.
 trait Reader: Send {

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 
 use crate::frame::{NativeFrame, Origin};
+use crate::memory::untrack;
 use crate::names::Names;
 
 /// Collects the events of one call.
@@ -52,7 +53,10 @@ impl<'py, 'a> Events<'py, 'a> {
 
     fn frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<Bound<'py, PyAny>> {
         let frame = NativeFrame::new(Arc::clone(self.origin), offset, frame);
-        Ok(Bound::new(self.list.py(), frame)?.into_any())
+        let frame = Bound::new(self.list.py(), frame)?;
+        // It holds numbers, in tuples, and nothing that could lead back to it.
+        untrack(&frame);
+        Ok(frame.into_any())
     }
 
     fn noise(&self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<Bound<'py, PyAny>> {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cobotwire_core::{Decoded, Form, Frame, OwnedFrame, Rules};
+use cobotwire_core::{Decoded, Frame, OwnedFrame, Rules};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyTuple};
@@ -24,14 +24,8 @@ pub struct NativeFrame {
     #[pyo3(get)]
     offset: u64,
     frame: OwnedFrame,
-    read: PyOnceLock<Read>,
-}
-
-/// What it says, once it was asked.
-struct Read {
-    form: Form,
-    address: Option<u8>,
-    values: Py<PyTuple>,
+    /// Its values, once it was asked for them.
+    values: PyOnceLock<Py<PyTuple>>,
 }
 
 impl NativeFrame {
@@ -40,26 +34,19 @@ impl NativeFrame {
             origin,
             offset,
             frame: frame.into(),
-            read: PyOnceLock::new(),
+            values: PyOnceLock::new(),
         }
     }
 
-    fn read(&self, py: Python<'_>) -> PyResult<&Read> {
-        self.read.get_or_try_init(py, || {
-            let Origin { edition, rules } = &*self.origin;
-            let frame = self.frame.get();
-            let Decoded {
-                form,
-                values,
-                address,
-            } = cobotwire_core::read(&edition.core, rules, frame)
-                .map_err(|error| edition.refused(py, error, None, frame.bytes()))?;
-            Ok(Read {
-                form,
-                address,
-                values: objects(py, &values)?.unbind(),
-            })
-        })
+    fn frame(&self) -> Frame<'_> {
+        self.frame.get(self.origin.edition.core.frame())
+    }
+
+    fn decoded(&self, py: Python<'_>) -> PyResult<Decoded> {
+        let Origin { edition, rules } = &*self.origin;
+        let frame = self.frame();
+        cobotwire_core::read(&edition.core, rules, frame)
+            .map_err(|error| edition.refused(py, error, None, frame.bytes()))
     }
 }
 
@@ -68,27 +55,36 @@ impl NativeFrame {
     /// All of it, from header to check.
     #[getter]
     fn data<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, self.frame.get().bytes())
+        PyBytes::new(py, self.frame.bytes())
     }
 
     /// Its command id.
     #[getter]
     fn command(&self) -> u8 {
-        self.frame.get().id()
+        self.frame().id()
     }
 
     /// What it says, as the first message that allows its values.
     #[getter]
     fn message<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let read = self.read(py)?;
+        let decoded = self.decoded(py)?;
+        let values = self
+            .values
+            .get_or_try_init(py, || objects(py, &decoded.values).map(Bound::unbind))?;
         let edition = &self.origin.edition;
-        edition.message(py, read.form, read.values.bind(py), read.address)
+        edition.message(py, decoded.form, values.bind(py), decoded.address)
     }
 
     /// The values of its message, one a field.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        Ok(self.read(py)?.values.bind(py).clone())
+        if let Some(values) = self.values.get(py) {
+            return Ok(values.bind(py).clone());
+        }
+        let values = objects(py, &self.decoded(py)?.values)?;
+        // Another thread may have been faster; then both have the same.
+        let _ = self.values.set(py, values.clone().unbind());
+        Ok(values)
     }
 
     fn __eq__(&self, other: &Self) -> bool {
@@ -105,7 +101,6 @@ impl NativeFrame {
     fn __repr__(&self) -> String {
         let data: Vec<String> = self
             .frame
-            .get()
             .bytes()
             .iter()
             .map(|byte| format!("{byte:02X}"))

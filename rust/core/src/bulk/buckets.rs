@@ -1,76 +1,62 @@
 //! Frames sorted by group, so that each group is decoded in one go.
 
-use super::block::{Found, MOST};
+use super::block::{Found, LANES};
 
-/// To add to a bucket is to read, and write, its count: the processor waits for that if the next
-/// frame goes to the same one. So the frames are dealt out in as many parts.
-const PARTS: usize = 4;
-const SIZE: usize = MOST / PARTS;
-
-/// The frames of one block or lane by part and group.
+/// The frames of some lanes, by lane and group.
+///
+/// To add to a bucket is to read, and write, its size, and the processor waits for that if the next
+/// frame goes to the same one. So the lanes are sorted in turn, each into buckets of its own.
 pub(crate) struct Buckets {
-    parts: [Part; PARTS],
-}
-
-struct Part {
-    frames: Vec<[u16; SIZE]>,
-    counts: Vec<u16>,
+    parts: [Vec<Vec<u16>>; LANES],
 }
 
 impl Buckets {
     pub(crate) fn new(groups: usize) -> Self {
         Self {
-            parts: std::array::from_fn(|_| Part {
-                frames: vec![[0; SIZE]; groups],
-                counts: vec![0; groups],
-            }),
+            parts: std::array::from_fn(|_| vec![Vec::new(); groups]),
         }
     }
 
-    /// Sort `found`, which are at most as many as a block can hold.
-    pub(crate) fn fill(&mut self, found: &[Found]) {
-        let each = found.len().div_ceil(PARTS);
-        let [a, b, c, d] = &mut self.parts;
-        let (first, rest) = found.split_at(each.min(found.len()));
-        let (second, rest) = rest.split_at(each.min(rest.len()));
-        let (third, fourth) = rest.split_at(each.min(rest.len()));
-        let together = first.iter().zip(second).zip(third).zip(fourth);
-        for (((first, second), third), fourth) in together {
-            a.push(*first);
-            b.push(*second);
-            c.push(*third);
-            d.push(*fourth);
+    /// Sort the frames of up to as many lanes.
+    pub(crate) fn fill(&mut self, lanes: [&[Found]; LANES]) {
+        let [a, b, c] = &mut self.parts;
+        let [first, second, third] = lanes;
+        for ((first, second), third) in first.iter().zip(second).zip(third) {
+            push(a, *first);
+            push(b, *second);
+            push(c, *third);
         }
-        for (part, all) in [(a, first), (b, second), (c, third)] {
-            all.iter()
-                .skip(fourth.len())
-                .for_each(|found| part.push(*found));
+        let common = lanes
+            .map(<[Found]>::len)
+            .into_iter()
+            .min()
+            .unwrap_or_default();
+        for (part, lane) in self.parts.iter_mut().zip(lanes) {
+            lane.iter()
+                .skip(common)
+                .for_each(|found| push(part, *found));
         }
     }
 
-    /// Empty them: each group with its frames, which come in order.
+    /// Empty them: each group with its frames, those of a group in the order of the lanes.
     pub(crate) fn drain(&mut self, mut take: impl FnMut(usize, &[u16])) {
-        for part in &mut self.parts {
-            let groups = part.frames.iter().zip(&mut part.counts).enumerate();
-            for (group, (frames, count)) in groups.filter(|(_, (_, count))| **count > 0) {
-                take(group, frames.get(..usize::from(*count)).unwrap_or_default());
-                *count = 0;
+        let [first, second, third] = &mut self.parts;
+        let groups = first.iter_mut().zip(second).zip(third).enumerate();
+        for (group, ((frames, more), rest)) in groups {
+            frames.append(more);
+            frames.append(rest);
+            if !frames.is_empty() {
+                take(group, frames);
+                frames.clear();
             }
         }
     }
 }
 
-impl Part {
-    #[inline(always)]
-    #[allow(clippy::indexing_slicing)] // in bounds by the mask
-    fn push(&mut self, found: Found) {
-        let group = usize::from(found.group());
-        // A frame of no group has an unknown id.
-        if let (Some(frames), Some(count)) =
-            (self.frames.get_mut(group), self.counts.get_mut(group))
-        {
-            frames[usize::from(*count) % SIZE] = found.at();
-            *count += 1;
-        }
+#[inline(always)]
+fn push(part: &mut [Vec<u16>], found: Found) {
+    // A frame of no group has an unknown id.
+    if let Some(frames) = part.get_mut(usize::from(found.group())) {
+        frames.push(found.at());
     }
 }

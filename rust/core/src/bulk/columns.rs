@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::block::{Block, Found};
+use super::block::{Block, Found, LANES};
 use super::buckets::Buckets;
 use super::cells::{Advise, Cells, Numbers, reserve};
 use super::decode::Job;
@@ -171,7 +171,7 @@ impl Rows {
 }
 
 impl Collect for Sorter {
-    fn take(&mut self, offset: u64, block: &Block, found: &[Found], tally: &mut Tally) {
+    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally) {
         self.buckets.fill(found);
         self.buckets.drain(|group, frames| {
             let Some(plan) = self.plans.groups.get(group) else {

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::cells::Cells;
 use super::columns::Rows;
-use super::plan::{FieldPlan, Plan};
+use super::plan::{Allowed, FieldPlan, Plan};
 use crate::field::Number;
 use crate::read::{Reader, Value, physical, whole};
 use crate::table::Table;
@@ -21,9 +21,7 @@ pub(crate) struct Job<'a> {
 impl Job<'_> {
     /// Append the frames to the rows of their forms; those that no form allows to `refused`.
     pub(crate) fn run(&self, plan: &Plan, rows: &mut [Rows], refused: &mut Vec<u64>) {
-        let target = plan.forms.first().map(|form| (form, rows.iter_mut()));
-        let target = target.and_then(|(form, mut all)| all.find(|rows| rows.form == *form));
-        if let (Some(fields), Some(rows)) = (&plan.fields, target)
+        if let (Some(fields), Some(rows)) = (&plan.fields, rows.get_mut(plan.rows))
             && fields.iter().all(|field| self.all_allowed(field))
         {
             rows.offsets
@@ -44,8 +42,16 @@ impl Job<'_> {
         self.offset + u64::from(at)
     }
 
+    #[allow(clippy::indexing_slicing)] // in bounds: a frame that starts in the block ends in it
     fn all_allowed(&self, plan: &FieldPlan) -> bool {
-        !plan.picky || self.numbers(plan, |number, whole| plan.field.allows(number, whole))
+        match &plan.allowed {
+            Allowed::All => true,
+            Allowed::Bytes(bytes) => self.frames.iter().all(|at| {
+                let byte = self.block[usize::from(*at) + usize::from(plan.start)];
+                bytes[usize::from(byte)]
+            }),
+            Allowed::Some(field) => self.numbers(plan, |number, whole| field.allows(number, whole)),
+        }
     }
 
     /// Ask of each number of a field, until one says no.
@@ -82,7 +88,7 @@ impl Job<'_> {
     /// One frame, by the first form that allows its values; whether there is one.
     fn row(&self, plan: &Plan, at: u16, all: &mut [Rows]) -> bool {
         let data = self.table.frame().overhead() + 1;
-        for form in &plan.forms {
+        for (form, rows) in plan.forms.iter().zip(all.iter_mut().skip(plan.rows)) {
             let Some(layout) = self.table.layout(*form) else {
                 continue;
             };
@@ -96,10 +102,7 @@ impl Job<'_> {
                     .unwrap_or_default(),
                 offset: data,
             };
-            let (Ok(values), Some(rows)) = (
-                reader.numbers(),
-                all.iter_mut().find(|rows| rows.form == *form),
-            ) else {
+            let Ok(values) = reader.numbers() else {
                 continue;
             };
             rows.offsets.push(self.place(at));

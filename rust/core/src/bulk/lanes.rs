@@ -7,13 +7,10 @@
 //! right, and that both found what one scan would have found. Where a guess was wrong, the lanes
 //! behind it do not count, and the next block starts there.
 
-use super::block::{BLOCK, Block, Found, Look, MOST, Quick};
+use super::block::{BLOCK, Block, Found, LANES, Look, MOST, Quick};
 use super::spans::Runs;
 use super::window::WINDOW;
 use crate::error::Reason;
-
-/// Two make it 1.4 times faster, three 1.5 times; with four there are not enough registers.
-const LANES: usize = 3;
 
 /// How many bytes a guess may look at.
 const GUESSING: usize = 512;

@@ -1,6 +1,6 @@
 //! Where the frames of a stream are, and nothing else of them.
 
-use super::block::{Block, Found};
+use super::block::{Block, Found, LANES};
 use super::cells::{Advise, reserve};
 use super::sample::expected;
 use super::spans::Spans;
@@ -89,35 +89,45 @@ impl OffsetReader {
 
 impl Collect for Collected {
     #[inline]
-    fn take(&mut self, offset: u64, block: &Block, found: &[Found], tally: &mut Tally) {
-        let offsets = found.iter().map(|frame| offset + u64::from(frame.at()));
-        self.frames.extend(offsets);
+    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally) {
+        for lane in found {
+            let offsets = lane.iter().map(|frame| offset + u64::from(frame.at()));
+            self.frames.extend(offsets);
+        }
         self.counts.add(block, found, self.id_at, tally);
     }
 }
 
-/// Counts frames by id. In turn in several places: adding to one again and again is slow.
+/// Counts frames by id; each lane by itself, since adding to one count again and again is slow.
 #[derive(Clone)]
-struct Counts([[u32; 256]; 4]);
+struct Counts([[u32; 256]; LANES]);
 
 impl Default for Counts {
     fn default() -> Self {
-        Self([[0; 256]; 4])
+        Self([[0; 256]; LANES])
     }
 }
 
 impl Counts {
     #[allow(clippy::indexing_slicing)] // in bounds: ids are bytes, and the block has a margin
-    fn add(&mut self, block: &Block, found: &[Found], id_at: usize, tally: &mut Tally) {
+    fn add(&mut self, block: &Block, found: [&[Found]; LANES], id_at: usize, tally: &mut Tally) {
         let id = |frame: &Found| usize::from(block[usize::from(frame.at()) + id_at]);
-        let (quads, rest) = found.as_chunks::<4>();
-        for quad in quads {
-            for (counts, frame) in self.0.iter_mut().zip(quad) {
-                counts[id(frame)] += 1;
-            }
+        let [a, b, c] = &mut self.0;
+        let [first, second, third] = found;
+        for ((first, second), third) in first.iter().zip(second).zip(third) {
+            a[id(first)] += 1;
+            b[id(second)] += 1;
+            c[id(third)] += 1;
         }
-        for frame in rest {
-            self.0[0][id(frame)] += 1;
+        let common = found
+            .map(<[Found]>::len)
+            .into_iter()
+            .min()
+            .unwrap_or_default();
+        for (counts, lane) in self.0.iter_mut().zip(found) {
+            lane.iter()
+                .skip(common)
+                .for_each(|frame| counts[id(frame)] += 1);
         }
         for counts in &mut self.0 {
             for (total, count) in tally.frames.iter_mut().zip(counts) {

@@ -3,6 +3,7 @@
 use super::words::Words;
 use crate::field::{Field, Number};
 use crate::legal::Form;
+use crate::read::whole;
 use crate::table::{Layout, Listening, Table};
 
 /// How all frames are read that one who listens to some directions takes.
@@ -16,10 +17,16 @@ impl Plans {
     /// The plans for a table. They take a while to make, and serve any number of readers.
     #[must_use]
     pub fn new(table: &Table, listening: Listening) -> Self {
+        let mut rows = 0;
+        let plan = |forms: &Vec<Form>| {
+            let plan = Plan::new(table, forms, rows);
+            rows += forms.len();
+            plan
+        };
         let groups = table.rules(listening).legal().groups().iter();
         Self {
             listening,
-            groups: groups.map(|forms| Plan::new(table, forms)).collect(),
+            groups: groups.map(plan).collect(),
         }
     }
 }
@@ -31,6 +38,8 @@ pub(crate) struct Plan {
     pub(crate) id: u8,
     /// The forms that a frame can be, in the order in which they are tried.
     pub(crate) forms: Vec<Form>,
+    /// Where the rows of the first one stand among those of all forms.
+    pub(crate) rows: usize,
     /// How the first form is read column by column, where that can be done.
     pub(crate) fields: Option<Vec<FieldPlan>>,
 }
@@ -42,22 +51,21 @@ pub(crate) struct FieldPlan {
     pub(crate) start: u16,
     /// Its numbers.
     pub(crate) numbers: Vec<Number>,
-    /// Whether some words are not allowed.
-    pub(crate) picky: bool,
-    /// The field, to ask it.
-    pub(crate) field: Field,
+    /// Which words are allowed.
+    pub(crate) allowed: Allowed,
     /// Its fast reader, where the numbers are alike enough.
     pub(crate) words: Option<Words>,
 }
 
 impl Plan {
-    pub(crate) fn new(table: &Table, forms: &[Form]) -> Self {
+    fn new(table: &Table, forms: &[Form], rows: usize) -> Self {
         let first = forms.first();
         let id = first.and_then(|form| table.commands().get(form.command));
         let layout = first.and_then(|form| table.layout(*form));
         Self {
             id: id.map_or(0, |command| command.id),
             forms: forms.to_vec(),
+            rows,
             fields: layout.and_then(|layout| plain_fields(table, layout)),
         }
     }
@@ -81,10 +89,39 @@ impl FieldPlan {
         let numbers = field.numbers(0).to_vec();
         Self {
             start,
-            picky: !field.choices.is_empty() || !numbers.iter().all(Number::takes_every_word),
+            allowed: Allowed::new(field, &numbers),
             words: Words::new(&numbers),
             numbers,
-            field: field.clone(),
         }
+    }
+}
+
+/// Which words a field allows.
+#[derive(Clone, Debug)]
+pub(crate) enum Allowed {
+    /// All that its bytes can be.
+    All,
+    /// It is one byte, and these are.
+    Bytes(Box<[bool; 256]>),
+    /// Those that the field says.
+    Some(Box<Field>),
+}
+
+impl Allowed {
+    fn new(field: &Field, numbers: &[Number]) -> Self {
+        if field.choices.is_empty() && numbers.iter().all(Number::takes_every_word) {
+            return Self::All;
+        }
+        if let [number] = numbers
+            && number.width == 1
+        {
+            let allows = |byte| field.allows(number, whole(number, &[byte], 0));
+            let mut bytes = [false; 256];
+            for (byte, allowed) in (0..=u8::MAX).zip(&mut bytes) {
+                *allowed = allows(byte);
+            }
+            return Self::Bytes(Box::new(bytes));
+        }
+        Self::Some(Box::new(field.clone()))
     }
 }

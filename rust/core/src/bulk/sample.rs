@@ -1,6 +1,6 @@
 //! How much a capture will give, from a part of it: so that memory is asked for once.
 
-use super::block::{Block, Found};
+use super::block::{Block, Found, LANES};
 use super::stream::{Collect, Stream};
 use crate::judge::Rules;
 use crate::tally::Tally;
@@ -34,8 +34,8 @@ pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> 
 struct Seen(Vec<u64>);
 
 impl Collect for Seen {
-    fn take(&mut self, _: u64, _: &Block, found: &[Found], _: &mut Tally) {
-        for frame in found {
+    fn take(&mut self, _: u64, _: &Block, found: [&[Found]; LANES], _: &mut Tally) {
+        for frame in found.into_iter().flatten() {
             if let Some(count) = self.0.get_mut(usize::from(frame.group())) {
                 *count += 1;
             }

@@ -1,7 +1,7 @@
 //! A stream in bulk: over the seam between two calls, and block by block through a chunk.
 
-use super::block::{BLOCK, Block, Found, MARGIN, Quick};
-use super::lanes::Lanes;
+use super::block::{BLOCK, Block, Found, LANES, MARGIN, Quick};
+use super::lanes::{Lane, Lanes};
 use super::spans::{Noise, Runs, Spans};
 use crate::error::Reason;
 use crate::frame::Frame;
@@ -13,8 +13,9 @@ use crate::tally::Tally;
 
 /// Takes the frames of a stream, in order, in portions.
 pub(crate) trait Collect {
-    /// Frames whose positions count from the start of `block`, which is at `offset` in the stream.
-    fn take(&mut self, offset: u64, block: &Block, found: &[Found], tally: &mut Tally);
+    /// Frames whose positions count from the start of `block`, which is at `offset` in the stream;
+    /// lane after lane.
+    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally);
 }
 
 /// Finds the frames of a stream and accounts for the rest.
@@ -112,8 +113,9 @@ impl Stream {
             let lanes = self.lanes.get_or_insert_with(Lanes::new);
             let (lanes, end) = lanes.run(quick, block);
             let start = offset + at as u64;
+            let found = std::array::from_fn(|lane| lanes.get(lane).map_or(&[][..], Lane::found));
+            collect.take(start, block, found, &mut self.tally);
             for lane in lanes {
-                collect.take(start, block, lane.found(), &mut self.tally);
                 self.noise.add(start, lane.noise(), &mut self.tally);
             }
             at += end;
@@ -148,7 +150,7 @@ impl Stream {
         if let Some(start) = block.get_mut(..bytes.len()) {
             start.copy_from_slice(bytes);
         }
-        collect.take(offset, block, found, &mut self.tally);
+        collect.take(offset, block, [found, &[], &[]], &mut self.tally);
         self.noise.add(offset, runs, &mut self.tally);
         at
     }

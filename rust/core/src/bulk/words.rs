@@ -118,15 +118,14 @@ impl Task<'_> {
         value: impl Fn(usize, i32) -> T,
     ) {
         let bias: [i32; N] = std::array::from_fn(|index| self.words.bias[index]);
-        let before = out.len();
-        out.resize(before + self.frames.len() * N, T::default());
-        let rows = out.get_mut(before..).unwrap_or_default();
-        for (row, at) in rows.as_chunks_mut::<N>().0.iter_mut().zip(self.frames) {
+        out.reserve(self.frames.len() * N);
+        for at in self.frames {
             let words = read::<WIDTH, N>(self.block, *at, self.start);
-            *row = std::array::from_fn(|index| {
+            let row: [T; N] = std::array::from_fn(|index| {
                 let cut = (words[index] + bias[index]) & ((1 << (8 * WIDTH)) - 1);
                 value(index, cut - bias[index])
             });
+            out.extend_from_slice(&row);
         }
     }
 }
