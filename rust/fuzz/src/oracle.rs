@@ -56,6 +56,11 @@ impl Oracle {
         }
     }
 
+    /// How its frames are built.
+    pub fn format(&self) -> &FrameFormat {
+        &self.frame
+    }
+
     /// The id of a frame.
     pub fn id(&self, frame: &[u8]) -> u8 {
         frame[self.frame.overhead()]

@@ -56,9 +56,9 @@ impl Line<'_> {
         act: impl FnOnce(&mut Framer, &mut dyn FnMut(Event<'_>)),
     ) {
         let mut events: Vec<Owned> = Vec::new();
-        let rules = self.rules;
+        let (oracle, rules) = (self.oracle, self.rules);
         act(framer, &mut |event| {
-            check_frame(rules, event);
+            check_frame(oracle, rules, event);
             events.push(owned(event));
         });
         let (spans, settled) = self.oracle.spans(&self.open, at_end);
@@ -83,7 +83,7 @@ impl Line<'_> {
 }
 
 /// A frame says of itself what its bytes say, and a copy of it the same.
-fn check_frame(rules: &Rules, event: Event<'_>) {
+fn check_frame(oracle: &Oracle, rules: &Rules, event: Event<'_>) {
     let Event::Frame { frame, .. } = event else {
         return;
     };
@@ -92,7 +92,7 @@ fn check_frame(rules: &Rules, event: Event<'_>) {
     assert_eq!(bytes[size], frame.id());
     assert_eq!(bytes[size - 1], frame.length());
     assert!(bytes.len() <= rules.longest());
-    assert_eq!(OwnedFrame::from(frame).get(), frame);
+    assert_eq!(OwnedFrame::from(frame).get(oracle.format()), frame);
 }
 
 /// However a stream is cut, its events are the same, adjacent noise of one reason joined.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cobotwire_core::{Cells, Columns, Direction, Field, Form, Layout, Spans, Table};
+use cobotwire_core::{Cells, Columns, Direction, Field, Form, Layout, Number, Spans, Table};
 
 /// The rows of each form: where they start, and its fields' numbers.
 pub type Rows = BTreeMap<(bool, usize, usize), (Vec<u64>, Vec<Vec<i64>>)>;
@@ -66,8 +66,9 @@ fn fits(cells: &Cells, field: &Field) -> bool {
     };
     let holds = |whole: &i64| (least..=most).contains(whole);
     let mut numbers = field.cases.iter().flat_map(|case| &case.numbers);
+    let nothing = |number: &Number| number.minimum > number.maximum;
     if field.choices.is_empty() {
-        numbers.all(|number| holds(&number.minimum) && holds(&number.maximum))
+        numbers.all(|number| nothing(number) || holds(&number.minimum) && holds(&number.maximum))
     } else {
         field.choices.iter().all(holds)
     }
