@@ -151,6 +151,26 @@ def test_any_buffer_will_do(codec: Codec, kind: Any) -> None:
         codec.decode_columns(memoryview(ANGLES)[::2])
 
 
+def test_a_flush_in_the_middle_of_a_stream_shows_in_the_spans_and_nowhere_else(
+    codec: Codec,
+) -> None:
+    for pieces, spans in [((b"\0", FLAG), [(0, 1)]), ((b"\0", b"\0" + FLAG), [(0, 1), (1, 1)])]:
+        framer, reader = codec.framer("reply"), codec.column_reader("reply")
+        parts = []
+        for piece in pieces:
+            parts += [reader.feed(piece), reader.flush()]
+            framer.feed(piece)
+            framer.flush()
+        found = [
+            span
+            for part in parts
+            for span in zip(part.noise.offset.tolist(), part.noise.size.tolist())
+        ]
+        assert found == spans
+        assert parts[-1].counters == framer.counters
+        assert framer.counters.resyncs == 1
+
+
 def test_what_is_no_buffer_is_refused(codec: Codec) -> None:
     wrong: Any = "FE FE"
     with pytest.raises(TypeError):

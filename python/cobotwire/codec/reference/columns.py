@@ -118,6 +118,7 @@ class Noises:
     def given(self, at_end: bool) -> tuple[Any, Any]:
         """The spans that are over, and were not given before."""
         end = len(self._offset) - (1 if self._open and not at_end else 0)
+        self._open = self._open and not at_end
         given = self._offset[:end], self._size[:end]
         del self._offset[:end], self._size[:end]
         return given

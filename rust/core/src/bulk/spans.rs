@@ -17,6 +17,8 @@ pub struct Spans {
 pub(crate) struct Noise {
     /// The span that may go on: from where, to where.
     open: Option<(u64, u64)>,
+    /// Where a span was ended by a flush, and no frame has come since.
+    flushed: Option<u64>,
     closed: Spans,
 }
 
@@ -62,7 +64,7 @@ impl Noise {
             match &mut self.open {
                 Some((_, end)) if *end == from => *end = to,
                 _ => {
-                    self.close(tally);
+                    self.close(from, tally);
                     self.open = Some((from, to));
                 }
             }
@@ -72,23 +74,25 @@ impl Noise {
     /// All before stream offset `done` is accounted for: a span that ends earlier was followed by a
     /// frame.
     pub(crate) fn settle(&mut self, done: u64, tally: &mut Tally) {
-        if self.open.is_some_and(|(_, end)| end < done) {
-            self.close(tally);
+        if self.open.is_none_or(|(_, end)| end < done) {
+            self.close(done, tally);
         }
     }
 
-    fn close(&mut self, tally: &mut Tally) {
-        if self.open.is_some() {
+    /// The noise so far is over; if there is a frame between it and `next`, that one resynced.
+    fn close(&mut self, next: u64, tally: &mut Tally) {
+        self.end();
+        if self.flushed.take_if(|end| *end < next).is_some() {
             tally.resyncs += 1;
         }
-        self.end();
     }
 
-    /// The stream is over.
+    /// The stream was flushed: its noise is over, though more may touch it.
     pub(crate) fn end(&mut self) {
         if let Some((from, to)) = self.open.take() {
             self.closed.offsets.push(from);
             self.closed.sizes.push(to - from);
+            self.flushed = Some(to);
         }
     }
 
