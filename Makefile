@@ -2,11 +2,13 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
-EXAMPLES ?= 100
+COMPUTING := $(addprefix tests/,bench codec codegen diagnose spec typing)
+# In a log, one after the other; a person sees both go on.
+IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test rust-test gen bench plots table fuzz clean
+.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen bench plots table fuzz clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -30,8 +32,14 @@ lint: .venv/.tools .venv/.native ## formatting, linters, types, stubs against th
 rust-test: ## the Rust core's own tests
 	cargo test --workspace --quiet
 
-python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs
-	$(BIN)/python -m pytest
+python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs; those that wait for lines beside those that compute
+	$(MAKE) --no-print-directory --jobs 2 $(IN_TURN) computing-tests waiting-tests
+
+computing-tests:
+	$(BIN)/python -m pytest $(COMPUTING)
+
+waiting-tests:
+	$(BIN)/python -m pytest $(COMPUTING:%=--ignore=%)
 
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
