@@ -32,10 +32,13 @@ MAY_IMPORT: dict[str, set[str]] = {
     "health": {
         *("errors", "table", "codec", "diagnose", "session", "transport", "driver"),
     },
+    "conformance": {
+        *("errors", "table", "codec", "session", "transport", "diagnose", "sim"),
+    },
     "demo": {"codec", "driver", "editions", "sim"},
     "cli": {
         *("errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"),
-        *("capture", "transport", "diagnose", "health"),
+        *("capture", "transport", "diagnose", "health", "conformance"),
     },
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.

@@ -8,30 +8,14 @@ import threading
 import tty
 from collections import deque
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Self
 
 from cobotwire.sim.arm import SimulatedArm
+from cobotwire.sim.peer import Peer
 
 # Bytes of answers that wait for a client to read; beyond that the oldest answers are lost, as a
 # serial line without flow control loses them.
 UNREAD_LIMIT = 4096
-
-
-class Peer(Protocol):
-    """Something that answers; bytes in, bytes out."""
-
-    @property
-    def wait(self) -> float | None:
-        """In how many seconds :meth:`flush` must be called if nothing is heard; None: never."""
-        ...
-
-    def receive(self, data: bytes) -> bytes:
-        """Hear ``data``; gives what is to be answered at once."""
-        ...
-
-    def flush(self) -> bytes:
-        """Time has passed; gives what is to be answered now."""
-        ...
 
 
 class PtyPort:
