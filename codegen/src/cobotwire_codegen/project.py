@@ -11,6 +11,7 @@ from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
+from cobotwire_codegen.targets.vectors import render_shared_vectors
 
 
 def editions(root: Path) -> list[Edition]:
@@ -50,6 +51,7 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
         data.update(render_vectors(edition))
     made.append(Target(root / "rust" / "core" / "tests" / "data", data))
     made.append(schema_target(root, found))
+    made.append(Target(root / "targets" / "vectors", render_shared_vectors(found)))
     return made
 
 

@@ -1,0 +1,1 @@
+"""Targets: what else the model becomes, for other people's tools. A folder each."""
