@@ -11,6 +11,7 @@ from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
+from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 
 
@@ -52,6 +53,7 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
     made.append(Target(root / "rust" / "core" / "tests" / "data", data))
     made.append(schema_target(root, found))
     made.append(Target(root / "targets" / "vectors", render_shared_vectors(found)))
+    made.append(Target(root / "targets" / "construct", render_construct(found)))
     return made
 
 
