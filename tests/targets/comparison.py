@@ -11,3 +11,7 @@ class Comparison(NamedTuple):
     vectors: int
     fields: int
     differences: list[str]
+
+
+class ToolMissing(Exception):
+    """The real tool is not on this machine; the text says which, and how to get it."""

@@ -21,6 +21,7 @@ from cobotwire_codegen.render import markdown, parameters, python_api, python_ta
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.vectors_json import vectors_json
 from cobotwire_codegen.render.way import BLOCKING, WAYS, Way
+from cobotwire_codegen.wire import size
 
 Files = dict[PurePosixPath, str]
 
@@ -132,6 +133,7 @@ def environment(templates: Path | None = None) -> Environment:
         capitalize_first=python_api.capitalize_first,
         oneline=python_api.oneline,
         by_class=_by_class,
+        size_on_wire=size,
     )
     jinja.tests.update(
         enum=lambda type: isinstance(type, Enum),
