@@ -12,6 +12,7 @@ from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
 from cobotwire_codegen.targets.construct import render_construct
+from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 
 
@@ -54,6 +55,7 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
     made.append(schema_target(root, found))
     made.append(Target(root / "targets" / "vectors", render_shared_vectors(found)))
     made.append(Target(root / "targets" / "construct", render_construct(found)))
+    made.append(Target(root / "docs" / "_static" / "decoder" / "tables", render_decoder(found)))
     return made
 
 
