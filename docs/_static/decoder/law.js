@@ -202,17 +202,21 @@
     return Array.from(bytes, (byte) => byte.toString(16).toUpperCase().padStart(2, "0")).join(" ");
   }
 
-  // Bytes out of what people paste: pairs with anything between them, 0x in front, \x, hex dumps'
-  // commas. Says where it is none.
+  // Bytes out of what people paste: pairs of digits with anything between them, 0x or \x in front, or
+  // Python's b'...' around. One digit alone is a byte only behind 0x; else half of one is missing.
   function parse(text) {
-    const plain = text.replace(/\\x|0x/gi, " ").replace(/[\s,;:|"'\[\](){}-]+/g, " ").trim();
+    const plain = text
+      .replace(/\bb(?=['"])/gi, " ")
+      .replace(/0x([0-9a-f])(?![0-9a-f])/gi, " 0$1 ")
+      .replace(/\\x|0x/gi, " ")
+      .replace(/[\s,;:|"'\[\](){}-]+/g, " ")
+      .trim();
     const bytes = [];
     for (const word of plain ? plain.split(" ") : []) {
-      const digits = word.length === 1 ? `0${word}` : word;
-      if (!/^[0-9a-f]*$/i.test(digits)) throw new Refusal("no-hex", bytes.length, `"${word}" is no hex`);
-      if (digits.length % 2)
+      if (!/^[0-9a-f]*$/i.test(word)) throw new Refusal("no-hex", bytes.length, `"${word}" is no hex`);
+      if (word.length % 2)
         throw new Refusal("no-hex", bytes.length, `"${word}" has an odd number of digits`);
-      for (let at = 0; at < digits.length; at += 2) bytes.push(parseInt(digits.slice(at, at + 2), 16));
+      for (let at = 0; at < word.length; at += 2) bytes.push(parseInt(word.slice(at, at + 2), 16));
     }
     return Uint8Array.from(bytes);
   }

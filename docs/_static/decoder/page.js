@@ -15,8 +15,8 @@
     "noise between": "FF FF 01 04 02 38 02 BE FE FE 03 12 01 FA 00 00",
     "a false header": "FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA 00",
   };
-  const UNITS = { degree: "°", degree_celsius: "°C", millimetre: "mm", percent: "%", volt: "V",
-    milliampere: "mA", hertz: "Hz", step_per_second: "steps/s", tick: "ticks" };
+  const UNITS = { degree: "°", degree_celsius: " °C", millimetre: " mm", percent: " %", volt: " V",
+    milliampere: " mA", hertz: " Hz", step_per_second: " steps/s", tick: " ticks" };
 
   function element(name, attributes, ...children) {
     const made = document.createElement(name);
@@ -109,9 +109,9 @@
     if (field.kind === "flag") return whole ? "yes" : "no";
     const label = field.labels[field.choices.indexOf(whole)];
     if (field.kind === "enum" && label) return `${label} (${whole})`;
-    const unit = UNITS[number.unit] || number.unit;
+    const unit = UNITS[number.unit] || (number.unit && ` ${number.unit}`);
     const scaled = number.multiply === number.divide ? "" : `  (${whole} on the wire)`;
-    return `${value}${unit ? ` ${unit}` : ""}${scaled}`;
+    return `${value}${unit}${scaled}`;
   }
 
   function chips(data, kindOf) {
