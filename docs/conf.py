@@ -27,6 +27,8 @@ autodoc_member_order = "bysource"
 autodoc_class_signature = "separated"
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
+# Or the fields of a tuple would be described twice.
+napoleon_use_ivar = True
 
 html_theme = "furo"
 html_title = "cobotwire"
