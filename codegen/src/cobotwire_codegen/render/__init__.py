@@ -18,6 +18,7 @@ from jinja2 import (
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
 from cobotwire_codegen.render import markdown, parameters, python_api, python_table, words
+from cobotwire_codegen.render.diagram import byte_diagram
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.vectors_json import vectors_json
 from cobotwire_codegen.render.way import BLOCKING, WAYS, Way
@@ -133,6 +134,7 @@ def environment(templates: Path | None = None) -> Environment:
         capitalize_first=python_api.capitalize_first,
         oneline=python_api.oneline,
         by_class=_by_class,
+        byte_diagram=byte_diagram,
         size_on_wire=size,
     )
     jinja.tests.update(
