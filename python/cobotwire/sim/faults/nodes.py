@@ -50,7 +50,8 @@ def parse(text: str, name: str) -> Node:
         place = Place(name, mark.line + 1, mark.column + 1) if mark else Place(name, 1, 1)
         raise ScenarioError([f"{place}: {_sentence(error.problem)}"]) from None
     except (YAMLError, ValueError, RecursionError) as error:
-        raise ScenarioError([f"{Place(name, 1, 1)}: no YAML: {_sentence(str(error))}"]) from None
+        place = _place_in(text, name, getattr(error, "position", 0))
+        raise ScenarioError([f"{place}: no YAML: {_sentence(str(error))}"]) from None
 
 
 # A scenario is a mapping with a list of mappings that hold lists; an alias may name what it is in.
@@ -59,23 +60,32 @@ _DEEPEST = 5
 
 def _node(value: Any, place: Place, depth: int) -> Node:
     marks: Any = getattr(value, "lc", None)
+    # What a merge key or a tag has brought has no place of its own.
+    own = (marks.data or {}) if marks is not None else {}
     if isinstance(value, dict) and depth < _DEEPEST:
-        keys, entries = {}, {}
-        for key, inner in value.items():
-            own = marks is not None and key in (marks.data or {})
-            keys[str(key)] = _at(place, marks.key(key)) if own else place
-            entries[str(key)] = _node(
-                inner, _at(place, marks.value(key)) if own else place, depth + 1
-            )
+        keys = {str(key): _at(place, own.get(key), 0) for key in value}
+        entries = {
+            str(key): _node(inner, _at(place, own.get(key), 2), depth + 1)
+            for key, inner in value.items()
+        }
         return Node(place, entries, keys)
     if isinstance(value, list) and depth < _DEEPEST:
-        items = [_node(item, _at(place, marks.item(n)), depth + 1) for n, item in enumerate(value)]
+        items = [
+            _node(inner, _at(place, own.get(number), 0), depth + 1)
+            for number, inner in enumerate(value)
+        ]
         return Node(place, items, {})
     return Node(place, value, {})
 
 
-def _at(place: Place, mark: tuple[int, int]) -> Place:
-    return Place(place.file, mark[0] + 1, mark[1] + 1)
+def _at(outer: Place, mark: list[int] | None, at: int) -> Place:
+    """The place in a mark, which is line and column of a key and then those of its value."""
+    return outer if mark is None else Place(outer.file, mark[at] + 1, mark[at + 1] + 1)
+
+
+def _place_in(text: str, name: str, position: int) -> Place:
+    lines = text[:position].split("\n")
+    return Place(name, len(lines), len(lines[-1]) + 1)
 
 
 def _sentence(text: str | None) -> str:
