@@ -65,13 +65,16 @@ def one_of(words: Iterable[str]) -> Rule:
     return rule
 
 
-def several(rule: Rule) -> Rule:
+class Several:
     """One value, or a list of them; kept as a tuple."""
 
-    def each(value: Any) -> tuple[Any, ...]:
-        return tuple(rule(item) for item in (value if isinstance(value, list | tuple) else [value]))
+    def __init__(self, one: Rule) -> None:
+        self.one = one
 
-    return each
+    def __call__(self, value: Any) -> tuple[Any, ...]:
+        """Each value by the rule for one."""
+        values = value if isinstance(value, list | tuple) else [value]
+        return tuple(self.one(item) for item in values)
 
 
 def command(value: Any) -> str | int:

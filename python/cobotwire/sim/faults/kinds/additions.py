@@ -12,11 +12,11 @@ from cobotwire.sim.faults.noise import COMMAND_ERROR, LEAKS
 from cobotwire.sim.faults.registry import kind
 from cobotwire.sim.faults.rules import (
     SECONDS,
+    Several,
     one_of,
     optional,
     pairs_of_hex,
     ruled,
-    several,
     whole,
 )
 
@@ -75,10 +75,10 @@ class ServoLeak(Addition):
     """Packets of the servo bus come through.
 
     Attributes:
-        packets: which; of several, one at random each time.
+        packets: which; of Several, one at random each time.
     """
 
-    packets: tuple[str, ...] = ruled(several(one_of(LEAKS)), tuple(LEAKS))
+    packets: tuple[str, ...] = ruled(Several(one_of(LEAKS)), tuple(LEAKS))
 
     def drawn(self, moment: Moment) -> bytes:
         """One of the packets."""
