@@ -90,6 +90,7 @@ PLAYED: list[tuple[Fault, list[bytes | float], list[tuple[float, bytes]]]] = [
         [IS_POWERED],
         [(0.0, TEXT), (0.25, TEXT), (0.5, OFF)],
     ),
+    (Inserted(data=b"\x01", where="inside", after_bytes=99), [IS_POWERED], [(0.0, OFF + b"\x01")]),
     (Doubled(), [IS_POWERED], [(0.0, OFF * 2)]),
     (Doubled(seconds=0.1), [IS_POWERED], [(0.0, OFF), (0.1, OFF)]),
     (Echo(), [IS_POWERED], [(0.0, IS_POWERED + OFF)]),
@@ -206,6 +207,13 @@ def test_a_port_that_goes_is_told_to_what_serves_it() -> None:
     with pytest.raises(LineGone):
         peer.receive(IS_POWERED)
     assert len(done) == 1
+
+
+def test_what_is_inserted_leaves_the_pauses_where_they_are() -> None:
+    cut = Split(after_bytes=2, seconds=1)
+    front, inside = Inserted(data=b"abc"), Inserted(data=b"x", where="inside", after_bytes=8)
+    heard = talk([cut, front, inside], [IS_POWERED]).heard
+    assert heard == [(0.0, b"abc" + OFF[:2]), (1.0, OFF[2:5] + b"x" + OFF[5:])]
 
 
 def test_faults_are_done_in_their_order() -> None:
