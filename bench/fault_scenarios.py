@@ -21,13 +21,17 @@ from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.sim import PtyPort
 from cobotwire.sim.faults import find, shipped
-from fault_session import SESSION, SteadyArm, TimedOutcome, play_session
+from fault_session import CAREFUL, SESSION, SteadyArm, TimedOutcome, play_session
 from field_notes.case import DONE, Call
 from field_notes.play import RIGHT, WRONG, Outcome
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "fault-scenarios.md"
 BEGIN, END = "<!-- begin: make faults -->", "<!-- end: make faults -->"
-CLIENTS = {"blocking": "cobotwire", "pymycobot": "pymycobot 4.0.7"}
+CLIENTS = {
+    "blocking": "cobotwire",
+    CAREFUL: "cobotwire, `ack_within=0.5`",
+    "pymycobot": "pymycobot 4.0.7",
+}
 AT_ONCE = 4
 LIMIT_SECONDS = 60.0
 KINDS = ("right", "honest error", "-1 or None", WRONG, "exception", "not ended")
@@ -111,7 +115,7 @@ def _page(names: list[str], runs: dict[tuple[str, str], Run]) -> str:
 
 
 def _sums(runs: dict[tuple[str, str], Run]) -> str:
-    lines = [f"| calls that ended | {' | '.join(CLIENTS.values())} |", "|---|---|---|"]
+    lines = [f"| calls that ended | {' | '.join(CLIENTS.values())} |", "|---|---|---|---|"]
     for kind in KINDS:
         sums = [
             sum(run.kinds[kind] for (_, by), run in runs.items() if by == who) for who in CLIENTS

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
@@ -13,7 +14,8 @@ from field_notes.case import ACK, DONE, GET_ANGLES, READ, Call, encoder
 from field_notes.play import OPENERS, Outcome, called
 
 POWERED = Call("is_power_on", (), 1)
-COORDS = Call("get_coords", (), [150.5, -60.2, 250.0, -90.5, 1.25, -86.0])
+# 27.5 mm are 0x0113: an XOFF stands in the reply.
+COORDS = Call("get_coords", (), [27.5, -60.2, 250.0, -90.5, 1.25, -86.0])
 REGISTER = Call("get_servo_data", (1, 24, 1), 1000)
 # An order's own bytes: it is right if they came to the arm, and as often as it was called.
 ORDERS = (
@@ -34,6 +36,10 @@ SESSION = (
 )
 
 
+# Our client, told to wait for the acknowledgement of each order.
+CAREFUL = "careful"
+
+
 class TimedOutcome(NamedTuple):
     """How a call of the session ended, and in how many seconds."""
 
@@ -43,11 +49,14 @@ class TimedOutcome(NamedTuple):
 
 def play_session(who: str, url: str) -> list[TimedOutcome]:
     """All calls, by one library; opening is not timed."""
-    arm = OPENERS[who](url)
+    careful = who == CAREFUL
+    arm = OPENERS["blocking" if careful else who](url)
     timed = []
     for call in SESSION:
+        if careful and call.right == DONE:
+            call = replace(call, their_options={"ack_within": 0.5})
         started = time.monotonic()
-        outcome = called(call, arm, who == "pymycobot")
+        outcome = called(call, arm, careful or who == "pymycobot")
         timed.append(TimedOutcome(outcome, time.monotonic() - started))
     return timed
 
