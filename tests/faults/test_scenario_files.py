@@ -5,16 +5,30 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 import vectors
 from cobotwire.editions import mycobot, mycobot280
 from cobotwire.errors import ScenarioError, UsageError
-from cobotwire.sim.faults import Late, Lost, Scenario, ServoLeak, find, load, loads, shipped
+from cobotwire.sim.faults import (
+    KINDS,
+    Fault,
+    Late,
+    Lost,
+    Scenario,
+    ServoLeak,
+    find,
+    load,
+    loads,
+    shipped,
+)
 from field_notes.notes import ELSEWHERE, FIGURES, NOTES
 
 HERE = Path(__file__).parent
@@ -78,6 +92,41 @@ def test_a_file_is_read_as_it_says() -> None:
     assert loads(text, "two", mycobot280.TABLE) == expected
 
 
+GOOD = """about: All of it.
+seed: 3
+faults:
+  - {fault: late, commands: [get_angles, 0x20], nth: [1, 2], seconds: 0.5}
+  - &leak {fault: servo-leak, packets: [ping], only: answers}
+  - fault: inserted
+    data: "FE FE"
+"""
+PIECES = ["", ":", "- ", "{", "}", "[", "]", "&a", "*leak", "!!set ", "<<: *leak", "? ", "0x", "#"]
+PIECES += ["\n", "\t", "'", '"', "---\n", "|", "1e999", "9" * 5000, "2001-01-01", "\x07", "\ud800"]
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(0, len(GOOD)), st.integers(0, 9), st.sampled_from(PIECES)),
+        min_size=1,
+        max_size=3,
+    )
+)
+def test_a_spoilt_file_is_a_scenario_or_is_refused_with_places(
+    edits: list[tuple[int, int, str]],
+) -> None:
+    text = GOOD
+    for at, size, piece in edits:
+        text = text[:at] + piece + text[at + size :]
+    problems: tuple[str, ...] | None = None
+    try:
+        loads(text, "spoilt", mycobot280.TABLE)
+    except ScenarioError as error:
+        problems = error.problems
+    assert problems != ()
+    for problem in problems or ():
+        assert re.match(r"spoilt:\d+:\d+: ", problem), problem
+
+
 def test_without_a_table_commands_are_not_checked() -> None:
     scenario = loads("faults: [{fault: lost, commands: of_another_edition}]")
     assert scenario.faults == (Lost(commands=("of_another_edition",)),)
@@ -110,6 +159,21 @@ def test_the_guides_examples_are_scenarios() -> None:
     assert examples
     for example in examples:
         assert loads(example, "example", mycobot280.TABLE).faults
+
+
+def test_the_guides_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
+    exec(compile(example, str(GUIDE), "exec"), {})
+    assert "Angles(j1=0.0" in capsys.readouterr().out
+
+
+def test_the_guide_names_every_fault_and_every_key() -> None:
+    rows = dict(re.findall(r"^\| `([a-z-]+)` \|(.*)$", GUIDE.read_text(), re.MULTILINE))
+    common = {field.name for field in fields(Fault)}
+    for name, cls in KINDS.items():
+        own = {field.name for field in fields(cls)} - common
+        missing = {key for key in own if not re.search(rf"`{key}\b", rows[name])}
+        assert not missing or "as `inserted`" in rows[name], (name, missing)
 
 
 def test_without_the_extra_it_is_said_what_to_install() -> None:

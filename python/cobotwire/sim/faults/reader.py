@@ -192,6 +192,8 @@ def _shown(node: Node) -> str:
         return "a list"
     if node.value is None:
         return "nothing"
+    if isinstance(node.value, int) and abs(node.value) >= 10**SHOWN:
+        return f"a number of more than {SHOWN} digits"
     text = str(node.value)
     return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
 

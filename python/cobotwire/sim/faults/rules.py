@@ -6,7 +6,6 @@ file says is checked by it before, so that the file's place can be told.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from dataclasses import field
 from difflib import get_close_matches
@@ -30,7 +29,7 @@ def number(lowest: float, highest: float) -> Rule:
     def rule(value: Any) -> float:
         # A truth value is a number to Python, not to a reader of scenarios.
         fits = isinstance(value, int | float) and not isinstance(value, bool)
-        if not fits or not math.isfinite(value) or not lowest <= value <= highest:
+        if not fits or not lowest <= value <= highest:
             raise ValueError(f"a number from {lowest:g} to {highest:g}")
         return float(value)
 
