@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cobotwire.sim.faults import KINDS, Done, Fault, Late, Merged, Slow, Split, Stalled
+from cobotwire.sim.faults import KINDS, Corrupted, Done, Fault, Late, Merged, Slow, Split, Stalled
 from cobotwire.sim.faults.noise import LEAKS
 from faulty_talk import GET_ANGLES, IS_POWERED, POWER_ON, talk
 
@@ -82,6 +82,20 @@ def test_every_byte_is_accounted_for(
     played = talk(chosen, requests, seed=seed)
     added = sum(done.added for done in played.done)
     assert len(played.data) == sum(map(len, played.said)) + added
+
+
+@given(faults(["merged", "doubled", "silent", "panic"]), st.sampled_from([0.0, 0.01, 3.0]), SEEDS)
+def test_what_goes_beside_a_reply_is_accounted_for(fault: Fault, pause: float, seed: int) -> None:
+    always = replace(fault, only="requests", commands=(), nth=(), every=2, probability=1)
+    requests: list[bytes | float] = [GET_ANGLES, pause, IS_POWERED, pause, POWER_ON, pause] * 2
+    played = talk([Late(seconds=0.005), always], requests, seed=seed)
+    added = sum(done.added for done in played.done)
+    assert len(played.data) == sum(map(len, played.said)) + added
+
+
+def test_another_seed_draws_otherwise() -> None:
+    talks = [talk([Corrupted()], [GET_ANGLES] * 4, seed=seed).data for seed in range(5)]
+    assert len(set(talks)) == 5
 
 
 @given(faults([cls.kind for cls in TIMES]), REQUESTS, SEEDS)
