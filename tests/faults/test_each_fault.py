@@ -251,6 +251,7 @@ def test_when_a_fault_is_done(fault: Fault, done_at: list[int]) -> None:
         (lambda: Lost(only="answer"), "did you mean answers?"),  # type: ignore[arg-type]
         (lambda: Lost(nth=(0,)), "lost.nth is (0,); allowed: a whole number from 1 to 1000000"),
         (lambda: Lost(from_seconds=2, until_seconds=1), "more than from_seconds, 2, up to 86400"),
+        (lambda: Scenario(name="still", speed=0), "scenario.speed is 0; allowed: a number above 0"),
         (lambda: Inserted(data=b""), "1 to 4096 bytes as pairs of hex digits"),
     ],
 )
