@@ -44,13 +44,18 @@ class SimulatedArm:
             acks: whether it acknowledges what the edition says it may.
         """
         self.table = table
-        self.state = ArmState(table.joints)
-        for joint, (lowest, highest) in enumerate(_joint_limits(table)):
-            self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
         self._clock = clock
         self._watch = watch
         self._acks = acks
-        self._session = DeviceSession(codecs.load(table, codec))
+        self._codec = codecs.load(table, codec)
+        self.restart()
+
+    def restart(self) -> None:
+        """Lose all state, as when power goes and comes back."""
+        self.state = ArmState(self.table.joints)
+        for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
+            self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
+        self._session = DeviceSession(self._codec)
 
     @property
     def pending(self) -> int:

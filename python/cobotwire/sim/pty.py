@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Self
 
 from cobotwire.sim.arm import SimulatedArm
-from cobotwire.sim.peer import Peer
+from cobotwire.sim.peer import LineGone, Peer
 
 # Bytes of answers that wait for a client to read; beyond that the oldest answers are lost, as a
 # serial line without flow control loses them.
@@ -51,7 +51,14 @@ class PtyPort:
         self.close()
 
     def serve(self) -> None:
-        """Answer until :meth:`stop` is called."""
+        """Answer until :meth:`stop` is called. A peer that takes its line away closes the port."""
+        try:
+            self._serve()
+        except LineGone:
+            self._unplug()
+            select.select([self._stop], [], [])
+
+    def _serve(self) -> None:
         while True:
             wait = self._peer.wait
             writing = [self._master] if self._unread else []
@@ -86,8 +93,15 @@ class PtyPort:
 
     def close(self) -> None:
         """Give the pty back; whoever has it open hears that the port is gone."""
-        for descriptor in (self._master, self._slave, self._stop, self.stopper):
+        self._unplug()
+        for descriptor in (self._stop, self.stopper):
             os.close(descriptor)
+
+    def _unplug(self) -> None:
+        for descriptor in (self._master, self._slave):
+            if descriptor >= 0:
+                os.close(descriptor)
+        self._master = self._slave = -1
 
 
 class PtyServer(PtyPort):
