@@ -9,10 +9,10 @@ from types import FrameType
 
 import click
 
-from cobotwire.sim import PtyPort
+from cobotwire.sim import Server
 
 
-def serve(server: PtyPort) -> None:
+def serve(server: Server) -> None:
     """Print the port, and serve it until Ctrl-C or SIGTERM."""
 
     def stop(number: int, frame: FrameType | None) -> None:

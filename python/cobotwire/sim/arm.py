@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -50,7 +51,14 @@ class SimulatedArm:
         self._clock = clock
         self._watch = watch
         self._acks = acks
-        self._session = DeviceSession(codecs.load(table, codec))
+        self._codec = codecs.load(table, codec)
+        self._session = DeviceSession(self._codec)
+
+    def another_line(self) -> SimulatedArm:
+        """The same arm for one more client: its state is shared, its requests are its own."""
+        line = copy.copy(self)
+        line._session = DeviceSession(self._codec)
+        return line
 
     @property
     def pending(self) -> int:
