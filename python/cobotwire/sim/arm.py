@@ -54,9 +54,13 @@ class SimulatedArm:
         self._codec = codecs.load(table, codec)
         self._session = DeviceSession(self._codec)
 
-    def another_line(self) -> SimulatedArm:
-        """The same arm for one more client: its state is shared, its requests are its own."""
+    def another_line(self, watch: Watch | None = None) -> SimulatedArm:
+        """The same arm for one more client: its state is shared, its requests are its own.
+
+        ``watch`` is called with what this client says; left out: as for the first one.
+        """
         line = copy.copy(self)
+        line._watch = watch or self._watch
         line._session = DeviceSession(self._codec)
         return line
 
