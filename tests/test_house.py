@@ -36,6 +36,7 @@ MAY_IMPORT: dict[str, set[str]] = {
         *("errors", "table", "codec", "session", "transport", "diagnose", "sim"),
     },
     "demo": {"codec", "driver", "editions", "sim"},
+    "testing": {"errors", "table", "codec", "driver", "editions", "sim"},
     "cli": {
         *("errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"),
         *("capture", "transport", "diagnose", "health", "conformance"),
@@ -46,6 +47,7 @@ ONE_IMPORTER = {
     "serial": ["transport/serial/"],
     "click": ["cli/"],
     "rich": ["cli/"],
+    "pytest": ["testing/plugin.py"],
     "numpy": ["codec/columns.py"],
     "pyarrow": ["codec/arrow.py"],
     "ruamel": ["sim/faults/nodes.py"],
@@ -104,7 +106,8 @@ def test_importing_the_package_pulls_in_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"
         "loaded = {name.split('.')[0] for name in sys.modules}\n"
-        "print(sorted(loaded & {'click', 'rich', 'numpy', 'pyarrow', 'ruamel', 'jinja2'}))"
+        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest'\n"
+        "print(sorted(loaded & set(extras.split())))"
     )
     result = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
