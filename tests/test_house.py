@@ -27,6 +27,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "capture": {"errors", "table", "codec"},
     "editions": {"errors", "table", "values", "driver"},
     "sim": {"errors", "table", "codec", "session", "capture"},
+    "plot": {"errors", "table", "codec", "capture", "sim"},
     "explain": {"errors", "table", "codec"},
     "diagnose": {"errors", "table", "codec"},
     "health": {
@@ -39,7 +40,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "testing": {"errors", "table", "codec", "driver", "editions", "sim"},
     "cli": {
         *("errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"),
-        *("capture", "transport", "diagnose", "health", "conformance"),
+        *("capture", "transport", "diagnose", "health", "conformance", "plot"),
     },
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.
@@ -48,6 +49,7 @@ ONE_IMPORTER = {
     "click": ["cli/"],
     "rich": ["cli/"],
     "pytest": ["testing/plugin.py"],
+    "matplotlib": ["plot/drawing.py", "plot/pose.py"],
     "numpy": ["codec/columns.py"],
     "pyarrow": ["codec/arrow.py"],
     "ruamel": ["sim/faults/nodes.py"],
