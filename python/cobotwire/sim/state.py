@@ -117,7 +117,7 @@ class ArmState:
         return None if pose is None else told_coords(pose.coords)
 
     def end(self, angles: tuple[float, ...], *, base: bool = False) -> Pose | None:
-        """Where the end is: the flange's pose, or the tool's, in the base's frame or the world's."""
+        """Where the end is: flange or tool, in the base's frame or the world's, as it is set."""
         if self.geometry is None:
             return None
         pose = flange(self.geometry, angles)

@@ -29,8 +29,8 @@ class Link:
 class Geometry:
     """An arm with six joints, of which the second to the fourth are parallel (see ``inverse``).
 
-    ``editions`` are the editions of the protocol that such an arm speaks. ``encoder_signs[i]`` says whether the encoder of joint ``i`` counts up (+1) or down (-1) while
-    the angle grows.
+    ``editions`` are the editions of the protocol that such an arm speaks. ``encoder_signs[i]`` says
+    whether the encoder of joint ``i`` counts up (+1) or down (-1) while the angle grows.
     """
 
     editions: tuple[str, ...]

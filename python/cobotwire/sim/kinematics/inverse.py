@@ -19,8 +19,10 @@ from cobotwire.sim.kinematics.pose import Pose, Vector
 Angles = tuple[float, ...]
 Limits = Sequence[tuple[float, float]]
 
-# A solution puts the flange within this of its target: what cutting each number to its step takes
-# from a pose at most, so that what get_coords tells can be sent.
+# What a solution in closed form may be off by rounding.
+EXACT_MILLIMETRES, EXACT_DEGREES = 1e-3, 1e-3
+# On the edge of the reach a solution puts the flange within this of its target: what cutting each
+# number to its step takes from a pose at most, so that what get_coords tells can be sent.
 MILLIMETRES, DEGREES = 0.18, 0.02
 # What is closer than this may become a solution when its joints give way a little.
 NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
@@ -51,7 +53,7 @@ def nearest(
     """
     found = list(solutions(geometry, target, present))
     for one in _by_way(found, present, limits, ROUNDING):
-        if not _misses(geometry, one, target, MILLIMETRES, DEGREES):
+        if not _misses(geometry, one, target, EXACT_MILLIMETRES, EXACT_DEGREES):
             return one
     almost = (
         one

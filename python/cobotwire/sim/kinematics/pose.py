@@ -31,7 +31,7 @@ class Pose(NamedTuple):
 
     @property
     def coords(self) -> tuple[float, ...]:
-        """x y z in millimetres, rx ry rz in degrees: -180..180, ry -90..90."""
+        """The six numbers: x y z in millimetres, rx ry rz in degrees: -180..180, ry -90..90."""
         (xx, xy, xz), (_, _, yz), (_, _, zz), origin = self
         rx, ry, rz = math.atan2(yz, zz), math.atan2(-xz, math.hypot(xx, xy)), math.atan2(xy, xx)
         return (*origin, math.degrees(rx), math.degrees(ry), math.degrees(rz))

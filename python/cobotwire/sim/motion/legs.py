@@ -18,7 +18,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Order:
-    """What is still to be done: points to pass at a rate in units a second; the last is the target."""
+    """What is still to be done: points to pass, the last is the target; ``rate`` units a second."""
 
     points: tuple[Point, ...]
     rate: float

@@ -1,4 +1,4 @@
-"""One number that moves: from standing to standing, or from moving to standing. Time begins at 0."""
+"""One number that moves until it stands: from standing, or from moving. Time begins at 0."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Ramped:
 
 
 def quickest(speed: float, way: float, fastest: float, acceleration: float) -> Ramped:
-    """The travel over ``way`` that takes the least time, at most ``fastest`` once it is that slow."""
+    """The travel over ``way`` that takes the least time, never speeding up above ``fastest``."""
     # Where it would stand if it braked now decides which way to cruise.
     brake = speed * abs(speed) / (2 * acceleration)
     if way == brake:
