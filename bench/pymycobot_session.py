@@ -47,7 +47,7 @@ SESSION = (
     Step("send_angle", (1, 0, 80), 1.5),
     Step("jog_angle", (1, 1, 20), 0.5),
     Step("is_moving"),
-    Step("stop"),
+    Step("stop", pause=0.5),  # it brakes
     Step("is_moving"),
     Step("resume"),
     Step("jog_increment", (2, 10, 60), 1.0),

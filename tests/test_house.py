@@ -51,6 +51,7 @@ ONE_IMPORTER = {
     "pytest": ["testing/plugin.py"],
     "matplotlib": ["plot/drawing.py", "plot/pose.py"],
     "numpy": ["codec/columns.py"],
+    "scipy": ["sim/kinematics/refine.py"],
     "pyarrow": ["codec/arrow.py"],
     "ruamel": ["sim/faults/nodes.py"],
 }
@@ -108,7 +109,7 @@ def test_importing_the_package_pulls_in_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"
         "loaded = {name.split('.')[0] for name in sys.modules}\n"
-        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest'\n"
+        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy'\n"
         "print(sorted(loaded & set(extras.split())))"
     )
     result = subprocess.run(

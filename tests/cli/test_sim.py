@@ -151,8 +151,8 @@ def test_a_terminal_gets_a_table_of_the_joints() -> None:
         url = next(word for word in shown.decode().split() if word.startswith("/dev/"))
         with MyCobot(url) as arm:
             arm.power_on()
-            arm.move_angles([30, 0, 0, 0, 0, 0], 100)
-        shown += _until(master, b"j1=30.0")
+            arm.move_angles([45, 0, 0, 0, 0, 0], 100)
+        shown += _until(master, b"j1=45.0")
         process.send_signal(signal.SIGINT)
         assert process.wait(timeout=10) == 0
         shown += _until(master, b"\x1b[?25h")  # the cursor is shown again
