@@ -60,6 +60,8 @@ bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost o
 	$(BIN)/python bench/imports.py
 	$(BIN)/python bench/streaming.py
 	$(BIN)/python bench/pipelining.py
+	$(BIN)/python bench/pymycobot_session.py
+	$(BIN)/python bench/stepped_client.py
 
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench
