@@ -47,6 +47,7 @@ ONE_IMPORTER = {
     "click": ["cli/"],
     "rich": ["cli/"],
     "numpy": ["codec/columns.py"],
+    "scipy": ["sim/kinematics/refine.py"],
     "pyarrow": ["codec/arrow.py"],
 }
 
@@ -103,7 +104,7 @@ def test_importing_the_package_pulls_in_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"
         "loaded = {name.split('.')[0] for name in sys.modules}\n"
-        "print(sorted(loaded & {'click', 'rich', 'numpy', 'pyarrow', 'ruamel', 'jinja2'}))"
+        "print(sorted(loaded & {'click', 'rich', 'numpy', 'scipy', 'pyarrow', 'ruamel', 'jinja2'}))"
     )
     result = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
