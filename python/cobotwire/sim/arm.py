@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
+from cobotwire.errors import UsageError
 from cobotwire.session import Asked, DeviceSession, Told
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim.behaviour import BEHAVIOUR
+from cobotwire.sim.kinematics import Geometry, geometry_of
 from cobotwire.sim.state import ArmState
-from cobotwire.table import Command, Field, Table
+from cobotwire.table import Command, Field, Number, Table
 
 # A joint's limit lies inside half a turn; what is wider is only what the wire can say.
 HALF_TURN = 180.0
@@ -20,6 +23,19 @@ IDLE_SECONDS = 0.2
 
 Clock = Callable[[], float]
 Watch = Callable[[DeviceEvent, bytes], None]
+# Notes beyond this push the oldest ones out.
+NOTES_KEPT = 1000
+
+
+class Note(NamedTuple):
+    """What no answer tells: that an order is ignored, or refused, and why.
+
+    ``time`` is by the arm's clock, ``command`` the order's name.
+    """
+
+    time: float
+    command: str
+    text: str
 
 
 class SimulatedArm:
@@ -33,6 +49,8 @@ class SimulatedArm:
         codec: codecs.CodecName | None = None,
         watch: Watch | None = None,
         acks: bool = True,
+        geometry: Geometry | None = None,
+        remark: Callable[[Note], None] | None = None,
     ) -> None:
         """Make an arm that is switched off and stands at zero.
 
@@ -42,15 +60,26 @@ class SimulatedArm:
             codec: ``native`` or ``reference``; left out: the one in use.
             watch: called with everything that was heard and what was answered.
             acks: whether it acknowledges what the edition says it may.
+            geometry: where its end is for its joints; left out: that of the arm which speaks this
+                edition. Where none is known, coordinates are answered with zeros, and an order to
+                go to some is refused; the joints move, but stand on no ticks.
+            remark: called with each note when it is made; ``notes`` has the last thousand.
         """
         self.table = table
-        self.state = ArmState(table.joints)
+        self.state = ArmState(table.joints, geometry or geometry_of(table))
         for joint, (lowest, highest) in enumerate(_joint_limits(table)):
             self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
         self._clock = clock
         self._watch = watch
         self._acks = acks
+        self._remark = remark
+        self._notes: deque[Note] = deque(maxlen=NOTES_KEPT)
         self._session = DeviceSession(codecs.load(table, codec))
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What no answer told so far, the oldest first: at most a thousand notes."""
+        return tuple(self._notes)
 
     @property
     def pending(self) -> int:
@@ -88,17 +117,36 @@ class SimulatedArm:
         result = {} if command.request_text is not None else self._do(command, given)
         if not command.answers and not (command.ack and self._acks):
             return b""
-        return self._session.answer(command.name, _complete(command, given, result))
+        values = _complete(command, given, result)
+        try:
+            return self._session.answer(command.name, values)
+        except UsageError:
+            # A pose far out in the world, or a limit: no wire has a word for it.
+            self._note(command, "answered with the nearest that the wire can say")
+            return self._session.answer(command.name, _sayable(command, result, values))
 
     def _do(self, command: Command, given: Mapping[str, Any]) -> dict[str, Any]:
         handler = BEHAVIOUR.get(command.name)
-        return (handler(self.state, self._clock(), **given) if handler else None) or {}
+        if handler is None:
+            return {}
+        state, now = self.state, self._clock()
+        result = handler(state, now, **given) or {}
+        for text in state.remarks:
+            self._note(command, text)
+        state.remarks.clear()
+        return result
+
+    def _note(self, command: Command, text: str) -> None:
+        note = Note(self._clock(), command.name, text)
+        self._notes.append(note)
+        if self._remark is not None:
+            self._remark(note)
 
 
 def _joint_limits(table: Table) -> list[tuple[float, float]]:
     """The limits that the edition gives each joint; none where it gives only the wire's own."""
     for command in table.commands:
-        if command.name == "send_angles":
+        if command.role == "joint targets":
             numbers = command.request[0].fields[0].cases[0].numbers
             limits = [(n.minimum / n.divide, n.maximum / n.divide) for n in numbers]
             return limits if all(high <= HALF_TURN for _, high in limits) else []
@@ -116,6 +164,25 @@ def _complete(command: Command, given: dict[str, Any], result: dict[str, Any]) -
         field.name: given[field.name] if field.echo else result.get(field.name, _near(field, usual))
         for field in form.fields
     }
+
+
+def _sayable(command: Command, result: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
+    """The same reply with each number inside what the edition allows in its place."""
+    said = dict(values)
+    for field in command.reply[_form(command, result)].fields:
+        row = values[field.name] if field.many else (values[field.name],)
+        kept = tuple(_inside(number, value) for number, value in zip(field.cases[0].numbers, row))
+        if not field.echo:
+            said[field.name] = kept if field.many else kept[0]
+    return said
+
+
+def _inside(number: Number, value: Any) -> Any:
+    low, high = number.minimum, number.maximum
+    if number.scaled:
+        share = number.multiply / number.divide
+        return min(max(value, low * share), high * share)
+    return min(max(value, low), high)
 
 
 def _form(command: Command, result: dict[str, Any]) -> int:
