@@ -54,6 +54,8 @@ docs: .venv/.tools .venv/.native ## the docs site, into docs/_build; a warning i
 bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/driver.py
+	$(BIN)/python bench/simulated_time.py
+	$(BIN)/python bench/kinematics.py
 	$(BIN)/python bench/resync.py
 	$(BIN)/python bench/lock.py
 	$(BIN)/python bench/speed.py

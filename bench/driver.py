@@ -4,6 +4,9 @@ The floor is what the machine needs for the same bytes: os.write, select, os.rea
 take turns on one and the same responder in one run. Each counts by its fastest turn, since what
 else runs on the machine only adds to the others; what is held to limits is the ratio.
 
+The simulated arm answers on a pty of its own, asked by the same bare calls: its row says how much
+longer than the trivial responder it takes.
+
 A pty has no baud rate, so "the time that the bytes need" is that of the fastest line there is: ten
 bits a byte at 1,000,000 baud. Beside it stands what bare os.write takes for the same frames.
 """
@@ -32,17 +35,24 @@ while data := os.read(master, 4096):
     if data[3] == 0x20:
         os.write(master, {ANSWER!r})
 """
+SIMULATED = """
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.sim import PtyPort, SimulatedArm
+port = PtyPort(SimulatedArm(TABLE))
+print(port.url, flush=True)
+port.serve()
+"""
 TURNS, CALLS, WARM_UP = 20, 50, 5
 SETTERS = 1000
 FASTEST_BAUD = 1_000_000
-LIMITS = {"blocking": 2.0, "asyncio": 3.0}
+LIMITS = {"blocking": 2.0, "asyncio": 3.0, "of a simulated arm": 3.0}
 TIMES_FASTER = 8.0
 
 
 def main() -> None:
     """Measure, and print ratios beside the limits."""
-    with _responder() as url:
-        _round_trips(url)
+    with _responder() as url, _simulated() as simulated:
+        _round_trips(url, simulated)
     with _responder() as url:
         _setters(url)
 
@@ -61,10 +71,22 @@ def _responder() -> Iterator[str]:
             os.close(slave)
 
 
-def _round_trips(url: str) -> None:
+@contextmanager
+def _simulated() -> Iterator[str]:
+    command = [sys.executable, "-c", SIMULATED]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as arm:  # noqa: S603  (our own)
+        assert arm.stdout is not None
+        try:
+            yield arm.stdout.readline().strip()
+        finally:
+            arm.kill()
+
+
+def _round_trips(url: str, simulated: str) -> None:
     """Each candidate opens the port for its turn, since a port is locked; opening is not timed."""
     candidates = {
         "floor": _floor,
+        "of a simulated arm": lambda _: _floor(simulated),
         "blocking": _blocking,
         "asyncio": lambda port: asyncio.run(_asyncio(port)),
         "pymycobot": _pymycobot,
@@ -105,7 +127,7 @@ def _floor(url: str) -> float:
     def call() -> None:
         os.write(descriptor, QUESTION)
         select.select([descriptor], [], [], 1.0)
-        if os.read(descriptor, 4096) != ANSWER:
+        if len(os.read(descriptor, 4096)) != len(ANSWER):
             raise SystemExit("the responder answers in parts: nothing to measure here")
 
     try:

@@ -110,6 +110,26 @@ class AnyOrder(RuleBasedStateMachine):
         self.tell("resume")
         self.tell("power_on")
 
+    @rule(rng=st.randoms(use_true_random=False), seconds=st.sampled_from([0.0, 0.3, 5.0]))
+    def stop_and_try_to_move(self, rng: random.Random, seconds: float) -> None:
+        self.tell("send_angles", tuple(angle / 2 for angle in random_angles(rng)), 50)
+        self.clock.sleep(seconds)
+        self.joints_are_inside_their_limits_and_no_faster_than_they_can_be()
+        self.tell(self.table.in_role("stop").name)
+        self.clock.sleep(FASTEST / ACCELERATION)
+        self.after_a_stop_nothing_moves()
+        self.tell("send_angles", tuple(angle / 2 for angle in random_angles(rng)), 50)
+        self.clock.sleep(0.5)
+
+    @rule(data=st.data())
+    def far_out_in_the_world(self, data: st.DataObject) -> None:
+        for name in ("set_world_reference", "set_tool_reference"):
+            [layout] = self.table.command(name).request
+            self.tell(name, *data.draw(strategies.legal_values(layout)))
+        self.tell("set_reference_frame", 1)
+        self.tell("set_end_type", 1)
+        self.tell("get_coords")
+
     @precondition(lambda self: self.set)
     @rule(data=st.data())
     def what_was_set_is_read_back(self, data: st.DataObject) -> None:
@@ -172,9 +192,9 @@ class AnyOrder(RuleBasedStateMachine):
         self.note_motion(name)
         for getter in CHANGES.get(name, ()):
             self.set = {key: value for key, value in self.set.items() if key[0] != getter}
-        getter = getter_of(self.table, name)
-        if getter is not None:
-            self.remember(getter, request)
+        read_by = getter_of(self.table, name)
+        if read_by is not None:
+            self.remember(read_by, request)
 
     def frame(self, name: str, *values: Any) -> bytes:
         return self.reference.encode(name, "request", values)
@@ -252,7 +272,7 @@ REQUESTS = {
 @pytest.mark.parametrize("edition", list(TABLES))
 def test_the_laws_hold_in_any_order(edition: str, codec_name: str) -> None:
     machine = type("Machine", (AnyOrder,), {"table": TABLES[edition], "codec_name": codec_name})
-    run_state_machine_as_test(  # type: ignore[no-untyped-call]  # Hypothesis has no types there
+    run_state_machine_as_test(
         machine, settings=settings(settings.default, max_examples=EXAMPLES, stateful_step_count=30)
     )
 

@@ -132,3 +132,10 @@ def test_the_account_comes_as_text_behind_the_frame() -> None:
         client.set_color(1, 2, 3)
         client.send_radians([0.1] * 6, speed=50)
         assert client.is_power_on() is False, "acknowledgements are no answers"
+
+
+def test_a_pose_that_no_wire_can_say_is_answered_with_the_nearest(bench: Bench) -> None:
+    bench.tell("set_world_reference", (3276.7, 0, 0, 0, 0, 0))
+    bench.tell("set_reference_frame", 1)
+    assert bench.ask("get_coords")[0] == 3276.7
+    assert "nearest" in bench.arm.notes[-1].text

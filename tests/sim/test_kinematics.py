@@ -6,6 +6,7 @@ import math
 import random
 import sys
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -55,7 +56,7 @@ def _by_matrices(angles: tuple[float, ...]) -> list[list[float]]:
     for angle, link in zip(angles, MYCOBOT_280.links):
         t, al = math.radians(angle + link.offset), math.radians(link.alpha)
         c, s, ca, sa = math.cos(t), math.sin(t), math.cos(al), math.sin(al)
-        one = [
+        one: list[list[float]] = [
             [c, -s * ca, s * sa, link.a * c],
             [s, c * ca, -c * sa, link.a * s],
             [0, sa, ca, link.d],
@@ -100,7 +101,7 @@ def test_a_line_is_straight_and_even(rng: random.Random, steps: int) -> None:
     poses = [start, *line(start, end, steps)]
     way, turn = start.distance(end)
     assert poses[-1] == end
-    for one, two in zip(poses, poses[1:]):
+    for one, two in pairwise(poses):
         assert one.distance(two) == pytest.approx((way / steps, turn / steps), abs=1e-4)
 
 
@@ -115,8 +116,8 @@ def test_inverse_then_forward_gives_the_pose_back(cut: Callable[[Any], tuple[flo
         assert within_limits(found)
         way, turn = flange(MYCOBOT_280, found).distance(target)
         # What get_coords cut off may not be reachable: there the nearest angles are taken.
-        assert way <= (0.1 if cut is tuple else 0.18)
-        assert turn <= 0.02
+        assert way <= (0.1 if cut is tuple else 0.22)
+        assert turn <= (0.02 if cut is tuple else 0.03)
 
 
 @given(st.randoms(use_true_random=False))
@@ -140,7 +141,7 @@ def test_singular_poses_have_their_solution(angles: tuple[float, ...]) -> None:
     for target in (flange(MYCOBOT_280, angles), told):
         found = nearest(MYCOBOT_280, target, angles, LIMITS)
         assert found is not None
-        assert flange(MYCOBOT_280, found).distance(target)[0] <= 0.18
+        assert flange(MYCOBOT_280, found).distance(target)[0] <= 0.22
 
 
 @pytest.mark.parametrize("z", [-300.0, 500.0, 5000.0])

@@ -9,12 +9,13 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
+from cobotwire.errors import UsageError
 from cobotwire.session import Asked, DeviceSession, Told
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim.behaviour import BEHAVIOUR
 from cobotwire.sim.kinematics import Geometry, geometry_of
 from cobotwire.sim.state import ArmState
-from cobotwire.table import Command, Field, Table
+from cobotwire.table import Command, Field, Number, Table
 
 # A joint's limit lies inside half a turn; what is wider is only what the wire can say.
 HALF_TURN = 180.0
@@ -144,7 +145,13 @@ class SimulatedArm:
         result = {} if command.request_text is not None else self._do(command, given)
         if not command.answers and not (command.ack and self._acks):
             return b""
-        return self._session.answer(command.name, _complete(command, given, result))
+        values = _complete(command, given, result)
+        try:
+            return self._session.answer(command.name, values)
+        except UsageError:
+            # A pose far out in the world, or a limit: no wire has a word for it.
+            self._note(command, "answered with the nearest that the wire can say")
+            return self._session.answer(command.name, _sayable(command, result, values))
 
     def _do(self, command: Command, given: Mapping[str, Any]) -> dict[str, Any]:
         handler = BEHAVIOUR.get(command.name)
@@ -153,12 +160,15 @@ class SimulatedArm:
         state, now = self.state, self._clock()
         result = handler(state, now, **given) or {}
         for text in state.remarks:
-            note = Note(now, command.name, text)
-            self._notes.append(note)
-            if self._remark is not None:
-                self._remark(note)
+            self._note(command, text)
         state.remarks.clear()
         return result
+
+    def _note(self, command: Command, text: str) -> None:
+        note = Note(self._clock(), command.name, text)
+        self._notes.append(note)
+        if self._remark is not None:
+            self._remark(note)
 
 
 def _joint_limits(table: Table) -> list[tuple[float, float]]:
@@ -182,6 +192,25 @@ def _complete(command: Command, given: dict[str, Any], result: dict[str, Any]) -
         field.name: given[field.name] if field.echo else result.get(field.name, _near(field, usual))
         for field in form.fields
     }
+
+
+def _sayable(command: Command, result: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
+    """The same reply with each number inside what the edition allows in its place."""
+    said = dict(values)
+    for field in command.reply[_form(command, result)].fields:
+        row = values[field.name] if field.many else (values[field.name],)
+        kept = tuple(_inside(number, value) for number, value in zip(field.cases[0].numbers, row))
+        if not field.echo:
+            said[field.name] = kept if field.many else kept[0]
+    return said
+
+
+def _inside(number: Number, value: Any) -> Any:
+    low, high = number.minimum, number.maximum
+    if number.scaled:
+        share = number.multiply / number.divide
+        return min(max(value, low * share), high * share)
+    return min(max(value, low), high)
 
 
 def _form(command: Command, result: dict[str, Any]) -> int:

@@ -41,8 +41,7 @@ def restore_servo_params(arm: ArmState, now: float, servo: int) -> None:
 
 @does("set_four_pieces_zero")
 def set_four_pieces_zero(arm: ArmState, now: float) -> dict[str, Any]:
-    """Take the present position as zero, for all joints."""
-    arm.angles.place((0.0,) * arm.joints, now)
+    """The four-piece motor is no joint, and tells nothing: its zero is taken, and that is all."""
     return {"succeeded": True}
 
 

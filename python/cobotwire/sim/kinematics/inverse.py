@@ -21,9 +21,10 @@ Limits = Sequence[tuple[float, float]]
 
 # What a solution in closed form may be off by rounding.
 EXACT_MILLIMETRES, EXACT_DEGREES = 1e-3, 1e-3
-# On the edge of the reach a solution puts the flange within this of its target: what cutting each
-# number to its step takes from a pose at most, so that what get_coords tells can be sent.
-MILLIMETRES, DEGREES = 0.18, 0.02
+# On the edge of the reach a solution puts the flange within this of its target. Cutting each number
+# to its step takes up to 0.173 mm and 0.017 degrees from a pose; least squares may put a share of
+# the one on the other. So what get_coords tells can be sent.
+MILLIMETRES, DEGREES = 0.22, 0.03
 # What is closer than this may become a solution when its joints give way a little.
 NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
 # Below this sine of the fifth joint, the fourth and the sixth turn about the same axis; below the
