@@ -132,6 +132,19 @@ def test_json_lines_and_a_warning_where_others_can_reach_it(sim: subprocess.Pope
     assert "whoever can reach 0.0.0.0" in sim.stderr.readline()
 
 
+@pytest.mark.parametrize("sim", [["--json"]], indirect=True)
+def test_why_an_order_is_ignored_is_told(sim: subprocess.Popen[str]) -> None:
+    assert sim.stdout is not None
+    url = json.loads(sim.stdout.readline())["url"]
+    with MyCobot(url) as arm:
+        arm.send_angles([10, 0, 0, 0, 0, 0], speed=30)
+        assert arm.is_moving() is False
+    note = json.loads(sim.stdout.readline())
+    assert note["event"] == "note"
+    assert note["command"] == "send_angles"
+    assert "power" in note["text"]
+
+
 @pytest.mark.parametrize("sim", [["--speed", "100"]], indirect=True)
 def test_the_arms_time_can_run_faster(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None

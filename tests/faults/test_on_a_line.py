@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import NamedTuple
 
 import pytest
@@ -88,6 +89,7 @@ class Expected(NamedTuple):
     also: frozenset[str] = frozenset()
 
 
+SEED_OF_A_HIGH_BIT = 6
 BROKEN = frozenset({"nuls", "unrecognised", "text"})
 SHOWN = {
     "servo-leaks": Expected(4, 4, {"servo"}),
@@ -134,20 +136,21 @@ def test_a_panic_is_a_reboot_and_the_arm_has_lost_its_state() -> None:
 
 
 def test_a_damaged_order_is_obeyed() -> None:
-    with session(find("damaged-orders", TABLE)) as played:
+    # With this seed it is a bit that counts: a joint stands on ticks, and a hundredth is none.
+    with session(replace(find("damaged-orders", TABLE), seed=SEED_OF_A_HIGH_BIT)) as played:
         played.arm.power_on()
         played.arm.send_angles([0, 0, 0, 0, 0, 0], speed=100)
         assert played.arm.get_angles() is not None
         assert [done.fault for done in played.done] == ["corrupted"]
-        assert played.simulated.state.angles.target(0.0)[0] != 0
+        assert abs(played.simulated.state.angles.target(time.monotonic())[0]) > 0.2
 
 
 def test_a_line_that_an_xoff_stops_goes_on_afterwards() -> None:
     with session(find("flow-control", TABLE)) as played:
         played.arm.power_on()
-        # 0.19 degrees are 0x0013.
-        played.arm.send_angles([0.19, 0, 0, 0, 0, 0], speed=100)
-        time.sleep(0.1)
+        # The tick at 15.56 degrees reads as 0x0613. The way there takes 0.56 s.
+        played.arm.send_angles([15.56, 0, 0, 0, 0, 0], speed=100)
+        time.sleep(1.0)
         with pytest.raises(ReplyTimeout):
             played.arm.get_angles()
         time.sleep(1.2)

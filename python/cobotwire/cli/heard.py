@@ -10,6 +10,7 @@ from cobotwire.cli.call import plain
 from cobotwire.codec.interface import Noise
 from cobotwire.explain import summary
 from cobotwire.session.device import Asked, DeviceEvent, Malformed
+from cobotwire.sim.arm import Note
 from cobotwire.sim.faults import Done
 
 
@@ -19,6 +20,7 @@ class Shown(NamedTuple):
     serving: Callable[[str], str]
     event: Callable[[int | None, DeviceEvent, bytes], str]
     fault: Callable[[int | None, Done], str]
+    note: Callable[[Note], str]
 
 
 def _line(client: int | None, said: str) -> str:
@@ -63,10 +65,12 @@ SHOWN = {
         serving=lambda url: url,
         event=lambda client, event, answer: _line(client, _in_words(event, answer)),
         fault=lambda client, done: _line(client, f"fault   {done}"),
+        note=lambda note: f"note    {note.command}: {note.text}",
     ),
     "json": Shown(
         serving=lambda url: _object(None, {"event": "serving", "url": url}),
         event=lambda client, event, answer: _object(client, _as_object(event, answer)),
         fault=lambda client, done: _object(client, {"event": "fault", **done._asdict()}),
+        note=lambda note: _object(None, {"event": "note", **note._asdict()}),
     ),
 }

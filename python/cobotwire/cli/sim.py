@@ -48,10 +48,11 @@ def sim(
 ) -> None:
     """Serve a simulated arm on a pseudo-terminal, or over TCP, until Ctrl-C.
 
-    The first line is the port to open; then a line for everything that is heard and answered, and
-    for every fault that is done; and on a terminal a table of the joints. Over TCP several clients
-    see the same arm; each line says whose it is. --view draws the arm at the beginning, whenever it
-    has come to rest, and at the end.
+    The first line is the port to open; then a line for everything that is heard and answered, for
+    every order that is refused or ignored, with the reason, and for every fault that is done; and
+    on a terminal a table of the joints. Over TCP several clients see the same arm; each line says
+    whose it is. --view draws the arm at the beginning, whenever it has come to rest, and at the
+    end.
     """
     if on_pty and tcp is not None:
         raise UsageError("--tcp", tcp, "one of --pty and --tcp")
@@ -60,7 +61,8 @@ def sim(
     package = editions.load(edition)
     shown = SHOWN["json" if as_json else "words"]
     clock = RunningClock(speed)
-    arm = SimulatedArm(package.TABLE, clock=clock)
+    remark = None if quiet else lambda note: say(shown.note(note))
+    arm = SimulatedArm(package.TABLE, clock=clock, remark=remark)
     faults = chosen(scenario, seed, package.TABLE)
     lines = _Lines(arm, clock, faults, seed, None if quiet else shown)
     server = _server(lines, clock, tcp)
