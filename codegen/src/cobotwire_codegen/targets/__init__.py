@@ -1,0 +1,1 @@
+"""Targets: the same protocol in other people's tools, each rendered from the model."""
