@@ -8,7 +8,7 @@ IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen bench plots table fuzz clean
+.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen targets bench plots table fuzz clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -43,6 +43,9 @@ waiting-tests:
 
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
+
+targets: .venv/.tools .venv/.native ## what other people's tools make of every vector, target by target
+	PYTHONPATH=tests $(BIN)/python tests/targets/report.py
 
 bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py

@@ -23,7 +23,11 @@ def codec_of(name: str, kind: codecs.CodecName) -> Codec:
 
 def sample(name: str) -> Table:
     """The table of a sample."""
-    record = json.loads((SAMPLES / f"{name}.json").read_text())["table"]
+    return table_of(json.loads((SAMPLES / f"{name}.json").read_text())["table"])
+
+
+def table_of(record: dict[str, Any]) -> Table:
+    """The table that plain data describes."""
     frame = record["frame"]
     format = FrameFormat(
         bytes(frame["header"]),

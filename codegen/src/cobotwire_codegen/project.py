@@ -12,6 +12,8 @@ from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
 from cobotwire_codegen.targets.c import render_c
+from cobotwire_codegen.targets.construct import render_construct
+from cobotwire_codegen.targets.vectors import render_shared_vectors
 
 
 def editions(root: Path) -> list[Edition]:
@@ -52,6 +54,8 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
         data.update(render_vectors(edition))
     made.append(Target(root / "rust" / "core" / "tests" / "data", data))
     made.append(schema_target(root, found))
+    made.append(Target(root / "targets" / "vectors", render_shared_vectors(found)))
+    made.append(Target(root / "targets" / "construct", render_construct(found)))
     return made
 
 

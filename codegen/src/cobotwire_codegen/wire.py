@@ -33,12 +33,18 @@ def build_frame(
                 refusal = str(error)
     if data is None:
         raise ValueError(refusal)
+    return enclose(frame, command.id, data)
+
+
+def enclose(frame: Frame, id: int, data: bytes) -> bytes:
+    """The frame around data bytes; with its first address, where it has one."""
     start = frame.header + bytes(member.value for member in frame.addresses[:1])
-    body = start + bytes([1 + len(data) + frame.check_size, command.id]) + data
-    return body + _check(frame, body, len(data))
+    body = start + bytes([1 + len(data) + frame.check_size, id]) + data
+    return body + check_of(frame, body, len(data))
 
 
-def _check(frame: Frame, body: bytes, data_size: int) -> bytes:
+def check_of(frame: Frame, body: bytes, data_size: int) -> bytes:
+    """What ends a frame, from all that stands before it."""
     if frame.check == "footer":
         return frame.footer
     if frame.check == "sum":

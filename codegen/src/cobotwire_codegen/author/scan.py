@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 from cobotwire_codegen.lower import maximum_length
 from cobotwire_codegen.model import Edition, Frame
-from cobotwire_codegen.wire import _check as check_bytes
-from cobotwire_codegen.wire import size
+from cobotwire_codegen.wire import check_of, size
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +76,7 @@ def _frame_at(edition: Edition, line: bytes, start: int) -> Seen | None:
 def _checks(frame: Frame, whole: bytes) -> bool:
     body, check = whole[: -frame.check_size], whole[-frame.check_size :]
     start = len(frame.header) + bool(frame.addresses) + 1
-    return check_bytes(frame, body, len(body) - start - 1) == check
+    return check_of(frame, body, len(body) - start - 1) == check
 
 
 def _hides(edition: Edition, line: bytes, seen: Seen, known: set[tuple[int, int]]) -> bool:

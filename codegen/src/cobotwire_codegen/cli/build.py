@@ -12,6 +12,7 @@ from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.generate import show_stale, write_all
 from cobotwire_codegen.cli.shared import (
+    check_names,
     edition_path,
     format_option,
     problems_told,
@@ -49,6 +50,7 @@ def build(
         edition = build_edition(path, Path.cwd())
         check_edition(edition)
     own = Path(templates) if templates else None
+    check_names(own)
     with template_errors_told(own):
         wanted = [Target(Path(out), render_python(edition, own))]
         if docs:

@@ -1,1 +1,1 @@
-"""Targets: the same protocol in other people's tools, each rendered from the model."""
+"""Targets: what else the model becomes, for other people's tools. A folder each."""

@@ -1,0 +1,164 @@
+"""The vectors of an edition as one JSON document, a line each."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Any
+
+from cobotwire_codegen.model import Edition, Enum, Text
+from cobotwire_codegen.targets.vectors.law import Direction, Law, Reading, Span
+from cobotwire_codegen.targets.vectors.malformed import malformed
+from cobotwire_codegen.targets.vectors.messages import Beyond, Example, beyond, examples
+from cobotwire_codegen.targets.vectors.slots import slots
+from cobotwire_codegen.targets.vectors.streams import streams
+
+VERSION = 1
+
+
+def document(edition: Edition) -> str:
+    """The file's text."""
+    laws: dict[Direction, Law] = {
+        "request": Law(edition, "request"),
+        "reply": Law(edition, "reply"),
+    }
+    found = list(examples(edition))
+    ordinary = [example for example in found if example.what.startswith("ordinary")]
+    head = {
+        "format": "cobotwire-vectors",
+        "version": VERSION,
+        "generated": "by cobotwire-gen from spec/; not to be edited",
+        "edition": edition.name,
+        "frame": _frame(edition),
+    }
+    parts = {
+        "messages": [_message(example, laws) for example in found],
+        "refused": [_refused(case) for each in ordinary for case in beyond(edition, each)],
+        "malformed": [
+            {
+                "name": case.what,
+                "direction": case.direction,
+                "bytes": _hex(case.data),
+                "reason": case.fault.reason,
+                "offset": case.fault.offset,
+            }
+            for case in malformed(edition, laws)
+        ],
+        "streams": [
+            {
+                "name": stream.what,
+                "direction": stream.direction,
+                "bytes": _hex(stream.data),
+                "events": [_span(span) for span in stream.spans],
+            }
+            for stream in streams(edition, laws)
+        ],
+        "texts": _texts(edition),
+    }
+    lines = [f" {_json(key)}: {_json(value)}" for key, value in head.items()]
+    lines += [f" {_json(key)}: {_list(value)}" for key, value in parts.items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _frame(edition: Edition) -> dict[str, Any]:
+    frame = edition.frame
+    return {
+        "header": _hex(frame.header),
+        "check": frame.check,
+        "footer": _hex(frame.footer),
+        "addresses": [member.value for member in frame.addresses],
+    }
+
+
+def _message(example: Example, laws: dict[Direction, Law]) -> dict[str, Any]:
+    reading = laws[example.direction].read(example.data)
+    assert isinstance(reading, Reading), "an example is legal"
+    return {
+        "name": f"{example.command.name} {example.direction}, {example.what}",
+        "command": example.command.name,
+        "direction": example.direction,
+        "form": _form_number(example),
+        "bytes": _hex(example.data),
+        "fields": _fields(example),
+        # Calls may share an id: without the call's name the bytes read as the first that fits.
+        "read_as": reading.command.name,
+    }
+
+
+def _fields(example: Example) -> list[dict[str, Any]]:
+    found = []
+    for field in example.form:
+        numbers = example.wholes[field.name]
+        parts = slots(field, example.form, example.wholes) or ()
+        record = {
+            "name": field.name,
+            "whole": list(numbers),
+            "value": [slot.value(whole) for slot, whole in zip(parts, numbers)],
+        }
+        if isinstance(field.type, Enum) and field.const is None:
+            record["label"] = next(m.name for m in field.type.members if m.value == numbers[0])
+        found.append(record)
+    return found
+
+
+def _form_number(example: Example) -> int:
+    return example.command.forms(example.direction).index(example.form)
+
+
+def _refused(case: Beyond) -> dict[str, Any]:
+    """A message that no encoder may build: one number of it is out of range."""
+    example = case.example
+    fields = _fields(example)
+    record = next(record for record in fields if record["name"] == case.field.name)
+    slot = (slots(case.field, example.form, example.wholes) or ())[case.element]
+    record["whole"][case.element] = case.whole
+    record["value"][case.element] = slot.value(case.whole)
+    record.pop("label", None)
+    return {
+        "name": f"{example.command.name} {example.direction}, {case.field.name} {case.whole}",
+        "command": example.command.name,
+        "direction": example.direction,
+        "form": _form_number(example),
+        "fields": fields,
+        "field": case.field.name,
+        "element": case.element,
+    }
+
+
+def _span(span: Span) -> dict[str, Any]:
+    place = {"offset": span.offset, "size": span.size}
+    return place | ({"noise": span.reason} if span.id is None else {"frame": span.id})
+
+
+def _texts(edition: Edition) -> list[dict[str, Any]]:
+    """What goes over the line outside any frame: replies, and what follows a request."""
+    found = []
+    for command in edition.commands:
+        for direction, text in (("request", command.request_text), ("reply", command.text)):
+            if text is not None:
+                found.append(_text(command.name, direction, text))
+    return found
+
+
+def _text(command: str, direction: str, text: Text) -> dict[str, Any]:
+    values = {name: f"{name}-1" for name, _ in text.fields}
+    said = "".join(prefix + value for prefix, value in zip(text.prefixes, values.values()))
+    return {
+        "command": command,
+        "direction": direction,
+        "bytes": _hex((said + text.suffix).encode()),
+        "fields": values,
+    }
+
+
+def _list(records: Iterable[Any]) -> str:
+    lines = ",\n".join(f"  {_json(record)}" for record in records)
+    return f"[\n{lines}\n ]" if lines else "[]"
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value)
+
+
+def _hex(data: bytes) -> str:
+    return data.hex(" ").upper()

@@ -1,0 +1,69 @@
+"""Bytes that are no message, a few for each form: each wrong in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.targets.vectors.law import Direction, Fault, Law
+from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, beyond, examples
+
+
+class Malformed(NamedTuple):
+    """Bytes, and what is wrong with them."""
+
+    what: str
+    direction: Direction
+    data: bytes
+    fault: Fault
+
+
+def malformed(edition: Edition, laws: dict[Direction, Law]) -> Iterator[Malformed]:
+    """Every kind of damage for every form, and every number that can be out of range."""
+    for direction, what, data in _broken(edition):
+        fault = laws[direction].read(data)
+        # Damage can make another legal message: then there is nothing to refuse.
+        if isinstance(fault, Fault):
+            yield Malformed(what, direction, data, fault)
+
+
+def _broken(edition: Edition) -> Iterator[tuple[Direction, str, bytes]]:
+    for direction in DIRECTIONS:
+        yield direction, "nothing", b""
+        yield direction, "unknown id", _unknown(edition, direction)
+    for example in examples(edition):
+        name = f"{example.command.name}"
+        if example.what.startswith("ordinary"):
+            for what, data in _damaged(edition, example.data):
+                yield example.direction, f"{name}, {what}", data
+            for case in beyond(edition, example):
+                if case.data is not None:
+                    what = f"{name}, {case.field.name} {case.whole}"
+                    yield example.direction, what, case.data
+
+
+def _damaged(edition: Edition, data: bytes) -> Iterator[tuple[str, bytes]]:
+    length = len(edition.frame.header) + bool(edition.frame.addresses)
+    yield "header", bytes([data[0] ^ 1]) + data[1:]
+    yield "LEN one less", _with(data, length, data[length] - 1)
+    yield "LEN one more", _with(data, length, data[length] + 1)
+    yield "check", _with(data, len(data) - 1, data[-1] ^ 1)
+    yield "last byte missing", data[:-1]
+    yield "cut behind LEN", data[: length + 1]
+    yield "a byte too many", data + b"\x00"
+    if edition.frame.addresses:
+        yield "address", _with(data, length - 1, 0xFE)
+
+
+def _with(data: bytes, at: int, byte: int) -> bytes:
+    return data[:at] + bytes([byte % 256]) + data[at + 1 :]
+
+
+def _unknown(edition: Edition, direction: Direction) -> bytes:
+    """A message of the edition under an id that it lacks."""
+    ids = {command.id for command in edition.commands if command.forms(direction)}
+    free = next(id for id in range(255, -1, -1) if id not in ids and id not in (0xFE, 0xFA))
+    first = next(e for e in examples(edition) if e.direction == direction)
+    at = len(edition.frame.header) + bool(edition.frame.addresses) + 1
+    return _with(first.data, at, free)

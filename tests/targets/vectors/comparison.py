@@ -1,0 +1,147 @@
+"""What our codecs make of the shared vectors; a reader for any implementation would do the same."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from itertools import chain
+from typing import Any
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec, Event, Noise
+from cobotwire.errors import ProtocolError, UsageError
+from cobotwire.session import text
+from strategies import codec_of
+from targets.comparison import Comparison
+from vectors import ROOT
+
+Record = dict[str, Any]
+CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
+FOLDER = ROOT / "targets" / "vectors"
+# A stream is fed whole, byte by byte, and in pieces of these sizes.
+PIECES = (1, 2, 7, 1000)
+
+
+def read(edition: str) -> Record:
+    """An edition's document."""
+    found: Record = json.loads((FOLDER / f"{edition}.json").read_text(encoding="utf-8"))
+    return found
+
+
+def compare(edition: str) -> Comparison:
+    """Everything in an edition's document, on both codecs."""
+    document = read(edition)
+    found = [judged(document, codec_of(edition, name)) for name in CODECS]
+    return Comparison(
+        sum(each.vectors for each in found),
+        sum(each.fields for each in found),
+        [difference for each in found for difference in each.differences],
+    )
+
+
+def judged(document: Record, codec: Codec) -> Comparison:
+    """Everything in the document, on a codec."""
+    parts = {
+        "messages": _message,
+        "refused": _refused,
+        "malformed": _malformed,
+        "streams": _stream,
+        "texts": _text,
+    }
+    differences = [
+        f"{part}: {record.get('name', record.get('command'))}: {difference}"
+        for part, judge in parts.items()
+        for record in document[part]
+        for difference in judge(record, codec)
+    ]
+    fields = sum(len(f["whole"]) for record in document["messages"] for f in record["fields"])
+    return Comparison(sum(len(document[part]) for part in parts), fields, differences)
+
+
+def _message(record: Record, codec: Codec) -> Iterator[str]:
+    data = bytes.fromhex(record["bytes"])
+    layout = codec.table.command(record["command"]).layouts(record["direction"])[record["form"]]
+    values = _values(record, layout.fields)
+    try:
+        built = codec.encode(record["command"], record["direction"], values, form=record["form"])
+        read = codec.decode(record["direction"], data, of=record["command"])
+        named = codec.decode(record["direction"], data).command.name
+    except (UsageError, ProtocolError) as error:
+        yield f"refused: {error}"
+        return
+    if built != data:
+        yield f"built {built.hex(' ')}, not {data.hex(' ')}"
+    if read.layout == layout and read.values != values:
+        yield f"read {read.values}, not {values}"
+    if named != record["read_as"]:
+        yield f"read as {named}, not {record['read_as']}"
+
+
+def _refused(record: Record, codec: Codec) -> Iterator[str]:
+    layout = codec.table.command(record["command"]).layouts(record["direction"])[record["form"]]
+    values = _values(record, layout.fields)
+    try:
+        built = codec.encode(record["command"], record["direction"], values, form=record["form"])
+    except UsageError as error:
+        if not error.argument.startswith(record["field"]):
+            yield f"refused for {error.argument}, not for {record['field']}"
+    else:
+        yield f"built {built.hex(' ')}"
+
+
+def _malformed(record: Record, codec: Codec) -> Iterator[str]:
+    try:
+        message = codec.decode(record["direction"], bytes.fromhex(record["bytes"]))
+    except ProtocolError as error:
+        found = (error.reason, error.offset)
+        if found != (record["reason"], record["offset"]):
+            yield f"{found}, not {(record['reason'], record['offset'])}"
+    else:
+        yield f"read as {message.values}"
+
+
+def _stream(record: Record, codec: Codec) -> Iterator[str]:
+    data = bytes.fromhex(record["bytes"])
+    for size in PIECES:
+        framer = codec.framer(record["direction"])
+        pieces = (data[at : at + size] for at in range(0, len(data), size))
+        events = chain.from_iterable(map(framer.feed, pieces))
+        found = joined([*events, *framer.flush()])
+        if found != record["events"]:
+            yield f"in pieces of {size}: {found}, not {record['events']}"
+
+
+def joined(events: list[Event]) -> list[Record]:
+    """Events as the document writes them: adjacent noise of one reason is one span."""
+    found: list[Record] = []
+    for event in events:
+        place = {"offset": event.offset, "size": len(event.data)}
+        if not isinstance(event, Noise):
+            found.append(place | {"frame": event.command})
+        elif found and found[-1].get("noise") == event.reason:
+            found[-1]["size"] += place["size"]
+        else:
+            found.append(place | {"noise": event.reason})
+    return found
+
+
+def _text(record: Record, codec: Codec) -> Iterator[str]:
+    command = codec.table.command(record["command"])
+    form = command.request_text if record["direction"] == "request" else command.text
+    data = bytes.fromhex(record["bytes"])
+    if form is None or text.spell(form, record["fields"]) != data:
+        yield "spelt otherwise"
+    elif text.read(form, data) != record["fields"]:
+        yield "read otherwise"
+
+
+def _values(record: Record, fields: Any) -> tuple[Any, ...]:
+    given = {field["name"]: field["value"] for field in record["fields"]}
+    return tuple(
+        tuple(given[field.name]) if field.many else _plain(field, given[field.name][0])
+        for field in fields
+    )
+
+
+def _plain(field: Any, value: float) -> Any:
+    return bool(value) if field.kind == "flag" and value in (0, 1) else value

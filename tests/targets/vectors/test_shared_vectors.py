@@ -1,0 +1,110 @@
+"""The language-neutral vectors: complete, true to their schema, and what both codecs say."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections import Counter
+from typing import Any
+
+import jsonschema
+import pytest
+
+import vectors
+from cobotwire import codec as codecs
+from cobotwire_codegen import lower
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.model import Enum, Field, Quantity
+from cobotwire_codegen.targets.vectors.document import document
+from json_tables import table_of
+from strategies import TABLES, codec_of
+from targets.vectors.comparison import CODECS, FOLDER, Record, judged, read
+from wrong_models import WRONG, with_wrong_angles
+
+EDITIONS = sorted(TABLES)
+FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
+
+
+@pytest.mark.parametrize("name", CODECS)
+@pytest.mark.parametrize("edition", EDITIONS)
+def test_a_codec_agrees_with_every_vector(edition: str, name: codecs.CodecName) -> None:
+    found = judged(read(edition), codec_of(edition, name))
+    assert found.differences == []
+    assert found.vectors > 1000
+    assert found.fields > 300
+
+
+@pytest.mark.parametrize("name", CODECS)
+@pytest.mark.parametrize("family", ["mercury", "mybuddy"])
+def test_other_frame_formats_have_vectors_as_true(family: str, name: codecs.CodecName) -> None:
+    edition = build_edition(FAMILIES / f"{family}.yaml", FAMILIES)
+    found = json.loads(document(edition))
+    codec = codecs.load(table_of(lower.table(edition)), name)
+    assert judged(found, codec).differences == []
+
+
+@pytest.mark.parametrize("edition", EDITIONS)
+def test_the_document_keeps_to_its_schema(edition: str) -> None:
+    schema = json.loads((FOLDER / "schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
+    found = read(edition)
+    assert list(validator.iter_errors(found)) == []
+    broken = copy.deepcopy(found)
+    broken["streams"][0]["events"][0]["frame"] = 256
+    assert list(validator.iter_errors(broken))
+
+
+@pytest.mark.parametrize("name", EDITIONS)
+def test_no_form_choice_or_case_is_without_a_vector(name: str) -> None:
+    edition = vectors.edition(name)
+    found = read(name)["messages"]
+    forms = Counter((r["command"], r["direction"], r["form"]) for r in found)
+    for command in edition.commands:
+        for direction in ("request", "reply"):
+            for index, form in enumerate(command.forms(direction)):
+                key = (command.name, direction, index)
+                assert forms[key], key
+                mine = [r for r in found if (r["command"], r["direction"], r["form"]) == key]
+                for field in form:
+                    _has_all(field, mine, key)
+
+
+def _has_all(field: Field, records: list[Record], key: Any) -> None:
+    numbers = [part for r in records for part in r["fields"] if part["name"] == field.name]
+    said = {whole for part in numbers for whole in part["whole"]}
+    assert set(lower.field_choices(field)) <= said, (key, field.name)
+    if isinstance(field.type, Enum) and field.const is None:
+        labels = {part["label"] for part in numbers}
+        assert labels == {member.name for member in field.type.members}, (key, field.name)
+    for _, type in lower.cases(field):
+        if isinstance(type, Quantity) and field.const is None:
+            assert {int(bound) for bound in type.bounds} <= said, (key, field.name, type.name)
+
+
+@pytest.mark.parametrize("edition", EDITIONS)
+def test_every_kind_of_fault_and_event_is_there(edition: str) -> None:
+    found = read(edition)
+    reasons = {record["reason"] for record in found["malformed"]}
+    kinds = {"no-header", "bad-length", "unknown-id", "bad-check", "truncated", "bad-value"}
+    assert reasons == {*kinds, "trailing"}
+    events = [event for stream in found["streams"] for event in stream["events"]]
+    assert {event["noise"] for event in events if "noise" in event} == kinds - {"bad-value"}
+    texts = {(record["command"], record["direction"]) for record in found["texts"]}
+    table = TABLES[edition]
+    due = {(c.name, "reply") for c in table.commands if c.text}
+    assert texts == due | {(c.name, "request") for c in table.commands if c.request_text}
+
+
+@pytest.mark.parametrize("kind", WRONG)
+@pytest.mark.parametrize("name", EDITIONS)
+def test_a_wrong_model_makes_vectors_that_a_codec_refutes(name: str, kind: str) -> None:
+    wrong = json.loads(document(with_wrong_angles(vectors.edition(name), WRONG[kind])))
+    found = judged(wrong, codec_of(name, "reference")).differences
+    assert found
+    assert all("get_angles" in difference for difference in found)
+
+
+def test_the_folder_is_what_the_guide_says() -> None:
+    names = {path.name for path in FOLDER.iterdir()}
+    assert names == {"schema.json", *(f"{edition}.json" for edition in EDITIONS)}

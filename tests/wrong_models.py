@@ -1,0 +1,37 @@
+"""Models that are wrong in one place: whatever is made from one must be found to differ."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+from cobotwire_codegen.model import Command, Edition, Field, Quantity, Value
+
+Wrong = Callable[[Quantity], Quantity]
+
+WRONG: dict[str, Wrong] = {
+    "scale": lambda part: replace(part, scale=Fraction(1, 10), range=None),
+    "sign": lambda part: replace(part, wire=replace(part.wire, signed_at=0xFFFF), range=None),
+    "order": lambda part: replace(part, wire=replace(part.wire, order="little")),
+}
+
+
+def with_wrong_angles(edition: Edition, wrong: Wrong) -> Edition:
+    """The edition, but what get_angles answers is read wrongly."""
+
+    def field(old: Field) -> Field:
+        assert isinstance(old.type, Value)
+        items = tuple((name, wrong(part)) for name, part in old.type.items)
+        return replace(old, type=replace(old.type, items=items))
+
+    def command(old: Command) -> Command:
+        if old.name != "get_angles":
+            return old
+        return replace(old, replies=tuple(tuple(map(field, form)) for form in old.replies))
+
+    families = (
+        replace(family, commands=tuple(map(command, family.commands)))
+        for family in edition.families
+    )
+    return replace(edition, families=tuple(families))
