@@ -150,18 +150,25 @@ typedef enum {
 static inline bool mycobot280_steps(double value, double multiply, double divide, mycobot280_whole_t *steps)
 {
     const double exact = value * divide / multiply;
-    mycobot280_whole_t below;
+    int64_t nearest;
     double rest;
 
-    if (!(exact > -1073741824.0 && exact < 1073741824.0)) {
+    /* Far beyond what any wire can say, and well inside the range of the conversion. */
+    if (!(exact > -1e12 && exact < 1e12)) {
         return false;
     }
-    below = (mycobot280_whole_t)exact;
-    if ((double)below > exact) {
-        below--;
+    nearest = (int64_t)exact;
+    if ((double)nearest > exact) {
+        nearest--;
     }
-    rest = exact - (double)below;
-    *steps = rest > 0.5 || (rest >= 0.5 && below % 2 != 0) ? below + 1 : below;
+    rest = exact - (double)nearest;
+    if (rest > 0.5 || (rest >= 0.5 && nearest % 2 != 0)) {
+        nearest++;
+    }
+    if (nearest < INT32_MIN || nearest > INT32_MAX) {
+        return false;
+    }
+    *steps = (mycobot280_whole_t)nearest;
     return true;
 }
 

@@ -19,7 +19,7 @@ WARNINGS = (
     "-std=c99 -Wall -Wextra -Werror -pedantic -Wconversion -Wsign-conversion -Wshadow "
     "-Wstrict-prototypes -Wundef"
 ).split()
-SANITIZERS = "-g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all".split()
+SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
 @lru_cache
@@ -47,12 +47,14 @@ def sources(edition: Edition, name: str = "") -> Path:
 
 
 def program(
-    edition: Edition, compiler: str = "gcc", flags: list[str] = SANITIZERS, name: str = ""
+    edition: Edition, compiler: str = "gcc", flags: tuple[str, ...] = SANITIZERS, name: str = ""
 ) -> Path:
-    """The harness with the edition's code in it, compiled; ``name`` tells a changed edition apart."""
+    """The harness with the edition's code in it, compiled once; ``name``: of a changed edition."""
     folder = sources(edition, name)
     (folder / "physical.h").write_text(glue(edition))
     out = folder / f"harness-{compiler}"
+    if out.exists():
+        return out
     names = f"-D{edition.name.upper()}_NAMES"
     files = [str(HERE / "harness.c"), str(folder / f"{edition.name}.c")]
     compile_c(compiler, *flags, names, f"-I{folder}", *files, "-o", str(out))
