@@ -1,9 +1,10 @@
-"""The C code of an edition, run on the shared vectors: under the sanitizers, typed calls and all."""
+"""The C code of an edition, run on the shared vectors, under the sanitizers."""
 
 from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from typing import Any
 
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.c.messages import messages
@@ -40,7 +41,7 @@ def judged(
 
 
 class Judge:
-    """Puts what a document says beside what the C code does. Text outside frames is not its affair."""
+    """What a document says beside what the C code does; text outside frames is not its affair."""
 
     def __init__(self, document: Record, edition: Edition, peer: CPeer) -> None:
         self._document = document
@@ -74,7 +75,7 @@ class Judge:
         return self._index[record["command"], record["direction"], record["form"]]
 
     def _sayable(self, record: Record) -> bool:
-        """Whether the struct can hold it: constants have no place there, nor has what is too large."""
+        """Whether the struct can hold it: not a constant, and not what is too large for it."""
         found = self._messages[self._place(record)].members
         field = next(field for field in record["fields"] if field["name"] == record["field"])
         fits = -(2 ** (self._bits - 1)) <= field["whole"][record["element"]] < 2 ** (self._bits - 1)
@@ -119,7 +120,7 @@ class Judge:
         frame = self._document["frame"]
         return len(bytes.fromhex(frame["header"])) + bool(frame["addresses"]) + 1
 
-    def _given(self, record: Record, key: str) -> list[float]:
+    def _given(self, record: Record, key: str) -> list[Any]:
         """The numbers of a record as they stand in the message's struct."""
         given = {field["name"]: field[key] for field in record["fields"]}
         members = self._messages[self._place(record)].fields

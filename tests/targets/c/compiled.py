@@ -15,10 +15,9 @@ from targets.c.glue import glue
 
 HERE = Path(__file__).parent
 COMPILERS = ("gcc", "clang")
-WARNINGS = (
-    "-std=c99 -Wall -Wextra -Werror -pedantic -Wconversion -Wsign-conversion -Wshadow "
-    "-Wstrict-prototypes -Wundef"
-).split()
+_WARNED = """-std=c99 -Wall -Wextra -Werror -pedantic -Wconversion -Wsign-conversion -Wshadow
+-Wstrict-prototypes -Wundef"""
+WARNINGS = _WARNED.split()
 SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 

@@ -1,4 +1,4 @@
-"""The part of the harness that is made for an edition: typed calls, and values by the header's helpers."""
+"""The harness's part that is made for an edition: typed calls, values by the header's helpers."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ def glue(edition: Edition) -> str:
             f"#define NUMBERS {max(most, 1)}\n#define MESSAGES {len(found)}u",
             "static const size_t COUNTS[] = {" + ", ".join(str(m.count) for m in found) + "};",
             f"static void to_physical(unsigned message, const {p}_any_t *any, double *out)",
-            *_switch(found, lambda message: _to_physical(p, message)),
+            *_switch(found, lambda message: _to_physical(p, message), "(void)any; (void)out;"),
             f"static void from_physical(unsigned message, const double *in, {p}_any_t *any)",
-            *_switch(found, lambda message: _from_physical(p, message)),
-            f"static unsigned typed_encode(unsigned message, uint8_t address, const {p}_any_t *any,",
-            f"uint8_t *out, size_t room, size_t *size, {p}_fault_t *fault)",
+            *_switch(found, lambda message: _from_physical(p, message), "(void)any; (void)in;"),
+            "static unsigned typed_encode(unsigned message, uint8_t address,",
+            f"const {p}_any_t *any, uint8_t *out, size_t room, size_t *size, {p}_fault_t *fault)",
             *_switch(
                 found,
                 lambda message: [
@@ -90,7 +90,7 @@ def _condition(message: Message, member: Member, when: tuple[int, ...]) -> str:
 
 
 def _elements(message: Message) -> Iterator[tuple[Member, tuple[int, ...], str, int, Type]]:
-    """Each number of a struct in each of its cases: its member, when, its name, its place, its type."""
+    """Each number of a struct in each of its cases: member, when, name, place, type."""
     for member in message.fields:
         own = names.member(member.field.name)
         for when, type in lower.cases(member.field):

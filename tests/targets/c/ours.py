@@ -31,7 +31,7 @@ class Beside:
         return self.index[form.command.name, form.direction, form.number]
 
     def flat(self, message: int, values: Sequence[Any]) -> list[float]:
-        """Values, one a field, as the numbers of the message's struct: constants have no place there."""
+        """Values, one a field, as the numbers of a struct: constants have no place there."""
         return [
             float(number) if isinstance(number, float) else int(number)
             for member, value in zip(self.messages[message].members, values)

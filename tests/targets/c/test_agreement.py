@@ -1,4 +1,4 @@
-"""Random messages, values and streams: the C code does what our codec does, under the sanitizers."""
+"""Random messages, values and streams: the C code does what our codec does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The code as a firmware's build meets it: warnings are errors, nothing is needed, nothing changes."""
+"""The code as a build meets it: warnings are errors, no library is needed, no state kept."""
 
 from __future__ import annotations
 
