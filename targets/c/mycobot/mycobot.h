@@ -54,78 +54,78 @@ typedef struct {
 } mycobot_fault_t;
 
 /* What happens when a new target comes while the arm moves. */
-typedef enum {
+enum mycobot_fresh_mode {
     MYCOBOT_FRESH_MODE_INTERPOLATION = 0, /* Targets are queued and passed one after the other. */
     MYCOBOT_FRESH_MODE_REFRESH = 1 /* The newest target wins. */
-} mycobot_fresh_mode_t;
+};
 
 /* One of the six coordinates. */
-typedef enum {
+enum mycobot_axis {
     MYCOBOT_AXIS_X = 1, /* Position along x. */
     MYCOBOT_AXIS_Y = 2, /* Position along y. */
     MYCOBOT_AXIS_Z = 3, /* Position along z. */
     MYCOBOT_AXIS_RX = 4, /* Rotation about x. */
     MYCOBOT_AXIS_RY = 5, /* Rotation about y. */
     MYCOBOT_AXIS_RZ = 6 /* Rotation about z. */
-} mycobot_axis_t;
+};
 
 /* The path to a coordinate target. */
-typedef enum {
+enum mycobot_move_mode {
     MYCOBOT_MOVE_MODE_ANGULAR = 0, /* Each joint takes the shortest way. */
     MYCOBOT_MOVE_MODE_LINEAR = 1 /* The end moves on a straight line. */
-} mycobot_move_mode_t;
+};
 
 /* What the six numbers of a target are. */
-typedef enum {
+enum mycobot_target_kind {
     MYCOBOT_TARGET_KIND_ANGLES = 0, /* Joint angles in degrees. */
     MYCOBOT_TARGET_KIND_COORDS = 1 /* Coordinates: millimetres and degrees. */
-} mycobot_target_kind_t;
+};
 
 /* The way in which a joint turns. */
-typedef enum {
+enum mycobot_rotation_direction {
     MYCOBOT_ROTATION_DIRECTION_COUNTERCLOCKWISE = 0, /* Against the document's clockwise. */
     MYCOBOT_ROTATION_DIRECTION_CLOCKWISE = 1 /* The document's clockwise. */
-} mycobot_rotation_direction_t;
+};
 
 /* The way in which a coordinate changes. */
-typedef enum {
+enum mycobot_travel_direction {
     MYCOBOT_TRAVEL_DIRECTION_BACKWARD = 0, /* The coordinate falls. */
     MYCOBOT_TRAVEL_DIRECTION_FORWARD = 1 /* The coordinate grows. */
-} mycobot_travel_direction_t;
+};
 
 /* A register of a joint's servo, by its decimal address. */
-typedef enum {
+enum mycobot_servo_register {
     MYCOBOT_SERVO_REGISTER_LED_ALARM = 20, /* LED alarm, 0 off, 1 on. */
     MYCOBOT_SERVO_REGISTER_POSITION_P = 21, /* Position loop, proportional coefficient. */
     MYCOBOT_SERVO_REGISTER_POSITION_D = 22, /* Position loop, differential coefficient. */
     MYCOBOT_SERVO_REGISTER_POSITION_I = 23, /* Position loop, integral coefficient. */
     MYCOBOT_SERVO_REGISTER_MINIMUM_STARTING_FORCE = 24 /* Minimum starting force, 1000 is full; two bytes wide, so this one-byte form reaches its low
  * byte only. */
-} mycobot_servo_register_t;
+};
 
 /* What a pin is used for. */
-typedef enum {
+enum mycobot_pin_mode {
     MYCOBOT_PIN_MODE_INPUT = 0, /* The pin is read. */
     MYCOBOT_PIN_MODE_OUTPUT = 1 /* The pin is driven. */
-} mycobot_pin_mode_t;
+};
 
 /* What the gripper shall do. */
-typedef enum {
+enum mycobot_gripper_state {
     MYCOBOT_GRIPPER_STATE_OPEN = 0, /* Open. */
     MYCOBOT_GRIPPER_STATE_CLOSE = 1 /* Close. */
-} mycobot_gripper_state_t;
+};
 
 /* The frame in which coordinates are given. */
-typedef enum {
+enum mycobot_reference_frame {
     MYCOBOT_REFERENCE_FRAME_BASE = 0, /* The arm's pedestal. */
     MYCOBOT_REFERENCE_FRAME_WORLD = 1 /* The world reference. */
-} mycobot_reference_frame_t;
+};
 
 /* The point that coordinates describe. */
-typedef enum {
+enum mycobot_end_type {
     MYCOBOT_END_TYPE_FLANGE = 0, /* The flange of the last joint. */
     MYCOBOT_END_TYPE_TOOL = 1 /* The tool reference's point. */
-} mycobot_end_type_t;
+};
 
 /* get_ssid_pwd: text outside any frame, ssid, password; this code does not read or write it. It ends by silence. */
 #define MYCOBOT_GET_SSID_PWD_REPLY_TEXT_1 "ssid: "
@@ -161,7 +161,7 @@ static inline bool mycobot_steps(double value, double multiply, double divide, m
     return true;
 }
 
-/* A joint angle. A step is 1/100 degree */
+/* A joint angle. A step is 1/100 degree. */
 static inline double mycobot_angle_to_degree(mycobot_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -172,7 +172,7 @@ static inline bool mycobot_angle_from_degree(double value, mycobot_whole_t *step
     return mycobot_steps(value, 1.0, 100.0, steps);
 }
 
-/* A position along an axis. A step is 1/10 millimetre */
+/* A position along an axis. A step is 1/10 millimetre. */
 static inline double mycobot_length_to_millimetre(mycobot_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -183,7 +183,7 @@ static inline bool mycobot_length_from_millimetre(double value, mycobot_whole_t 
     return mycobot_steps(value, 1.0, 10.0, steps);
 }
 
-/* A rotation about an axis. A step is 1/100 degree */
+/* A rotation about an axis. A step is 1/100 degree. */
 static inline double mycobot_rotation_to_degree(mycobot_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -194,7 +194,7 @@ static inline bool mycobot_rotation_from_degree(double value, mycobot_whole_t *s
     return mycobot_steps(value, 1.0, 100.0, steps);
 }
 
-/* A joint limit as the arm reports it. A step is 1/10 degree */
+/* A joint limit as the arm reports it. A step is 1/10 degree. */
 static inline double mycobot_limit_angle_to_degree(mycobot_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -205,7 +205,7 @@ static inline bool mycobot_limit_angle_from_degree(double value, mycobot_whole_t
     return mycobot_steps(value, 1.0, 10.0, steps);
 }
 
-/* A position along an axis in a tool or world reference. A step is 1/100 millimetre */
+/* A position along an axis in a tool or world reference. A step is 1/100 millimetre. */
 static inline double mycobot_reference_length_to_millimetre(mycobot_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;

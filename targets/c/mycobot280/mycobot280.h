@@ -55,83 +55,83 @@ typedef struct {
 } mycobot280_fault_t;
 
 /* What happens when a new target comes while the arm moves. */
-typedef enum {
+enum mycobot280_fresh_mode {
     MYCOBOT280_FRESH_MODE_INTERPOLATION = 0, /* Targets are queued and passed one after the other. */
     MYCOBOT280_FRESH_MODE_REFRESH = 1 /* The newest target wins. */
-} mycobot280_fresh_mode_t;
+};
 
 /* One of the six coordinates. */
-typedef enum {
+enum mycobot280_axis {
     MYCOBOT280_AXIS_X = 1, /* Position along x. */
     MYCOBOT280_AXIS_Y = 2, /* Position along y. */
     MYCOBOT280_AXIS_Z = 3, /* Position along z. */
     MYCOBOT280_AXIS_RX = 4, /* Rotation about x. */
     MYCOBOT280_AXIS_RY = 5, /* Rotation about y. */
     MYCOBOT280_AXIS_RZ = 6 /* Rotation about z. */
-} mycobot280_axis_t;
+};
 
 /* The path to a coordinate target. */
-typedef enum {
+enum mycobot280_move_mode {
     MYCOBOT280_MOVE_MODE_ANGULAR = 0, /* Each joint takes the shortest way. */
     MYCOBOT280_MOVE_MODE_LINEAR = 1 /* The end moves on a straight line. */
-} mycobot280_move_mode_t;
+};
 
 /* What the six numbers of a target are. */
-typedef enum {
+enum mycobot280_target_kind {
     MYCOBOT280_TARGET_KIND_ANGLES = 0, /* Joint angles in degrees. */
     MYCOBOT280_TARGET_KIND_COORDS = 1 /* Coordinates: millimetres and degrees. */
-} mycobot280_target_kind_t;
+};
 
 /* The way in which a joint turns. */
-typedef enum {
+enum mycobot280_rotation_direction {
     MYCOBOT280_ROTATION_DIRECTION_COUNTERCLOCKWISE = 0, /* Against the document's clockwise. */
     MYCOBOT280_ROTATION_DIRECTION_CLOCKWISE = 1 /* The document's clockwise. */
-} mycobot280_rotation_direction_t;
+};
 
 /* An axis to turn the end about. */
-typedef enum {
+enum mycobot280_rpy_axis {
     MYCOBOT280_RPY_AXIS_ROLL = 1, /* Roll, about x. */
     MYCOBOT280_RPY_AXIS_PITCH = 2, /* Pitch, about y. */
     MYCOBOT280_RPY_AXIS_YAW = 3 /* Yaw, about z. */
-} mycobot280_rpy_axis_t;
+};
 
 /* The way in which a coordinate changes. */
-typedef enum {
+enum mycobot280_travel_direction {
     MYCOBOT280_TRAVEL_DIRECTION_BACKWARD = 0, /* The coordinate falls. */
     MYCOBOT280_TRAVEL_DIRECTION_FORWARD = 1 /* The coordinate grows. */
-} mycobot280_travel_direction_t;
+};
 
 /* How wide a servo register is. */
-typedef enum {
+enum mycobot280_servo_data_mode {
     MYCOBOT280_SERVO_DATA_MODE_BYTE = 0, /* One byte. */
     MYCOBOT280_SERVO_DATA_MODE_WORD = 1 /* Two bytes. */
-} mycobot280_servo_data_mode_t;
+};
 
 /* What a pin is used for. */
-typedef enum {
+enum mycobot280_pin_mode {
     MYCOBOT280_PIN_MODE_INPUT = 0, /* The pin is read. */
     MYCOBOT280_PIN_MODE_OUTPUT = 1, /* The pin is driven. */
     MYCOBOT280_PIN_MODE_INPUT_PULLUP = 2 /* The pin is read, and held high where nothing drives it. */
-} mycobot280_pin_mode_t;
+};
 
 /* What the gripper shall do. */
-typedef enum {
+enum mycobot280_gripper_state {
     MYCOBOT280_GRIPPER_STATE_OPEN = 0, /* Open. */
     MYCOBOT280_GRIPPER_STATE_CLOSE = 1, /* Close. */
     MYCOBOT280_GRIPPER_STATE_RELEASE = 254 /* Let go: the gripper's servo gives no torque. */
-} mycobot280_gripper_state_t;
+};
 
 /* The frame in which coordinates are given. */
-typedef enum {
+enum mycobot280_reference_frame {
     MYCOBOT280_REFERENCE_FRAME_BASE = 0, /* The arm's pedestal. */
     MYCOBOT280_REFERENCE_FRAME_WORLD = 1 /* The world reference. */
-} mycobot280_reference_frame_t;
+};
 
 /* The point that coordinates describe. */
-typedef enum {
+enum mycobot280_end_type {
     MYCOBOT280_END_TYPE_FLANGE = 0, /* The flange of the last joint. */
     MYCOBOT280_END_TYPE_TOOL = 1 /* The tool reference's point. */
-} mycobot280_end_type_t;
+};
 
 /* get_ssid_pwd: text outside any frame, ssid, password; this code does not read or write it. It ends by silence. */
 #define MYCOBOT280_GET_SSID_PWD_REPLY_TEXT_1 "ssid: "
@@ -172,7 +172,7 @@ static inline bool mycobot280_steps(double value, double multiply, double divide
     return true;
 }
 
-/* Version of the firmware, such as 7.3. A step is 1/10 */
+/* Version of the firmware, such as 7.3. A step is 1/10. */
 static inline double mycobot280_version_to_value(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -183,7 +183,7 @@ static inline bool mycobot280_version_from_value(double value, mycobot280_whole_
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A joint angle. A step is 1/100 degree */
+/* A joint angle. A step is 1/100 degree. */
 static inline double mycobot280_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -194,7 +194,7 @@ static inline bool mycobot280_angle_from_degree(double value, mycobot280_whole_t
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* A joint angle, in radians. A step is 1/100 degree */
+/* A joint angle, in radians. A step is 1/100 degree. */
 static inline double mycobot280_measured_radian_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -205,7 +205,7 @@ static inline bool mycobot280_measured_radian_from_degree(double value, mycobot2
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 1. A step is 1/100 degree */
+/* Target angle of joint 1. A step is 1/100 degree. */
 static inline double mycobot280_j1_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -216,7 +216,7 @@ static inline bool mycobot280_j1_angle_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 2. A step is 1/100 degree */
+/* Target angle of joint 2. A step is 1/100 degree. */
 static inline double mycobot280_j2_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -227,7 +227,7 @@ static inline bool mycobot280_j2_angle_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 3. A step is 1/100 degree */
+/* Target angle of joint 3. A step is 1/100 degree. */
 static inline double mycobot280_j3_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -238,7 +238,7 @@ static inline bool mycobot280_j3_angle_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 4. A step is 1/100 degree */
+/* Target angle of joint 4. A step is 1/100 degree. */
 static inline double mycobot280_j4_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -249,7 +249,7 @@ static inline bool mycobot280_j4_angle_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 5. A step is 1/100 degree */
+/* Target angle of joint 5. A step is 1/100 degree. */
 static inline double mycobot280_j5_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -260,7 +260,7 @@ static inline bool mycobot280_j5_angle_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 6. A step is 1/100 degree */
+/* Target angle of joint 6. A step is 1/100 degree. */
 static inline double mycobot280_j6_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -271,7 +271,7 @@ static inline bool mycobot280_j6_angle_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 1, in radians. A step is 1/100 degree */
+/* Target angle of joint 1, in radians. A step is 1/100 degree. */
 static inline double mycobot280_j1_radian_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -282,7 +282,7 @@ static inline bool mycobot280_j1_radian_from_degree(double value, mycobot280_who
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 2, in radians. A step is 1/100 degree */
+/* Target angle of joint 2, in radians. A step is 1/100 degree. */
 static inline double mycobot280_j2_radian_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -293,7 +293,7 @@ static inline bool mycobot280_j2_radian_from_degree(double value, mycobot280_who
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 3, in radians. A step is 1/100 degree */
+/* Target angle of joint 3, in radians. A step is 1/100 degree. */
 static inline double mycobot280_j3_radian_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -304,7 +304,7 @@ static inline bool mycobot280_j3_radian_from_degree(double value, mycobot280_who
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 4, in radians. A step is 1/100 degree */
+/* Target angle of joint 4, in radians. A step is 1/100 degree. */
 static inline double mycobot280_j4_radian_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -315,7 +315,7 @@ static inline bool mycobot280_j4_radian_from_degree(double value, mycobot280_who
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 5, in radians. A step is 1/100 degree */
+/* Target angle of joint 5, in radians. A step is 1/100 degree. */
 static inline double mycobot280_j5_radian_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -326,7 +326,7 @@ static inline bool mycobot280_j5_radian_from_degree(double value, mycobot280_who
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* Target angle of joint 6, in radians. A step is 1/100 degree */
+/* Target angle of joint 6, in radians. A step is 1/100 degree. */
 static inline double mycobot280_j6_radian_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -337,7 +337,7 @@ static inline bool mycobot280_j6_radian_from_degree(double value, mycobot280_who
     return mycobot280_steps(value, 1.0, 100.0, steps);
 }
 
-/* A position along an axis. A step is 1/10 millimetre */
+/* A position along an axis. A step is 1/10 millimetre. */
 static inline double mycobot280_length_to_millimetre(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -348,7 +348,7 @@ static inline bool mycobot280_length_from_millimetre(double value, mycobot280_wh
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A rotation about an axis. A step is 1/100 degree */
+/* A rotation about an axis. A step is 1/100 degree. */
 static inline double mycobot280_rotation_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -360,7 +360,7 @@ static inline bool mycobot280_rotation_from_degree(double value, mycobot280_whol
 }
 
 /* Target position along x or y; the maker's limit is 281.45 mm, of which the wire can say 281.4.
- * A step is 1/10 millimetre */
+ * A step is 1/10 millimetre. */
 static inline double mycobot280_reach_to_millimetre(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -372,7 +372,7 @@ static inline bool mycobot280_reach_from_millimetre(double value, mycobot280_who
 }
 
 /* Target position along z; the maker's limit is 412.67 mm, of which the wire can say 412.6. A
- * step is 1/10 millimetre */
+ * step is 1/10 millimetre. */
 static inline double mycobot280_height_to_millimetre(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -383,7 +383,7 @@ static inline bool mycobot280_height_from_millimetre(double value, mycobot280_wh
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* Target rotation about an axis. A step is 1/100 degree */
+/* Target rotation about an axis. A step is 1/100 degree. */
 static inline double mycobot280_target_rotation_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 100.0;
@@ -395,7 +395,7 @@ static inline bool mycobot280_target_rotation_from_degree(double value, mycobot2
 }
 
 /* Step along x or y, no wider than the way from one limit to the other. A step is 1/10
- * millimetre */
+ * millimetre. */
 static inline double mycobot280_reach_step_to_millimetre(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -407,7 +407,7 @@ static inline bool mycobot280_reach_step_from_millimetre(double value, mycobot28
 }
 
 /* Step along z, no wider than the way from one limit to the other: 482.67 mm, of which the wire
- * can say 482.6. A step is 1/10 millimetre */
+ * can say 482.6. A step is 1/10 millimetre. */
 static inline double mycobot280_height_step_to_millimetre(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -418,7 +418,7 @@ static inline bool mycobot280_height_step_from_millimetre(double value, mycobot2
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A joint limit as the arm reports it. A step is 1/10 degree */
+/* A joint limit as the arm reports it. A step is 1/10 degree. */
 static inline double mycobot280_limit_angle_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -429,7 +429,7 @@ static inline bool mycobot280_limit_angle_from_degree(double value, mycobot280_w
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A limit of joint 1. A step is 1/10 degree */
+/* A limit of joint 1. A step is 1/10 degree. */
 static inline double mycobot280_j1_limit_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -440,7 +440,7 @@ static inline bool mycobot280_j1_limit_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A limit of joint 2; the range is disputed as the joint's target is. A step is 1/10 degree */
+/* A limit of joint 2; the range is disputed as the joint's target is. A step is 1/10 degree. */
 static inline double mycobot280_j2_limit_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -451,7 +451,7 @@ static inline bool mycobot280_j2_limit_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A limit of joint 3. A step is 1/10 degree */
+/* A limit of joint 3. A step is 1/10 degree. */
 static inline double mycobot280_j3_limit_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -462,7 +462,7 @@ static inline bool mycobot280_j3_limit_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A limit of joint 4; the range is disputed as the joint's target is. A step is 1/10 degree */
+/* A limit of joint 4; the range is disputed as the joint's target is. A step is 1/10 degree. */
 static inline double mycobot280_j4_limit_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -473,7 +473,7 @@ static inline bool mycobot280_j4_limit_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A limit of joint 5; the range is disputed as the joint's target is. A step is 1/10 degree */
+/* A limit of joint 5; the range is disputed as the joint's target is. A step is 1/10 degree. */
 static inline double mycobot280_j5_limit_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -484,7 +484,7 @@ static inline bool mycobot280_j5_limit_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A limit of joint 6. A step is 1/10 degree */
+/* A limit of joint 6. A step is 1/10 degree. */
 static inline double mycobot280_j6_limit_to_degree(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -495,7 +495,7 @@ static inline bool mycobot280_j6_limit_from_degree(double value, mycobot280_whol
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* A position along an axis in a tool or world reference. A step is 1/10 millimetre */
+/* A position along an axis in a tool or world reference. A step is 1/10 millimetre. */
 static inline double mycobot280_reference_length_to_millimetre(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
@@ -506,7 +506,7 @@ static inline bool mycobot280_reference_length_from_millimetre(double value, myc
     return mycobot280_steps(value, 1.0, 10.0, steps);
 }
 
-/* Voltage at a servo; it should be below 24 V. A step is 1/10 volt */
+/* Voltage at a servo; it should be below 24 V. A step is 1/10 volt. */
 static inline double mycobot280_voltage_to_volt(mycobot280_whole_t steps)
 {
     return (double)steps * 1.0 / 10.0;
