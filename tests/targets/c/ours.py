@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import chain
 from typing import Any
 
 from cobotwire.codec.events import Message as Read
@@ -98,7 +99,8 @@ def _or_refusal(build: Callable[[], bytes], form: Form) -> object:
 
 def _argument(argument: str, form: Form) -> object:
     for field in form.layout.fields:
-        for element, number in enumerate(field.cases[0].numbers):
+        # Each case has names of its own for the elements.
+        for element, number in chain.from_iterable(enumerate(c.numbers) for c in field.cases):
             part = f".{number.name}" if number.name else f"[{element}]"
             if argument == field.name + (part if field.many else ""):
                 return field.name, element
