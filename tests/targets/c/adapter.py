@@ -1,7 +1,7 @@
 """The C code behind the codec protocol: ``cobotwire conform codec -- python -m targets.c.adapter``.
 
-Names and JSON are done here, since C has neither; every frame, value and event is the C code's. Takes
-the edition from the greeting.
+Names and JSON are done here, since C has neither; every frame, value and event is the C code's. The
+greeting says the edition.
 """
 
 from __future__ import annotations
@@ -72,9 +72,7 @@ class Adapter:
             tries = [self._peer.decode(index, data) for index, _ in self._forms(question)]
             # The form of another length says nothing of a frame that has the right one.
             rank = {"ok": 0, "bad-length": 2}
-            found = min(
-                tries, key=lambda t: 0 if isinstance(t, Read) else rank.get(t.status, 1)
-            )
+            found = min(tries, key=lambda t: 0 if isinstance(t, Read) else rank.get(t.status, 1))
         if isinstance(found, Outcome):
             return {"error": found.status, "offset": found.offset}
         message = self._messages[found.message]

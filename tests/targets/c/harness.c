@@ -160,9 +160,9 @@ static void frame(void)
             P(framer_flush)(framer);
             give_events(framer);
         }
+        give_u16(0);
         free(data);
     }
-    give_u16(0);
     give_u16(P(framer_pending)(framer));
     free(framer);
 }

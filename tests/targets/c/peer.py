@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import subprocess
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple
@@ -124,15 +124,26 @@ class CPeer:
         accept_unknown: bool = False,
     ) -> tuple[list[Event], int]:
         """Frame a stream, flushing behind the chunks that say so: the events and what waits."""
+        found, pending = self.events_by_chunk(listening, chunks, accept_unknown)
+        return [event for events in found for event in events], pending
+
+    def events_by_chunk(
+        self,
+        listening: str,
+        chunks: Sequence[tuple[bytes, bool]],
+        accept_unknown: bool = False,
+    ) -> tuple[list[list[Event]], int]:
+        """The same, with the events that each chunk made certain."""
         parts = [struct.pack("=cHHH", b"f", LISTENING[listening], accept_unknown, len(chunks))]
         for data, flush in chunks:
             parts += [struct.pack("=HH", flush, len(data)), data]
         self._send(b"".join(parts))
-        found = []
+        return [list(self._events()) for _ in chunks], self._u16()
+
+    def _events(self) -> Iterator[Event]:
         while self._u16():
             reason, offset, size = struct.unpack("=HQH", self._take(12))
-            found.append(Event(STATUS[reason], offset, self._take(size)))
-        return found, self._u16()
+            yield Event(STATUS[reason], offset, self._take(size))
 
     def names(self) -> list[list[str]]:
         """Each message's name and those of its fields."""
