@@ -6,6 +6,7 @@
 
 #include "physical.h"
 
+#define UNTOUCHED 0xA5
 #define JOINED(a, b) a##b
 #define NAME(a, b) JOINED(a, b)
 #define P(name) NAME(PREFIX, name)
@@ -98,6 +99,17 @@ static void encode(bool from_values)
     free(out);
 }
 
+/* What is refused must leave the struct as it was. */
+static void check_untouched(const void *memory, size_t size)
+{
+    for (; size != 0; size--) {
+        if (((const uint8_t *)memory)[size - 1] != UNTOUCHED) {
+            fprintf(stderr, "a refused frame was written\n");
+            exit(5);
+        }
+    }
+}
+
 static void decode(bool as_one)
 {
     unsigned message = take_u16();
@@ -107,7 +119,7 @@ static void decode(bool as_one)
     P(fault_t) fault = {0, 0, 0, 0};
     unsigned status;
 
-    memset(&any, 0, sizeof any);
+    memset(&any, UNTOUCHED, sizeof any);
     if (as_one) {
         status = typed_decode(message, data, size, &any, &fault);
     } else {
@@ -119,6 +131,8 @@ static void decode(bool as_one)
     give_u16(message);
     if (status == 0) {
         give_numbers(message, &any);
+    } else {
+        check_untouched(&any, sizeof any);
     }
     free(data);
 }
