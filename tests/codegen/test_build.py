@@ -22,10 +22,11 @@ def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
 
 
-def test_a_package_and_its_reference_are_written_and_stay_fresh(folder: Path) -> None:
-    words = ("build", "lamp.yaml", "--out", "lamp", "--docs", "docs")
+def test_a_package_its_reference_and_its_c_are_written_and_stay_fresh(folder: Path) -> None:
+    words = ("build", "lamp.yaml", "--out", "lamp", "--docs", "docs", "--c", "c")
     assert run(folder, *words).returncode == 0
     assert (folder / "lamp" / "py.typed").is_file()
+    assert sorted(path.name for path in (folder / "c").iterdir()) == ["lamp.c", "lamp.h"]
     again = run(folder, *words, "--check")
     assert (again.returncode, again.stdout) == (0, "fresh\n")
 
@@ -36,6 +37,7 @@ def test_a_package_and_its_reference_are_written_and_stay_fresh(folder: Path) ->
         (("--out", "o", "--docs", "o"), "must be folders apart"),
         (("--out", "o", "--docs", "o/docs"), "must be folders apart"),
         (("--out", "o/inner", "--docs", "o"), "must be folders apart"),
+        (("--out", "o", "--docs", "d", "--c", "d"), "--docs and --c must be folders apart"),
         (("--out", "my-pkg"), "my-pkg cannot be a package's name"),
         (("--out", "class"), "class cannot be a package's name"),
         (("--out", "cobotwire"), "cobotwire cannot be a package's name"),

@@ -11,6 +11,7 @@ from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
+from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.vectors import render_shared_vectors
@@ -50,6 +51,7 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
     for edition in found:
         made.append(Target(package / edition.name, render_python(edition)))
         made.append(Target(reference / edition.name, render_reference(edition)))
+        made.append(Target(root / "targets" / "c" / edition.name, render_c(edition)))
         data.update(render_vectors(edition))
     made.append(Target(root / "rust" / "core" / "tests" / "data", data))
     made.append(schema_target(root, found))

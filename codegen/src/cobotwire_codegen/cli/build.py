@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import sys
+from itertools import combinations
 from pathlib import Path
 
 import click
@@ -21,6 +22,10 @@ from cobotwire_codegen.cli.shared import (
 )
 from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.render import render_python, render_reference
+from cobotwire_codegen.targets.c import render_c
+
+# What is made in the folder of each option.
+RENDERERS = {"--out": render_python, "--docs": render_reference, "--c": render_c}
 
 
 @click.command()
@@ -29,6 +34,7 @@ from cobotwire_codegen.render import render_python, render_reference
     "--out", required=True, type=click.Path(file_okay=False), help="The package's folder."
 )
 @click.option("--docs", type=click.Path(file_okay=False), help="A folder for the reference, too.")
+@click.option("--c", type=click.Path(file_okay=False), help="A folder for C code, too.")
 @click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
@@ -37,7 +43,13 @@ from cobotwire_codegen.render import render_python, render_reference
 @click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if not fresh.")
 @format_option
 def build(
-    file: str, out: str, docs: str | None, templates: str | None, check_only: bool, form: str
+    file: str,
+    out: str,
+    docs: str | None,
+    c: str | None,
+    templates: str | None,
+    check_only: bool,
+    form: str,
 ) -> None:
     """Generate a typed Python package from the edition FILE.
 
@@ -45,16 +57,18 @@ def build(
     (`cobotwire --edition PACKAGE`). The folders must hold nothing else.
     """
     path = edition_path(file)
-    _check_folders(Path(out), Path(docs) if docs else None)
+    given = {"--out": out, "--docs": docs, "--c": c}
+    folders = {option: Path(folder) for option, folder in given.items() if folder}
+    _check_folders(folders)
     with problems_told(form):
         edition = build_edition(path, Path.cwd())
         check_edition(edition)
     own = Path(templates) if templates else None
     check_names(own)
     with template_errors_told(own):
-        wanted = [Target(Path(out), render_python(edition, own))]
-        if docs:
-            wanted.append(Target(Path(docs), render_reference(edition, own)))
+        wanted = [
+            Target(folder, RENDERERS[option](edition, own)) for option, folder in folders.items()
+        ]
     if check_only:
         sys.exit(show_stale(wanted))
     strangers = [path for target in wanted for path in foreign(target)]
@@ -66,13 +80,13 @@ def build(
     click.echo(f"{edition.name} ({len(edition.commands)} commands): {written} file(s)")
 
 
-def _check_folders(out: Path, docs: Path | None) -> None:
-    """The package's name must be importable, and neither folder may hold the other."""
-    name = out.resolve().name
+def _check_folders(folders: dict[str, Path]) -> None:
+    """The package's name must be importable, and no folder may hold another."""
+    name = folders["--out"].resolve().name
     if not name.isidentifier() or keyword.iskeyword(name) or name == "cobotwire":
         raise click.UsageError(f"{name} cannot be a package's name; choose another folder")
-    if docs is None:
-        return
-    one, other = out.resolve(), docs.resolve()
-    if one == other or one in other.parents or other in one.parents:
-        raise click.UsageError("--out and --docs must be folders apart: each holds nothing else")
+    for first, second in combinations(folders, 2):
+        one, other = folders[first].resolve(), folders[second].resolve()
+        if one == other or one in other.parents or other in one.parents:
+            message = f"{first} and {second} must be folders apart: each holds nothing else"
+            raise click.UsageError(message)

@@ -1,0 +1,65 @@
+"""How names, numbers and sentences are spelt in C."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+
+# Also those of C++, since a C++ program may include the header.
+_WORDS = """
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const
+    const_cast constexpr continue decltype default delete do double dynamic_cast else enum explicit
+    export extern false float for friend goto if inline int long mutable namespace new noexcept not
+    not_eq nullptr operator or or_eq private protected public register reinterpret_cast restrict
+    return short signed sizeof static static_assert static_cast struct switch template this
+    thread_local throw true try typedef typeid typename typeof union unsigned using virtual void
+    volatile wchar_t while xor xor_eq
+"""
+KEYWORDS = frozenset(_WORDS.split())
+WIDTH = 100
+
+
+def member(name: str) -> str:
+    """A field's name as that of a struct's member."""
+    return f"{name}_" if name in KEYWORDS else name
+
+
+def whole(value: int) -> str:
+    """A whole number as a constant, of a type that is wide enough by itself."""
+    # The lowest number of a type has no constant: its minus sign is an operator.
+    return f"({value + 1} - 1)" if value <= -(2**31) else str(value)
+
+
+def string(text: str) -> str:
+    """Text as a string constant; what is not printable ASCII as octal, which ends by itself."""
+    plain = {'"': '\\"', "\\": "\\\\", "?": "\\?"}
+    return '"' + "".join(_character(byte, plain) for byte in text.encode()) + '"'
+
+
+def _character(byte: int, plain: dict[str, str]) -> str:
+    letter = chr(byte)
+    return plain.get(letter, letter) if 0x20 <= byte < 0x7F else f"\\{byte:03o}"
+
+
+def comment(text: str, indent: int = 0) -> str:
+    """A comment of as many lines as it takes."""
+    margin = " " * indent
+    safe = " ".join(text.split()).replace("*/", "* /").replace("/*", "/ *")
+    lines = textwrap.wrap(safe, WIDTH - indent - 6, break_on_hyphens=False) or [""]
+    return f"{margin}/* " + f"\n{margin} * ".join(lines) + " */"
+
+
+def rows(items: Iterable[str]) -> str:
+    """The elements of an array, as many on a line as fit; C wants one at least."""
+    lines = [""]
+    for item in items:
+        if len(lines[-1]) + len(item) + 6 > WIDTH and lines[-1]:
+            lines.append("")
+        lines[-1] += f"{item}, "
+    return "\n".join(f"    {line.rstrip()}" for line in lines if line) or "    0"
+
+
+def bits(numbers: Sequence[int]) -> list[str]:
+    """A set of bytes as 32 bytes with a bit for each."""
+    mask = sum(1 << number for number in set(numbers))
+    return [f"0x{byte:02X}" for byte in mask.to_bytes(32, "little")]

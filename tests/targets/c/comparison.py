@@ -1,0 +1,149 @@
+"""The C code of an edition, run on the shared vectors, under the sanitizers."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from typing import Any
+
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.targets.c.messages import messages
+from cobotwire_codegen.targets.c.tables import Tables
+from targets.c.compiled import COMPILERS, SANITIZERS, program
+from targets.c.peer import CPeer, Event, Outcome, Read
+from targets.comparison import Comparison, ToolMissing
+from targets.vectors.comparison import PIECES, Record, read
+from vectors import edition as edition_of
+
+
+def compare(edition: str) -> Comparison:
+    """The vectors of an edition, on the first compiler that is there.
+
+    Raises:
+        ToolMissing: there is none.
+    """
+    compiler = next(filter(shutil.which, COMPILERS), None)
+    if compiler is None:
+        raise ToolMissing("a C compiler: gcc or clang")
+    return judged(read(edition), edition_of(edition), compiler)
+
+
+def judged(
+    document: Record,
+    edition: Edition,
+    compiler: str,
+    flags: tuple[str, ...] = SANITIZERS,
+    name: str = "",
+) -> Comparison:
+    """A document's vectors on the C code of an edition, which may be a changed one."""
+    with CPeer(program(edition, compiler, flags, name)) as peer:
+        return Judge(document, edition, peer).all()
+
+
+class Judge:
+    """What a document says beside what the C code does; text outside frames is not its affair."""
+
+    def __init__(self, document: Record, edition: Edition, peer: CPeer) -> None:
+        self._document = document
+        self._peer = peer
+        self._messages = messages(edition)
+        self._bits = Tables(edition).whole_bits
+        self._index = {
+            (message.command.name, message.direction, message.number): index
+            for index, message in enumerate(self._messages)
+        }
+
+    def all(self) -> Comparison:
+        """Every message, refused value, malformed frame and stream."""
+        parts = {
+            "messages": (self._message, self._document["messages"]),
+            "refused": (self._refused, [r for r in self._document["refused"] if self._sayable(r)]),
+            "malformed": (self._malformed, self._document["malformed"]),
+            "streams": (self._stream, self._document["streams"]),
+        }
+        differences = [
+            f"{part}: {record['name']}: {difference}"
+            for part, (judge, records) in parts.items()
+            for record in records
+            for difference in judge(record)
+        ]
+        fields = sum(len(f["whole"]) for r in self._document["messages"] for f in r["fields"])
+        count = sum(len(records) for _, records in parts.values())
+        return Comparison(count, fields, differences)
+
+    def _place(self, record: Record) -> int:
+        return self._index[record["command"], record["direction"], record["form"]]
+
+    def _sayable(self, record: Record) -> bool:
+        """Whether the struct can hold it: not a constant, and not what is too large for it."""
+        found = self._messages[self._place(record)].members
+        field = next(field for field in record["fields"] if field["name"] == record["field"])
+        fits = -(2 ** (self._bits - 1)) <= field["whole"][record["element"]] < 2 ** (self._bits - 1)
+        return fits and next(m for m in found if m.field.name == record["field"]).count > 0
+
+    def _message(self, record: Record) -> Iterator[str]:
+        index, data = self._place(record), bytes.fromhex(record["bytes"])
+        wholes, values = self._given(record, "whole"), self._given(record, "value")
+        yield from _unequal("built", self._peer.encode(index, wholes), data)
+        yield from _unequal("built of values", self._peer.encode_values(index, values), data)
+        yield from _unequal("read", self._peer.decode(index, data), Read(index, wholes, values))
+        found = self._peer.read(record["direction"], data)
+        name = self._messages[found.message].command.name if isinstance(found, Read) else found
+        yield from _unequal("read as", name, record["read_as"])
+
+    def _refused(self, record: Record) -> Iterator[str]:
+        found = self._peer.encode(self._place(record), self._given(record, "whole"))
+        yield from _unequal("built", self._where(found), (record["field"], record["element"]))
+
+    def _where(self, found: bytes | Outcome) -> object:
+        if isinstance(found, bytes) or found.status != "bad-value":
+            return found
+        member = self._messages[found.message].members[found.field]
+        return member.field.name, found.element
+
+    def _malformed(self, record: Record) -> Iterator[str]:
+        found = self._peer.read(record["direction"], bytes.fromhex(record["bytes"]))
+        said = (found.status, found.offset) if isinstance(found, Outcome) else found
+        yield from _unequal("read", said, (record["reason"], record["offset"]))
+
+    def _stream(self, record: Record) -> Iterator[str]:
+        data = bytes.fromhex(record["bytes"])
+        for size in PIECES:
+            pieces = [(data[at : at + size], False) for at in range(0, len(data), size)]
+            events, _ = self._peer.events(record["direction"], [*pieces, (b"", True)])
+            found = [_as_written(event, self._at) for event in joined(events)]
+            yield from _unequal(f"in pieces of {size}", found, record["events"])
+
+    @property
+    def _at(self) -> int:
+        """Where a frame's command id stands."""
+        frame = self._document["frame"]
+        return len(bytes.fromhex(frame["header"])) + bool(frame["addresses"]) + 1
+
+    def _given(self, record: Record, key: str) -> list[Any]:
+        """The numbers of a record as they stand in the message's struct."""
+        given = {field["name"]: field[key] for field in record["fields"]}
+        members = self._messages[self._place(record)].fields
+        return [number for member in members for number in given[member.field.name]]
+
+
+def joined(events: list[Event]) -> list[Event]:
+    """Events with adjacent noise of one reason as one span; of frames the reason is ``ok``."""
+    found: list[Event] = []
+    for event in events:
+        if found and event.reason != "ok" and found[-1].reason == event.reason:
+            found[-1] = Event(event.reason, found[-1].offset, found[-1].data + event.data)
+        else:
+            found.append(event)
+    return found
+
+
+def _as_written(event: Event, id_at: int) -> Record:
+    place = {"offset": event.offset, "size": len(event.data)}
+    told = {"frame": event.data[id_at]} if event.reason == "ok" else {"noise": event.reason}
+    return place | told
+
+
+def _unequal(what: str, found: object, right: object) -> Iterator[str]:
+    if found != right:
+        yield f"{what} {found}, not {right}"

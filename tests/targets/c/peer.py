@@ -1,0 +1,171 @@
+"""An edition's C code in a process of its own, spoken to from Python."""
+
+from __future__ import annotations
+
+import struct
+import subprocess
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple
+
+STATUS = (
+    "ok",
+    "no-header",
+    "bad-address",
+    "bad-length",
+    "unknown-id",
+    "bad-check",
+    "truncated",
+    "trailing",
+    "bad-value",
+    "no-room",
+)
+LISTENING = {"request": 1, "reply": 2, "both": 3}
+
+
+class Outcome(NamedTuple):
+    """What the C code said: a status, and for a refusal where."""
+
+    status: str
+    message: int
+    field: int
+    element: int
+    offset: int
+
+
+class Read(NamedTuple):
+    """A message that was read: which, its numbers on the wire, what they stand for."""
+
+    message: int
+    wholes: list[int]
+    values: list[float]
+
+
+class Event(NamedTuple):
+    """A frame (``ok``) or a span of noise."""
+
+    reason: str
+    offset: int
+    data: bytes
+
+
+class CPeer:
+    """Talks to a harness; ends with its process, and tells what the sanitizers said."""
+
+    def __init__(self, program: Path) -> None:
+        self._process = subprocess.Popen(
+            [program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        )
+
+    def __enter__(self) -> CPeer:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End it; a complaint of a sanitizer, a leak too, fails."""
+        _, said = self._process.communicate()
+        assert self._process.returncode == 0, said.decode()
+
+    def encode(
+        self, message: int, wholes: Iterable[int], address: int = 0, room: int = 300
+    ) -> bytes | Outcome:
+        """Build a frame from numbers as they stand on the wire."""
+        return self._encode(b"w", message, list(wholes), address, room, "q")
+
+    def encode_values(
+        self, message: int, values: Iterable[float], address: int = 0
+    ) -> bytes | Outcome:
+        """Build a frame from physical values, by the header's helpers."""
+        return self._encode(b"v", message, list(values), address, 300, "d")
+
+    def _encode(
+        self,
+        operation: bytes,
+        message: int,
+        numbers: Sequence[float],
+        address: int,
+        room: int,
+        kind: str,
+    ) -> bytes | Outcome:
+        head = struct.pack("=cHHH", operation, message, address, room)
+        self._send(head + struct.pack(f"={len(numbers)}{kind}", *numbers))
+        outcome = self._outcome()
+        frame = self._take(self._u16())
+        return frame if outcome.status == "ok" else outcome
+
+    def decode(self, message: int, data: bytes) -> Read | Outcome:
+        """Read a frame as one message."""
+        return self._decode(b"d", message, data)
+
+    def read(self, listening: str, data: bytes) -> Read | Outcome:
+        """Read a frame as the first message that allows it."""
+        return self._decode(b"r", LISTENING[listening], data)
+
+    def _decode(self, operation: bytes, which: int, data: bytes) -> Read | Outcome:
+        self._send(struct.pack("=cHH", operation, which, len(data)) + data)
+        outcome, message = self._outcome(), self._u16()
+        if outcome.status != "ok":
+            return outcome
+        numbers = [struct.unpack("=qd", self._take(16)) for _ in range(self._u16())]
+        return Read(message, [whole for whole, _ in numbers], [value for _, value in numbers])
+
+    def events(
+        self,
+        listening: str,
+        chunks: Sequence[tuple[bytes, bool]],
+        accept_unknown: bool = False,
+    ) -> tuple[list[Event], int]:
+        """Frame a stream, flushing behind the chunks that say so: the events and what waits."""
+        found, pending = self.events_by_chunk(listening, chunks, accept_unknown)
+        return [event for events in found for event in events], pending
+
+    def events_by_chunk(
+        self,
+        listening: str,
+        chunks: Sequence[tuple[bytes, bool]],
+        accept_unknown: bool = False,
+    ) -> tuple[list[list[Event]], int]:
+        """The same, with the events that each chunk made certain."""
+        parts = [struct.pack("=cHHH", b"f", LISTENING[listening], accept_unknown, len(chunks))]
+        for data, flush in chunks:
+            parts += [struct.pack("=HH", flush, len(data)), data]
+        self._send(b"".join(parts))
+        return [list(self._events()) for _ in chunks], self._u16()
+
+    def _events(self) -> Iterator[Event]:
+        while self._u16():
+            reason, offset, size = struct.unpack("=HQH", self._take(12))
+            yield Event(STATUS[reason], offset, self._take(size))
+
+    def names(self) -> list[list[str]]:
+        """Each message's name and those of its fields."""
+        self._send(b"n")
+        assert self._process.stdout is not None
+        return [line.decode().split() for line in iter(self._process.stdout.readline, b"\n")]
+
+    def _outcome(self) -> Outcome:
+        status, *where = struct.unpack("=5H", self._take(10))
+        return Outcome(STATUS[status], *where)
+
+    def _u16(self) -> int:
+        (value,) = struct.unpack("=H", self._take(2))
+        return int(value)
+
+    def _send(self, data: bytes) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(data)
+        self._process.stdin.flush()
+
+    def _take(self, size: int) -> bytes:
+        assert self._process.stdout is not None
+        data = self._process.stdout.read(size)
+        assert len(data) == size, (self._process.stderr and self._process.stderr.read()) or b""
+        return data

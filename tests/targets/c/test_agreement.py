@@ -1,0 +1,182 @@
+"""Random messages, values and streams: the C code does what our codec does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import vectors
+from cobotwire.codec.interface import Frame, Listening
+from cobotwire.table import Direction
+from strategies import (
+    TABLES,
+    Form,
+    chunked,
+    codec_of,
+    forms_of,
+    legal_values,
+    near_frames,
+    real_frames,
+    received,
+    streams,
+)
+from targets.c.comparison import joined
+from targets.c.compiled import missing, program
+from targets.c.ours import Beside, events
+from targets.c.peer import CPeer
+
+pytestmark = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
+DIRECTIONS: st.SearchStrategy[Direction] = st.sampled_from(["request", "reply"])
+LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
+
+
+@pytest.fixture(scope="module", params=sorted(TABLES))
+def edition(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="module")
+def beside(edition: str) -> Beside:
+    return Beside(vectors.edition(edition), codec_of(edition, "reference"))
+
+
+@pytest.fixture(scope="module")
+def peer(edition: str) -> Iterator[CPeer]:
+    with CPeer(program(vectors.edition(edition))) as started:
+        yield started
+
+
+@given(data=st.data())
+def test_a_legal_message_is_built_and_read_alike(
+    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+) -> None:
+    form = data.draw(st.sampled_from(forms_of(TABLES[edition])))
+    values = data.draw(legal_values(form.layout))
+    frame, number = beside.encoded(form, values), beside.number(form)
+    assert isinstance(frame, bytes)
+    found = peer.decode(number, frame)
+    assert found == (number, found[1], beside.flat(number, values))
+    assert peer.encode(number, found[1]) == frame
+    assert peer.encode_values(number, beside.flat(number, values)) == frame
+    direction = form.direction
+    assert beside.read_in_c(peer.read(direction, frame)) == beside.read(direction, frame)
+
+
+def _numbers() -> st.SearchStrategy[float]:
+    """Between the steps, on their halves, at and beyond the bounds, and what is no number."""
+    halves = st.integers(-80_000, 80_000).map(lambda steps: steps / 200)
+    return st.one_of(st.floats(), st.floats(-400, 400), halves)
+
+
+@st.composite
+def _any_values(draw: st.DrawFn, form: Form) -> tuple[Any, ...]:
+    """Legal values, some replaced: a real number where there is a scale, else a whole one."""
+
+    def other(value: Any) -> Any:
+        if isinstance(value, tuple):
+            return tuple(map(other, value))
+        if draw(st.integers(0, 3)):
+            return value
+        if isinstance(value, float):
+            return draw(_numbers())
+        return draw(st.integers(-70_000, 70_000))
+
+    fields = form.layout.fields
+    return tuple(
+        value if field.choices and len(field.choices) == 1 else other(value)
+        for field, value in zip(fields, draw(legal_values(form.layout)))
+    )
+
+
+@given(data=st.data())
+def test_any_value_is_built_or_refused_alike(
+    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+) -> None:
+    form = data.draw(st.sampled_from(forms_of(TABLES[edition])).filter(lambda f: f.layout.fields))
+    values = data.draw(_any_values(form))
+    number = beside.number(form)
+    found = beside.refused_in_c(peer.encode_values(number, beside.flat(number, values)))
+    assert found == beside.encoded(form, values)
+
+
+@given(data=st.data())
+def test_any_bytes_are_read_or_refused_alike(
+    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+) -> None:
+    table = TABLES[edition]
+    direction = data.draw(DIRECTIONS)
+    frame = bytearray(data.draw(real_frames(table) | near_frames(table) | _near_values(form_bytes)))
+    for place in data.draw(st.lists(st.integers(0, 40), max_size=2)):
+        if place < len(frame):
+            frame[place] = data.draw(st.integers(0, 255))
+    cut = bytes(frame[: data.draw(st.integers(0, 60))])
+    assert beside.read_in_c(peer.read(direction, cut)) == beside.read(direction, cut)
+
+
+def _near_values(make: Any) -> st.SearchStrategy[bytes]:
+    return st.sampled_from(forms_of(TABLES["mycobot280"])).flatmap(make)
+
+
+def form_bytes(form: Form) -> st.SearchStrategy[bytes]:
+    """A whole frame of a form with any data."""
+    frame = TABLES["mycobot280"].frame
+    head = frame.header + bytes([frame.length(form.layout.size), form.command.id])
+    size = form.layout.size
+    return st.binary(min_size=size, max_size=size).map(lambda data: head + data + frame.footer)
+
+
+@given(data=st.data())
+def test_a_frame_is_refused_as_the_message_that_is_asked_for(
+    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+) -> None:
+    forms = forms_of(TABLES[edition])
+    alone = [form for form in forms if len(form.command.layouts(form.direction)) == 1]
+    form = data.draw(st.sampled_from(alone))
+    frame = data.draw(form_bytes(form) | real_frames(TABLES[edition]))
+    found = beside.read_in_c(peer.decode(beside.number(form), frame))
+    assert found == beside.read(form.direction, frame, form.command.name)
+
+
+@given(data=st.data())
+def test_a_stream_is_framed_alike_however_it_is_cut(
+    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+) -> None:
+    table, listening = TABLES[edition], data.draw(LISTENING)
+    unknown = data.draw(st.booleans())
+    lines = received(table, listening).map(lambda line: line.data)
+    chunks = data.draw(chunked(data.draw(streams(table) | lines)))
+    flushes = [data.draw(st.integers(0, 4)) == 0 for _ in chunks]
+    framer = beside.codec.framer(listening, accept_unknown=unknown)
+    right = []
+    for chunk, flush in zip(chunks, flushes):
+        right += framer.feed(chunk) + (framer.flush() if flush else [])
+    found, pending = peer.events(listening, list(zip(chunks, flushes)), unknown)
+    assert joined(found) == joined(list(events(right)))
+    assert pending == framer.pending
+    for event in right if not unknown else []:
+        if isinstance(event, Frame):
+            assert beside.read_in_c(peer.read(listening, event.data)) == beside.event(event)
+
+
+def test_names_are_those_of_the_spec(beside: Beside, peer: CPeer) -> None:
+    assert peer.names() == [
+        [message.command.name, *(member.field.name for member in message.members)]
+        for message in beside.messages
+    ]
+
+
+def test_a_buffer_that_is_too_small_is_refused_untouched(
+    edition: str, beside: Beside, peer: CPeer
+) -> None:
+    for number, message in enumerate(beside.messages):
+        size = message.size + 5
+        wholes = [0] * message.count
+        short = peer.encode(number, wholes, room=size - 1)
+        assert not isinstance(short, bytes)
+        assert short.status == "no-room"
+        enough = peer.encode(number, wholes, room=size)
+        assert isinstance(enough, bytes) or enough.status == "bad-value"

@@ -1,0 +1,64 @@
+"""The C code runs every vector as the spec has it, built by each compiler, under the sanitizers."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+import vectors
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.targets.vectors.document import document
+from strategies import TABLES
+from targets.c.comparison import compare, judged
+from targets.c.compiled import COMPILERS, missing
+from targets.vectors.comparison import read
+from wrong_models import WRONG, with_wrong_angles
+
+EDITIONS = sorted(TABLES)
+FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
+QUICK = ("-O0",)
+WITH_GCC = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
+ON_EACH = pytest.mark.parametrize(
+    "compiler",
+    [
+        pytest.param(name, marks=pytest.mark.skipif(bool(missing(name)), reason=missing(name)))
+        for name in COMPILERS
+    ],
+)
+
+
+@ON_EACH
+@pytest.mark.parametrize("name", EDITIONS)
+def test_every_vector_runs(name: str, compiler: str) -> None:
+    found = judged(read(name), vectors.edition(name), compiler)
+    assert found.differences == []
+    assert found.vectors > 1000
+    assert found.fields > 300
+
+
+@ON_EACH
+@pytest.mark.parametrize("family", ["mercury", "mybuddy"])
+def test_other_frame_formats_run_as_well(family: str, compiler: str) -> None:
+    edition = build_edition(FAMILIES / f"{family}.yaml", FAMILIES)
+    found = judged(json.loads(document(edition)), edition, compiler)
+    assert found.differences == []
+    assert found.vectors > 50
+
+
+@WITH_GCC
+@pytest.mark.parametrize("kind", WRONG)
+def test_a_wrong_model_shows(kind: str) -> None:
+    # Of its own name, for a quantity has one scale wherever it is used.
+    wrong = with_wrong_angles(
+        vectors.edition("mycobot"), lambda part: replace(WRONG[kind](part), name="wrong_angle")
+    )
+    found = judged(read("mycobot"), wrong, "gcc", QUICK, kind).differences
+    assert found
+    assert all("get_angles" in difference or "streams" in difference for difference in found)
+
+
+@WITH_GCC
+def test_what_the_report_asks_is_what_the_tests_ask() -> None:
+    assert compare("mycobot") == judged(read("mycobot"), vectors.edition("mycobot"), "gcc")
