@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 from collections import Counter
+from dataclasses import replace
 from typing import Any
 
 import jsonschema
@@ -103,6 +104,14 @@ def test_a_wrong_model_makes_vectors_that_a_codec_refutes(name: str, kind: str) 
     found = judged(wrong, codec_of(name, "reference")).differences
     assert found
     assert all("get_angles" in difference for difference in found)
+
+
+def test_an_edition_that_answers_nothing_has_vectors_too() -> None:
+    edition = vectors.edition("mycobot")
+    silent = [replace(c, replies=(), text=None) for c in edition.commands if not c.text]
+    family = replace(edition.families[0], commands=tuple(silent))
+    found = json.loads(document(replace(edition, families=(family,))))
+    assert {record["direction"] for record in found["messages"]} == {"request"}
 
 
 def test_the_folder_is_what_the_guide_says() -> None:

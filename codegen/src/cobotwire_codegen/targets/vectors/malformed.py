@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import NamedTuple
 
 from cobotwire_codegen.model import Edition
@@ -31,7 +32,8 @@ def malformed(edition: Edition, laws: dict[Direction, Law]) -> Iterator[Malforme
 def _broken(edition: Edition) -> Iterator[tuple[Direction, str, bytes]]:
     for direction in DIRECTIONS:
         yield direction, "nothing", b""
-        yield direction, "unknown id", _unknown(edition, direction)
+        for data in _unknown(edition, direction):
+            yield direction, "unknown id", data
     for example in examples(edition):
         name = f"{example.command.name}"
         if example.what.startswith("ordinary"):
@@ -60,10 +62,10 @@ def _with(data: bytes, at: int, byte: int) -> bytes:
     return data[:at] + bytes([byte % 256]) + data[at + 1 :]
 
 
-def _unknown(edition: Edition, direction: Direction) -> bytes:
-    """A message of the edition under an id that it lacks."""
+def _unknown(edition: Edition, direction: Direction) -> Iterator[bytes]:
+    """A message of the edition under an id that it lacks; none where nothing goes that way."""
     ids = {command.id for command in edition.commands if command.forms(direction)}
     free = next(id for id in range(255, -1, -1) if id not in ids and id not in (0xFE, 0xFA))
-    first = next(e for e in examples(edition) if e.direction == direction)
     at = len(edition.frame.header) + bool(edition.frame.addresses) + 1
-    return _with(first.data, at, free)
+    for example in islice((e for e in examples(edition) if e.direction == direction), 1):
+        yield _with(example.data, at, free)
