@@ -30,7 +30,7 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
 
     Templates in ``templates`` take the place of those of the same name.
     """
-    jinja = _environment(templates)
+    jinja = environment(templates)
     edition = replace(edition, types=_used_types(edition))
     common = {"edition": edition, "named": _named_types(edition)}
     files = {
@@ -69,7 +69,7 @@ def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
 
 def render_reference(edition: Edition, templates: Path | None = None) -> Files:
     """The edition's command reference in Markdown: a page a family, and an index."""
-    jinja = _environment(templates)
+    jinja = environment(templates)
     files = {
         PurePosixPath("README.md"): jinja.get_template("markdown/index.md.j2").render(
             edition=edition
@@ -103,7 +103,8 @@ def _named_types(edition: Edition) -> dict[Type, str]:
     return {type: type.name.upper() for type in edition.types}
 
 
-def _environment(templates: Path | None) -> Environment:
+def environment(templates: Path | None) -> Environment:
+    """Where templates are found: those of ``templates`` first, then the shipped ones."""
     shipped = PackageLoader("cobotwire_codegen")
     own = [FileSystemLoader(templates)] if templates is not None else []
     jinja = Environment(
@@ -112,7 +113,7 @@ def _environment(templates: Path | None) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701  (the output is Python, Markdown and JSON, never HTML)
+        autoescape=False,  # noqa: S701  (the output is Python, Markdown, JSON and Lua, never HTML)
     )
     jinja.globals.update(
         api=python_api,
