@@ -62,7 +62,7 @@ class Commands:
     def _number(self, command: Command, field: Field, type: Type, number: dict[str, Any]) -> Name:
         """Where the number stands in the list of them."""
         shown = self._declared.number(command, field, type, number)
-        left_out = {"name": "", "unit": ""}
+        left_out: dict[str, Any] = {"name": "", "unit": ""}
         if (number["multiply"], number["divide"]) == (1, 1):
             left_out |= {"multiply": 1, "divide": 1}
         made = {k: v for k, v in number.items() if k not in left_out or v != left_out[k]}
