@@ -2633,7 +2633,10 @@ local function note_text(line, side, event, bytes, moment)
     local elapsed = text and text.last and milliseconds(moment.time, text.last) or 0
     if text and event.reason == "no-header" and hear(text, bytes, elapsed) then
       text.last = moment.time
-      if text.exchange and not text.exchange.answered_in then settle(line, text.exchange, moment) end
+      if text.exchange and not text.exchange.answered_in then
+        settle(line, text.exchange, moment)
+        event.exchange = text.exchange
+      end
       -- The last piece shows the whole text.
       event.text, text.shown_by = text, event
       return
@@ -2998,44 +3001,49 @@ local function dissect(buffer, pinfo, root)
   return tree
 end
 
--- A recording names its edition. Every dissector of this kind knows the others by this table, so that
--- each line is read by its own, whichever was loaded last. A global of a script is its own; _G is all's.
+-- Every dissector of this kind knows the others by this table. A script's globals are its own; _G is
+-- all's.
 _G.cobotwire_editions = _G.cobotwire_editions or {}
-_G.cobotwire_editions[EDITION] = dissect
+local editions = _G.cobotwire_editions
 
+-- A recording names its edition: each line is read by its own, whichever was loaded last.
 function protocol.dissector(buffer, pinfo, root)
   if buffer:len() == 0 then return 0 end
   local named = not over_tcp() and (value_now("description") or ""):match("^edition (.+)$")
-  local named_dissector = named and _G.cobotwire_editions[named]
-  local tree = (named_dissector or dissect)(buffer, pinfo, root)
-  if named and not named_dissector then
+  local other = named and editions[named]
+  local tree = (other and other.dissect or dissect)(buffer, pinfo, root)
+  if named and not other then
     local words = "Recorded as edition " .. named .. ", read as " .. EDITION
     tree:add_proto_expert_info(expert_of.other_edition, words)
   end
   return buffer:len()
 end
 
--- What is registered now: preferences may change it.
+-- Where this edition is registered now, by table; preferences change it.
 local registered = {}
 
-local function register(table_name, old, new)
-  local dissectors = DissectorTable.get(table_name)
-  if old then dissectors:remove(old, protocol) end
-  if new then dissectors:add(new, protocol) end
-  return new
+local function register(name)
+  if registered[name] then DissectorTable.get(name):add(registered[name], protocol) end
 end
 
-local function register_all()
-  local port = protocol.prefs.port > 0 and protocol.prefs.port or nil
+-- Removing takes the place from whoever has it, so the others take theirs again.
+local function move(name, new)
+  if new == registered[name] then return end
+  if registered[name] then DissectorTable.get(name):remove(registered[name], protocol) end
+  registered[name] = nil
+  for _, each in pairs(editions) do each.register(name) end
+  registered[name] = new
+  register(name)
+end
+
+editions[EDITION] = { dissect = dissect, register = register }
+
+local function move_all()
   local link_type = protocol.prefs.link_type - 147
-  local encapsulation = link_type >= 0 and link_type <= 15 and wtap.USER0 + link_type or nil
-  if port ~= registered.port then
-    registered.port = register("tcp.port", registered.port, port)
-  end
-  if encapsulation ~= registered.encapsulation then
-    registered.encapsulation = register("wtap_encap", registered.encapsulation, encapsulation)
-  end
+  local is_user = link_type >= 0 and link_type <= 15
+  move("tcp.port", protocol.prefs.port > 0 and protocol.prefs.port or nil)
+  move("wtap_encap", is_user and wtap.USER0 + link_type or nil)
 end
 
-protocol.prefs_changed = register_all
-register_all()
+protocol.prefs_changed = move_all
+move_all()

@@ -146,29 +146,50 @@ def test_silence_refutes_what_waits_on_a_serial_line_and_not_over_tcp(tmp_path: 
     assert joined(dissected(path, "mycobot280"))[-1] == ("frame", FRAME)
 
 
-def test_segments_again_late_and_lost(tmp_path: Path) -> None:
-    def shown(*parts: tuple[int, bytes], words: tuple[str, ...] = ()) -> list[list[Item]]:
-        packets = [segment(Chunk(0, "reply", data), 1000 + at, False) for at, data in parts]
-        path = tmp_path / "segments.pcap"
-        path.write_bytes(pcap((number * 1000, data) for number, data in enumerate(packets)))
-        return dissected(path, "mycobot280", *words)
+NO_ANALYSIS = ("-o", "tcp.analyze_sequence_numbers:FALSE")
+IN_ORDER = ("-o", "tcp.reassemble_out_of_order:TRUE")
 
-    again = shown((0, FRAME[:9]), (0, FRAME[:9]), (9, FRAME[9:]), (9, FRAME[9:]))
-    assert [item.data for items in again for item in items if item.kind == "frame"] == [FRAME]
-    # One that repeats a part and goes on: Wireshark hands it to no dissector, unless it is told to
-    # look no closer at sequence numbers.
+
+def segments(
+    folder: Path, *parts: tuple[int, bytes], words: Sequence[str] = ()
+) -> list[list[Item]]:
+    """What is shown of segments of one direction, each with its place in the stream."""
+    packets = [segment(Chunk(0, "reply", data), 1000 + at, False) for at, data in parts]
+    path = folder / "segments.pcap"
+    path.write_bytes(pcap((number * 1000, data) for number, data in enumerate(packets)))
+    return dissected(path, "mycobot280", *words)
+
+
+def bytes_in(shown: list[list[Item]]) -> list[list[bytes]]:
+    return [[item.data for item in items] for items in shown]
+
+
+def test_a_segment_that_comes_again_is_shown_once(tmp_path: Path) -> None:
+    again = (0, FRAME[:9]), (0, FRAME[:9]), (9, FRAME[9:]), (9, FRAME[9:])
+    for words in ((), NO_ANALYSIS):
+        assert bytes_in(segments(tmp_path, *again, words=words))[2:] == [[FRAME], []]
+
+
+def test_a_segment_that_repeats_a_part_and_goes_on(tmp_path: Path) -> None:
     parts = (0, FRAME[:9]), (5, FRAME[5:] + ON), (23, ON)
-    overlaps = shown(*parts)
-    assert [[item.data for item in items] for items in overlaps[1:]] == [
-        [],
-        [FRAME[:1], FRAME[1:9], ON],
-    ]
-    overlaps = shown(*parts, words=("-o", "tcp.analyze_sequence_numbers:FALSE"))
-    assert [[item.data for item in items] for items in overlaps[1:]] == [[FRAME, ON], [ON]]
-    # The first 17 bytes come behind those that follow them.
-    late = shown((0, ON), (23, ON), (6, FRAME))
-    assert [[item.data for item in items] for items in late] == [[ON], [ON], [FRAME]]
-    lost = shown((0, FRAME[:9]), (23, ON))
+    # Wireshark hands it to no dissector, unless it is told to look no closer at sequence numbers.
+    assert bytes_in(segments(tmp_path, *parts))[1:] == [[], [FRAME[:1], FRAME[1:9], ON]]
+    assert bytes_in(segments(tmp_path, *parts, words=NO_ANALYSIS))[1:] == [[FRAME, ON], [ON]]
+
+
+def test_a_segment_that_comes_late(tmp_path: Path) -> None:
+    parts = (0, ON), (23, ON), (6, FRAME)
+    assert bytes_in(segments(tmp_path, *parts, words=IN_ORDER)) == [[ON], [], [FRAME, ON]]
+    # It fills the hole that was left for it; or Wireshark keeps it to itself.
+    assert bytes_in(segments(tmp_path, *parts, words=NO_ANALYSIS)) == [[ON], [ON], [FRAME]]
+    assert bytes_in(segments(tmp_path, *parts)) == [[ON], [ON], []]
+    path = tmp_path / "segments.pcap"
+    missing = tshark(path, "-Y", "mycobot280.missing", "-T", "fields", "-e", "frame.number")
+    assert missing.split() == ["2"]
+
+
+def test_a_segment_that_was_lost_ends_the_frame_that_waited(tmp_path: Path) -> None:
+    lost = segments(tmp_path, (0, FRAME[:9]), (23, ON))
     assert [(item.kind, item.data) for item in lost[1]] == [
         ("truncated", FRAME[:1]),
         ("no-header", FRAME[1:9]),
