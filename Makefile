@@ -8,7 +8,7 @@ IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen bench plots table fuzz clean
+.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen targets docs bench plots table fuzz clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -44,6 +44,13 @@ waiting-tests:
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
 
+targets: .venv/.tools .venv/.native ## what other people's tools make of every vector, target by target
+	PYTHONPATH=tests $(BIN)/python tests/targets/report.py
+
+docs: .venv/.tools .venv/.native ## the docs site, into docs/_build; a warning is an error
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build
+	@echo open docs/_build/index.html
+
 bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/driver.py
@@ -71,7 +78,7 @@ table: .venv/.tools .venv/.native ## what we and pymycobot make of bad lines, in
 	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
 clean: ## forget the environment and what was built
-	rm -rf .venv target .cargo-tools rust/fuzz/target
+	rm -rf .venv target .cargo-tools rust/fuzz/target docs/_build
 
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'

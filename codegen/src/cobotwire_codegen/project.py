@@ -11,6 +11,8 @@ from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
+from cobotwire_codegen.targets.construct import render_construct
+from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
@@ -53,16 +55,10 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
     made.append(Target(root / "rust" / "core" / "tests" / "data", data))
     made.append(schema_target(root, found))
     made.append(Target(root / "targets" / "vectors", render_shared_vectors(found)))
-    made.append(wireshark_target(root, found))
+    made.append(Target(root / "targets" / "construct", render_construct(found)))
+    made.append(Target(root / "docs" / "_static" / "decoder" / "tables", render_decoder(found)))
+    made.append(Target(root / "targets" / "wireshark", render_wireshark(found)))
     return made
-
-
-def wireshark_target(root: Path, found: list[Edition]) -> Target:
-    """The dissectors, a file an edition."""
-    files: Files = {}
-    for edition in found:
-        files.update(render_wireshark(edition))
-    return Target(root / "targets" / "wireshark", files)
 
 
 def schema_target(root: Path, found: list[Edition]) -> Target:

@@ -5,25 +5,21 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any
 
+from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.errors import ProtocolError, UsageError
 from cobotwire.session import text
+from strategies import codec_of
+from targets.comparison import Comparison
 from vectors import ROOT
 
 Record = dict[str, Any]
+CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 FOLDER = ROOT / "targets" / "vectors"
 # A stream is fed whole, byte by byte, and in pieces of these sizes.
 PIECES = (1, 2, 7, 1000)
-
-
-class Comparison(NamedTuple):
-    """How much was compared, and every difference in words."""
-
-    vectors: int
-    fields: int
-    differences: list[str]
 
 
 def read(edition: str) -> Record:
@@ -32,7 +28,18 @@ def read(edition: str) -> Record:
     return found
 
 
-def compare(document: Record, codec: Codec) -> Comparison:
+def compare(edition: str) -> Comparison:
+    """Everything in an edition's document, on both codecs."""
+    document = read(edition)
+    found = [judged(document, codec_of(edition, name)) for name in CODECS]
+    return Comparison(
+        sum(each.vectors for each in found),
+        sum(each.fields for each in found),
+        [difference for each in found for difference in each.differences],
+    )
+
+
+def judged(document: Record, codec: Codec) -> Comparison:
     """Everything in the document, on a codec."""
     parts = {
         "messages": _message,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,9 +16,10 @@ from cobotwire.errors import ProtocolError
 from cobotwire.table import Field, Number
 from cobotwire_codegen.render.words import units
 from strategies import codec_of
-from targets.vectors.comparison import Comparison, read
+from targets.comparison import Comparison, ToolMissing
+from targets.vectors.comparison import read
 from targets.wireshark.captures import Chunk, serial
-from targets.wireshark.dissecting import Item, dissected, joined
+from targets.wireshark.dissecting import ABSENT, Item, dissected, joined
 from targets.wireshark.truth import events_of, told
 
 # Streams come whole, byte by byte, and in pieces of seven.
@@ -43,7 +45,13 @@ class Check(NamedTuple):
 
 
 def compare(edition: str, scripts: list[Path] | None = None) -> Comparison:
-    """Run every vector of an edition through tshark; ``scripts`` in place of our dissectors."""
+    """Run every vector of an edition through tshark; ``scripts`` in place of our dissectors.
+
+    Raises:
+        ToolMissing: tshark is not installed.
+    """
+    if shutil.which("tshark") is None:
+        raise ToolMissing(ABSENT)
     lines = list(_lines(edition))
     chunks = [chunk for number, line in enumerate(lines) for chunk in _chunks(number, line)]
     with TemporaryDirectory() as folder:

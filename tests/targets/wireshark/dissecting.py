@@ -16,10 +16,8 @@ from cobotwire_codegen.targets.wireshark.fields import OWN
 from vectors import ROOT
 
 DISSECTORS = ROOT / "targets" / "wireshark"
-needs_tshark = pytest.mark.skipif(
-    shutil.which("tshark") is None,
-    reason="tshark is not installed (Debian: apt install tshark)",
-)
+ABSENT = "tshark is not installed (Debian: apt install tshark)"
+needs_tshark = pytest.mark.skipif(shutil.which("tshark") is None, reason=ABSENT)
 
 
 @dataclass

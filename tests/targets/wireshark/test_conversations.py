@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -53,7 +54,7 @@ def ends(shown: list[list[Item]], key: str) -> list[tuple[int, Item]]:
 @pytest.mark.parametrize("cut", ["frames", "chunks"])
 @pytest.mark.parametrize("edition", ["mycobot", "mycobot280"])
 def test_a_recording_of_the_simulated_arm(edition: str, cut: str, tmp_path: Path) -> None:
-    package = editions.load(edition)
+    package: Any = editions.load(edition)
     path = tmp_path / "arm.pcapng"
     codec = codecs.load(package.TABLE)
     with PtyServer(SimulatedArm(package.TABLE)) as server:

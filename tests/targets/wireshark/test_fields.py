@@ -34,7 +34,7 @@ def test_every_field_of_every_vector_is_what_the_codec_says(edition: str) -> Non
 @pytest.mark.parametrize("fault", sorted(WRONG))
 def test_a_model_that_is_wrong_is_noticed(fault: str, tmp_path: Path) -> None:
     wrong = with_wrong_angles(vectors.edition(), WRONG[fault])
-    write(Target(tmp_path, render_wireshark(wrong)))
+    write(Target(tmp_path, render_wireshark([wrong])))
     found = compare("mycobot", [tmp_path / "mycobot.lua"])
     assert found.differences
     # And nothing else is said to differ: where the fault is, is told.
@@ -44,7 +44,7 @@ def test_a_model_that_is_wrong_is_noticed(fault: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["mercury", "mybuddy"])
 def test_other_frame_formats_are_read_as_well(name: str, tmp_path: Path) -> None:
     edition = build_edition(FAMILIES / f"{name}.yaml", FAMILIES)
-    write(Target(tmp_path / "lua", render_wireshark(edition)))
+    write(Target(tmp_path / "lua", render_wireshark([edition])))
     script = tmp_path / "lua" / f"{name}.lua"
     chunks = []
     for number, vector in enumerate(edition.vectors):

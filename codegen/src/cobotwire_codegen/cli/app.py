@@ -13,6 +13,7 @@ from cobotwire_codegen.cli.init import init
 from cobotwire_codegen.cli.model import model
 from cobotwire_codegen.cli.new_command import new_command
 from cobotwire_codegen.cli.reconcile import reconcile
+from cobotwire_codegen.cli.render import render
 from cobotwire_codegen.cli.schema import schema
 from cobotwire_codegen.cli.shared import root_option
 
@@ -41,5 +42,5 @@ def main(ctx: click.Context, check_only: bool, root: str) -> None:
         ctx.invoke(generate, check_only=check_only, root=root)
 
 
-for verb in (build, check, model, explain, init, schema, diff, new_command, reconcile):
+for verb in (build, render, check, model, explain, init, schema, diff, new_command, reconcile):
     main.add_command(verb)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import sys
+from itertools import combinations
 from pathlib import Path
 
 import click
@@ -12,6 +13,7 @@ from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.generate import show_stale, write_all
 from cobotwire_codegen.cli.shared import (
+    check_names,
     edition_path,
     format_option,
     problems_told,
@@ -20,6 +22,7 @@ from cobotwire_codegen.cli.shared import (
 )
 from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.render import render_python, render_reference
+from cobotwire_codegen.targets.wireshark import render_wireshark
 
 
 @click.command()
@@ -29,6 +32,11 @@ from cobotwire_codegen.render import render_python, render_reference
 )
 @click.option("--docs", type=click.Path(file_okay=False), help="A folder for the reference, too.")
 @click.option(
+    "--wireshark",
+    type=click.Path(file_okay=False),
+    help="A folder for a Wireshark dissector, too; it may hold other files.",
+)
+@click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
     help="Templates of your own; each takes the place of the one of the same name.",
@@ -36,23 +44,32 @@ from cobotwire_codegen.render import render_python, render_reference
 @click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if not fresh.")
 @format_option
 def build(
-    file: str, out: str, docs: str | None, templates: str | None, check_only: bool, form: str
+    file: str,
+    out: str,
+    docs: str | None,
+    wireshark: str | None,
+    templates: str | None,
+    check_only: bool,
+    form: str,
 ) -> None:
     """Generate a typed Python package from the edition FILE.
 
     The package works with the installed cobotwire: its codecs, driver, simulator and command line
-    (`cobotwire --edition PACKAGE`). The folders must hold nothing else.
+    (`cobotwire --edition PACKAGE`). The folders of package and reference must hold nothing else.
     """
     path = edition_path(file)
-    _check_folders(Path(out), Path(docs) if docs else None)
+    _check_folders(Path(out), {"--docs": docs, "--wireshark": wireshark})
     with problems_told(form):
         edition = build_edition(path, Path.cwd())
         check_edition(edition)
     own = Path(templates) if templates else None
+    check_names(own)
     with template_errors_told(own):
         wanted = [Target(Path(out), render_python(edition, own))]
         if docs:
             wanted.append(Target(Path(docs), render_reference(edition, own)))
+        if wireshark:
+            wanted.append(Target(Path(wireshark), render_wireshark([edition], own), alone=False))
     if check_only:
         sys.exit(show_stale(wanted))
     strangers = [path for target in wanted for path in foreign(target)]
@@ -64,13 +81,13 @@ def build(
     click.echo(f"{edition.name} ({len(edition.commands)} commands): {written} file(s)")
 
 
-def _check_folders(out: Path, docs: Path | None) -> None:
-    """The package's name must be importable, and neither folder may hold the other."""
+def _check_folders(out: Path, others: dict[str, str | None]) -> None:
+    """The package's name must be importable, and no folder may hold another one."""
     name = out.resolve().name
     if not name.isidentifier() or keyword.iskeyword(name) or name == "cobotwire":
         raise click.UsageError(f"{name} cannot be a package's name; choose another folder")
-    if docs is None:
-        return
-    one, other = out.resolve(), docs.resolve()
-    if one == other or one in other.parents or other in one.parents:
-        raise click.UsageError("--out and --docs must be folders apart: each holds nothing else")
+    given = {"--out": out} | {option: Path(folder) for option, folder in others.items() if folder}
+    for (one, first), (other, second) in combinations(given.items(), 2):
+        a, b = first.resolve(), second.resolve()
+        if a == b or a in b.parents or b in a.parents:
+            raise click.UsageError(f"{one} and {other} must be folders apart")

@@ -47,8 +47,10 @@ def problems_told(form: str = "text") -> Iterator[None]:
 
 @contextmanager
 def template_errors_told(folder: Path | None) -> Iterator[None]:
-    """Turn a mistake in somebody's own template into one line and exit code 2."""
-    _check_names(folder)
+    """Turn a mistake in somebody's own template into one line and exit code 2.
+
+    Without a ``folder`` all templates are ours, and a mistake in them is a fault of this program.
+    """
     try:
         yield
     except TemplateSyntaxError as error:
@@ -63,7 +65,7 @@ def template_errors_told(folder: Path | None) -> Iterator[None]:
         raise click.UsageError(f"{place}{type(error).__name__}: {error}") from error
 
 
-def _check_names(folder: Path | None) -> None:
+def check_names(folder: Path | None) -> None:
     """A template takes the place of one of ours: a name that none of ours has is a mistake."""
     if folder is None:
         return

@@ -21,6 +21,7 @@ from cobotwire_codegen.render import markdown, parameters, python_api, python_ta
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.vectors_json import vectors_json
 from cobotwire_codegen.render.way import BLOCKING, WAYS, Way
+from cobotwire_codegen.wire import size
 
 Files = dict[PurePosixPath, str]
 
@@ -103,8 +104,8 @@ def _named_types(edition: Edition) -> dict[Type, str]:
     return {type: type.name.upper() for type in edition.types}
 
 
-def environment(templates: Path | None) -> Environment:
-    """Where templates are found: those of ``templates`` first, then the shipped ones."""
+def environment(templates: Path | None = None) -> Environment:
+    """What every template may use; those in ``templates`` take the place of ours."""
     shipped = PackageLoader("cobotwire_codegen")
     own = [FileSystemLoader(templates)] if templates is not None else []
     jinja = Environment(
@@ -132,6 +133,7 @@ def environment(templates: Path | None) -> Environment:
         capitalize_first=python_api.capitalize_first,
         oneline=python_api.oneline,
         by_class=_by_class,
+        size_on_wire=size,
     )
     jinja.tests.update(
         enum=lambda type: isinstance(type, Enum),

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
+
+from jinja2 import Template
 
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, environment
@@ -11,17 +14,21 @@ from cobotwire_codegen.targets.wireshark.fields import Declared
 from cobotwire_codegen.targets.wireshark.lua import lua
 
 
-def render_wireshark(edition: Edition, templates: Path | None = None) -> Files:
-    """The edition's dissector; templates in ``templates`` take the place of the shipped ones."""
+def render_wireshark(editions: Sequence[Edition], templates: Path | None = None) -> Files:
+    """A dissector an edition; templates in ``templates`` take the place of the shipped ones."""
     jinja = environment(templates)
     jinja.filters["lua"] = lua
+    template = jinja.get_template("wireshark/dissector.lua.j2")
+    return {PurePosixPath(f"{each.name}.lua"): _dissector(template, each) for each in editions}
+
+
+def _dissector(template: Template, edition: Edition) -> str:
     declared = Declared(edition)
     commands = Commands(edition, declared)
-    text = jinja.get_template("wireshark/dissector.lua.j2").render(
+    return template.render(
         edition=edition,
         filter=declared.protocol,
         declared=declared.all,
         numbers=commands.numbers,
         commands=commands.all,
     )
-    return {PurePosixPath(f"{edition.name}.lua"): text}

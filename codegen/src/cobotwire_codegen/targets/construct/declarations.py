@@ -1,0 +1,108 @@
+"""The model as calls of construct's classes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.model import Command, Edition, Enum, Field, Flag, Form, Quantity, Type, Value
+from cobotwire_codegen.render.literal import Call, Name, literal
+from cobotwire_codegen.wire import size
+
+Key = tuple[str, str, int]
+
+
+class Declarations:
+    """Messages, and the numbers in them; equal numbers are declared once, by their type's name."""
+
+    def __init__(self, edition: Edition) -> None:
+        if edition.frame.check != "footer" or edition.frame.addresses:
+            raise ValueError(f"{edition.name}: only frames with a footer and without an address")
+        self._edition = edition
+        self.types: dict[str, Call] = {}
+        self._names: dict[str, str] = {}
+
+    def messages(self) -> Iterator[tuple[Key, Call]]:
+        """Each form of each message: its key, its declaration."""
+        for command in self._edition.commands:
+            for direction in ("request", "reply"):
+                forms = command.requests if direction == "request" else command.replies
+                for index, form in enumerate(forms):
+                    key = (command.name, direction, index)
+                    yield key, self._frame(command, form)
+
+    def _frame(self, command: Command, form: Form) -> Call:
+        frame = self._edition.frame
+        # No field of a message has such names; some have one called end.
+        data = sum(size(field.type) for field in form)
+        parts = {
+            "frame_header": Name("HEADER"),
+            "frame_length": Call("Const", 1 + data + frame.check_size, Name("Byte")),
+            "frame_id": Call("Const", command.id, Name("Byte")),
+            **self._ahead(form),
+            **{field.name: self._field(field, form) for field in form},
+            "frame_footer": Name("FOOTER"),
+            "frame_end": Name("Terminated"),
+        }
+        return Call("Struct", **parts)
+
+    def _ahead(self, form: Form) -> dict[str, Call]:
+        """A selector behind the field that it decides is looked at before."""
+        found = {}
+        at = len(self._edition.frame.header) + 2
+        for field in form:
+            later = form[form.index(field) + 1 :]
+            for selector in (other for other in later if other.name == field.by):
+                between = form[form.index(field) : form.index(selector)]
+                offset = at + sum(size(other.type) for other in between)
+                found[_name_ahead(selector.name)] = Call(
+                    "Pointer", offset, self._plain(selector, selector.type)
+                )
+            at += size(field.type)
+        return found
+
+    def _field(self, field: Field, form: Form) -> Call | Name:
+        if not field.by:
+            return self._plain(field, field.type)
+        before = [other.name for other in form[: form.index(field)]]
+        selector = field.by if field.by in before else _name_ahead(field.by)
+        pairs = [
+            (value, self._plain(field, type)) for when, type in lower.cases(field) for value in when
+        ]
+        return Call("pick", selector, *pairs)
+
+    def _plain(self, field: Field, type: Type) -> Call | Name:
+        if isinstance(type, Value):
+            return Call("Struct", **{label: self._number(item) for label, item in type.items})
+        number = self._number(type)
+        return number if field.const is None else Call("Const", field.const, number)
+
+    def _number(self, type: Quantity | Enum | Flag) -> Name:
+        """The name under which the type's number is declared."""
+        expression = _expression(type)
+        text = literal(expression)
+        if text not in self._names:
+            name = type.name.upper()
+            alike = sum(other.rpartition("_")[0] == name or other == name for other in self.types)
+            self._names[text] = f"{name}_{alike + 1}" if alike else name
+            self.types[self._names[text]] = expression
+        return Name(self._names[text])
+
+
+def _expression(type: Quantity | Enum | Flag) -> Call:
+    wire = type.wire
+    little = wire.order == "little"
+    if isinstance(type, Flag):
+        return Call("flag", Call("number", wire.width, little, wire.signed_at, (0, 1)))
+    if isinstance(type, Enum):
+        values = tuple(member.value for member in type.members)
+        number = Call("number", wire.width, little, wire.signed_at, values)
+        return Call("Enum", number, **{member.name: member.value for member in type.members})
+    lowest, highest = map(int, type.bounds)
+    allowed = type.choices or Call("between", lowest, highest)
+    scale = (type.scale.numerator, type.scale.denominator)
+    return Call("number", wire.width, little, wire.signed_at, allowed, *(scale * (scale != (1, 1))))
+
+
+def _name_ahead(name: str) -> str:
+    return f"{name}_ahead"

@@ -1,0 +1,38 @@
+"""How the docs site is built: ``make docs``. Warnings are errors, and nothing is fetched."""
+
+from __future__ import annotations
+
+from importlib.metadata import version as version_of
+
+project = "cobotwire"
+author = "the cobotwire engineers"
+copyright = "the cobotwire engineers"
+version = release = version_of("cobotwire")
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+]
+source_suffix = {".md": "markdown"}
+exclude_patterns = ["_build"]
+nitpicky = False
+
+myst_heading_anchors = 4
+myst_enable_extensions = ["colon_fence", "deflist"]
+
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+autodoc_class_signature = "separated"
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+
+html_theme = "furo"
+html_title = "cobotwire"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_theme_options = {"source_directory": "docs/"}
+html_show_sphinx = False
+# A page says where it comes from; the text itself is in the repository.
+html_copy_source = False

@@ -1,0 +1,105 @@
+"""The docs site, built: no warning, no dead link, nothing that is fetched from elsewhere."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+from strategies import TABLES
+from targets.comparison import ToolMissing
+from targets.decoder import browser
+from vectors import ROOT
+
+# What a browser loads by itself, and by which attribute.
+LOADED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
+
+
+class Page(HTMLParser):
+    """What a page links to, what it loads, and what can be linked to in it."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.loads: list[str] = []
+        self.ids: set[str] = set()
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        found = {name: value or "" for name, value in attrs}
+        self.ids |= {found[name] for name in ("id", "name") if name in found}
+        if tag == "a" and "href" in found:
+            self.links.append(found["href"])
+        if found.get(LOADED.get(tag, "")):
+            self.loads.append(found[LOADED[tag]])
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built with a proxy that leads nowhere: nothing can be fetched."""
+    folder = tmp_path_factory.mktemp("site")
+    nowhere = {f"{way}_proxy": "http://127.0.0.1:9" for way in ("http", "https")}
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"]
+    done = subprocess.run(
+        [*command, str(ROOT / "docs"), str(folder)],
+        capture_output=True,
+        text=True,
+        env={"PATH": "/usr/bin:/bin", "HOME": str(folder), **nowhere},
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pages(site: Path) -> dict[Path, Page]:
+    """Every page of the site."""
+    return {path: Page(path) for path in site.rglob("*.html")}
+
+
+def test_every_text_is_a_page(site: Path) -> None:
+    texts = {path.relative_to(ROOT / "docs") for path in (ROOT / "docs").rglob("*.md")}
+    texts = {path for path in texts if "_build" not in path.parts}
+    assert len(texts) > 30
+    for text in texts:
+        assert (site / text.with_suffix(".html")).is_file(), text
+
+
+def test_no_link_is_dead(site: Path, pages: dict[Path, Page]) -> None:
+    dead = [problem for path, page in pages.items() for problem in _dead(site, pages, path, page)]
+    assert dead == []
+    assert sum(len(page.links) for page in pages.values()) > 1000
+
+
+def _dead(site: Path, pages: dict[Path, Page], path: Path, page: Page) -> Iterator[str]:
+    for link in page.links:
+        parts = urlsplit(link)
+        if parts.scheme:
+            continue
+        target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+        place = f"{path.relative_to(site)}: {link}"
+        if not target.is_file():
+            yield place
+        elif (
+            parts.fragment and target in pages and unquote(parts.fragment) not in pages[target].ids
+        ):
+            yield f"{place}: no such place in it"
+
+
+def test_nothing_is_loaded_from_elsewhere(pages: dict[Path, Page]) -> None:
+    loads = {load for page in pages.values() for load in page.loads}
+    assert loads
+    assert [load for load in loads if urlsplit(load).scheme or load.startswith("//")] == []
+
+
+@pytest.mark.parametrize("edition", sorted(TABLES))
+def test_the_decoder_works_within_the_site(site: Path, edition: str) -> None:
+    try:
+        shown = browser.dom(f"{(site / 'decoder.html').as_uri()}#edition={edition}&hex=FEFE0220FA")
+    except ToolMissing as missing:
+        pytest.skip(str(missing))
+    assert "request at 0: <code>get_angles</code>" in shown

@@ -1,0 +1,76 @@
+"""The decoder page's law, run in a browser over every vector."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from targets.comparison import Comparison
+from targets.decoder import browser
+from targets.vectors.comparison import Record, read
+from vectors import ROOT
+
+SCRIPTS = ROOT / "docs" / "_static" / "decoder"
+HARNESS = Path(__file__).with_name("harness.js")
+
+
+def compare(edition: str) -> Comparison:
+    """Every vector of an edition.
+
+    Raises:
+        ToolMissing: there is no Chromium here.
+    """
+    return judged(read(edition), (SCRIPTS / "tables" / f"{edition}.js").read_text())
+
+
+def judged(document: Record, table: str) -> Comparison:
+    """The messages, malformed bytes and streams of a document, by a table's script."""
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "harness.html"
+        page.write_text(_page(document, table))
+        found = browser.result(page)
+    judges = {"messages": _message, "malformed": _malformed, "streams": _stream}
+    differences = [
+        f"{record['name']}: {text}"
+        for part, judge in judges.items()
+        for record, made in zip(document[part], found[part])
+        for text in judge(record, made)
+    ]
+    count = sum(len(found[part]) for part in judges)
+    assert count == sum(len(document[part]) for part in judges)
+    fields = sum(len(f["whole"]) for record in document["messages"] for f in record["fields"])
+    return Comparison(count, fields, differences)
+
+
+def _page(document: Record, table: str) -> str:
+    scripts = [
+        (SCRIPTS / "law.js").read_text(),
+        table,
+        f"const cobotwireVectors = {json.dumps(document)};",
+        HARNESS.read_text(),
+    ]
+    body = "".join(f"<script>{script}</script>" for script in scripts)
+    return f'<!doctype html><meta charset="utf-8"><body>{body}</body>'
+
+
+def _message(record: Record, made: Any) -> Iterator[str]:
+    fields = [{key: f[key] for key in ("name", "whole", "value")} for f in record["fields"]]
+    # Another call of the same id may be what the bytes read as; then it alone is told.
+    if "error" in made or made["read_as"] != record["read_as"]:
+        yield f"{made}, not read as {record['read_as']}"
+    elif made.get("fields") != fields:
+        yield f"{made.get('fields')}, not {fields}"
+
+
+def _malformed(record: Record, made: Any) -> Iterator[str]:
+    right = {"reason": record["reason"], "offset": record["offset"]}
+    if made != right:
+        yield f"{made}, not {right}"
+
+
+def _stream(record: Record, made: Any) -> Iterator[str]:
+    if made != record["events"]:
+        yield f"{made}, not {record['events']}"

@@ -1,0 +1,105 @@
+"""The decoder page itself: what is pasted shows at once, byte by byte, as the codec reads it."""
+
+from __future__ import annotations
+
+import html
+import re
+from pathlib import Path
+from urllib.parse import urlencode
+
+import pytest
+
+from cobotwire.codec.interface import Noise
+from strategies import TABLES, codec_of
+from targets.comparison import ToolMissing
+from targets.decoder import browser
+from targets.vectors.comparison import read
+from vectors import ROOT
+
+PAGE = (ROOT / "docs" / "decoder.md").read_text()
+STREAMS = 2
+
+try:
+    browser.chromium()
+    MISSING = ""
+except ToolMissing as error:
+    MISSING = str(error)
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page's own HTML, without the site around it."""
+    path = tmp_path_factory.mktemp("decoder") / "decoder.html"
+    body = re.findall(r"^```\{raw\} html\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)[0]
+    path.write_text(f'<!doctype html><meta charset="utf-8"><body>{body}</body>')
+    (path.parent / "_static").symlink_to(ROOT / "docs" / "_static")
+    return path
+
+
+def _shown(page: Path, **state: str) -> str:
+    """What the page shows, as its text."""
+    found = browser.dom(f"{page.as_uri()}#{urlencode(state)}")
+    output = found[found.index('class="output"') :]
+    return html.unescape(output)
+
+
+def _cells(shown: str) -> list[list[str]]:
+    rows = re.findall(r"<tr><td>(.*?)</tr>", shown, re.DOTALL)
+    return [re.sub(r"<[^>]*>", "\t", row).split("\t") for row in rows]
+
+
+def test_the_page_lists_every_edition() -> None:
+    scripts = re.findall(r"tables/(\w+)\.js", PAGE)
+    assert sorted(scripts) == sorted(TABLES)
+
+
+def test_each_byte_of_a_frame_says_what_it_is(page: Path) -> None:
+    shown = _shown(page, edition="mycobot", hex="FE FE 06 21 01 00 1D 14 FA", direction="both")
+    rows = [[cell for cell in row if cell] for row in _cells(shown)]
+    assert rows == [
+        ["0", "FE FE", "header", "a frame starts here"],
+        ["2", "06", "LEN", "6 bytes follow"],
+        ["3", "21", "CMD", "send_angle"],
+        ["4", "01", "joint", "1"],
+        ["5", "00 1D", "angle", "0.29°  (29 on the wire)"],
+        ["7", "14", "speed", "20 %"],
+        ["8", "FA", "footer", "the frame ends here"],
+    ]
+    assert "request at 0: <code>send_angle</code>" in shown
+
+
+@pytest.mark.parametrize("edition", sorted(TABLES))
+def test_it_shows_the_events_of_the_codec(page: Path, edition: str) -> None:
+    longest = sorted(read(edition)["streams"], key=lambda record: -len(record["events"]))
+    for record in longest[:STREAMS]:
+        data = bytes.fromhex(record["bytes"])
+        framer = codec_of(edition, "reference").framer(record["direction"])
+        events = [*framer.feed(data), *framer.flush()]
+        shown = _shown(page, edition=edition, hex=data.hex(), direction=record["direction"])
+        for event in events:
+            kind = f"noise at {event.offset}" if isinstance(event, Noise) else f"at {event.offset}:"
+            assert kind in shown
+        frames = sum(not isinstance(event, Noise) for event in events)
+        assert f"{len(data)} byte(s): {frames} frame(s)" in shown
+
+
+@pytest.mark.parametrize(
+    ("pasted", "told"),
+    [
+        ("b'\\xfe\\xfe\\x02\\x20\\xfa'", "request at 0"),
+        ("[0xFE, 0xFE, 0x2, 0x20, 0xFA]", "request at 0"),
+        ("fefe0220fa", "request at 0"),
+        ("FE FE 02 2", "odd number of digits"),
+        ("hello <script>", "no hex"),
+    ],
+)
+def test_hex_in_any_dress_or_the_reason_why_not(page: Path, pasted: str, told: str) -> None:
+    assert told in _shown(page, edition="mycobot", hex=pasted)
+
+
+def test_a_value_that_is_not_allowed_is_shown_where_it_stands(page: Path) -> None:
+    shown = _shown(page, edition="mycobot", hex="FE FE 03 12 07 FA", direction="reply")
+    assert "refused" in shown
+    assert "holds 7, allowed: one of 0, 1 (byte 4)" in shown
+    assert 'class="byte wrong">07' in shown

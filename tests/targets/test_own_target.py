@@ -1,0 +1,81 @@
+"""The page about targets of one's own: its template runs, and gives what it says."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from cobotwire_codegen.cli import main
+from strategies import TABLES, forms_of
+from vectors import ROOT
+
+PAGE = (ROOT / "docs" / "targets.md").read_text()
+TEMPLATE, OUTPUT = re.findall(r"^```(?:jinja)?\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+
+
+def _run(template: Path, *options: str, edition: str = "mycobot280") -> tuple[int, str]:
+    file = str(ROOT / "spec" / "editions" / f"{edition}.yaml")
+    result = CliRunner().invoke(main, ["render", str(template), file, *options])
+    return result.exit_code, result.output
+
+
+@pytest.fixture
+def template(tmp_path: Path) -> Path:
+    """The page's template, as a reader saves it."""
+    path = tmp_path / "commands.csv.j2"
+    path.write_text(TEMPLATE)
+    return path
+
+
+def test_the_page_shows_what_its_template_gives(template: Path) -> None:
+    status, text = _run(template)
+    assert status == 0
+    assert text.startswith(OUTPUT)
+    assert len(TEMPLATE.splitlines()) <= 30, "the page promises a short one"
+
+
+@pytest.mark.parametrize("edition", sorted(TABLES))
+def test_every_form_is_a_line_of_the_csv(template: Path, edition: str, tmp_path: Path) -> None:
+    out = tmp_path / "commands.csv"
+    assert _run(template, "--out", str(out), edition=edition) == (0, "")
+    lines = list(csv.DictReader(io.StringIO(out.read_text())))
+    found = {
+        (line["command"], line["direction"], int(line["form"])): (
+            int(line["id"], 16),
+            int(line["data bytes"]),
+            line["fields"].split(),
+        )
+        for line in lines
+    }
+    right = {
+        (form.command.name, form.direction, form.number): (
+            form.command.id,
+            form.layout.size,
+            [field.name for field in form.layout.fields],
+        )
+        for form in forms_of(TABLES[edition])
+    }
+    assert found == right
+    assert len(lines) == len(right)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("{{ edition.nonsense }}", "nonsense"),
+        ("{% for command in edition.commands %}", "endfor"),
+        ('{% include "missing.j2" %}', "missing.j2"),
+    ],
+)
+def test_a_mistake_is_told_with_its_place(tmp_path: Path, line: str, told: str) -> None:
+    path = tmp_path / "mine.j2"
+    path.write_text(f"first line\n{line}\n")
+    status, text = _run(path)
+    assert status == 2
+    assert told in text
+    assert "mine.j2:2" in text or "mine.j2:3" in text
