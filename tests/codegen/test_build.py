@@ -30,12 +30,22 @@ def test_a_package_and_its_reference_are_written_and_stay_fresh(folder: Path) ->
     assert (again.returncode, again.stdout) == (0, "fresh\n")
 
 
+def test_a_dissector_is_written_beside_what_else_is_there(folder: Path) -> None:
+    (folder / "plugins").mkdir()
+    (folder / "plugins" / "other.lua").write_text("-- of somebody else\n")
+    words = ("build", "lamp.yaml", "--out", "lamp", "--wireshark", "plugins")
+    assert run(folder, *words).returncode == 0
+    assert sorted(path.name for path in (folder / "plugins").iterdir()) == ["lamp.lua", "other.lua"]
+    assert run(folder, *words, "--check").returncode == 0
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
         (("--out", "o", "--docs", "o"), "must be folders apart"),
         (("--out", "o", "--docs", "o/docs"), "must be folders apart"),
         (("--out", "o/inner", "--docs", "o"), "must be folders apart"),
+        (("--out", "o", "--wireshark", "o/w"), "must be folders apart"),
         (("--out", "my-pkg"), "my-pkg cannot be a package's name"),
         (("--out", "class"), "class cannot be a package's name"),
         (("--out", "cobotwire"), "cobotwire cannot be a package's name"),

@@ -32,7 +32,7 @@ class Line(NamedTuple):
     name: str
     direction: Listening
     chunks: list[bytes]
-    text: dict[str, str]
+    text: dict[str, str] = {}  # noqa: RUF012  (never changed)
     # What asks for a text, on the other side of the line.
     asked: bytes = b""
 
@@ -52,7 +52,12 @@ def compare(edition: str, scripts: list[Path] | None = None) -> Comparison:
     """
     if shutil.which("tshark") is None:
         raise ToolMissing(ABSENT)
-    lines = list(_lines(edition))
+    return compared(list(_lines(edition)), codec_of(edition, "reference"), scripts)
+
+
+def compared(lines: list[Line], codec: Codec, scripts: list[Path] | None = None) -> Comparison:
+    """Run lines through tshark, all at once."""
+    edition = codec.table.edition
     chunks = [chunk for number, line in enumerate(lines) for chunk in _chunks(number, line)]
     with TemporaryDirectory() as folder:
         path = Path(folder) / "vectors.pcapng"
@@ -62,7 +67,7 @@ def compare(edition: str, scripts: list[Path] | None = None) -> Comparison:
     for chunk, items in zip(chunks, packets, strict=True):
         if chunk.direction == lines[chunk.line].direction:
             shown[chunk.line].append(items)
-    codec, fields, differences = codec_of(edition, "reference"), 0, []
+    fields, differences = 0, []
     for number, line in enumerate(lines):
         judged = list(_judge(line, codec, shown[number]))
         fields += sum(check.is_field for check in judged)
@@ -82,7 +87,7 @@ def _lines(edition: str) -> Iterator[Line]:
     for name, vector in vectors.every():
         printed = vector.frame or vector.printed
         if name == edition and printed is not None:
-            yield Line(vector.name, vector.direction, [printed], {})
+            yield Line(vector.name, vector.direction, [printed])
         elif name == edition and vector.text is not None:
             fields = {key: str(value) for key, value in vector.values}
             yield _text(edition, vector.command, vector.direction, vector.text.encode(), fields)
@@ -91,12 +96,12 @@ def _lines(edition: str) -> Iterator[Line]:
         for record in document[part]:
             name = f"{part}: {record.get('name')}"
             if data := bytes.fromhex(record["bytes"]):
-                yield Line(name, record["direction"], [data], {})
+                yield Line(name, record["direction"], [data])
     for record in document["streams"]:
         data = bytes.fromhex(record["bytes"])
         for size in PIECES:
             pieces = [data[at : at + size] for at in range(0, len(data), size)]
-            yield Line(f"{record['name']} by {size}", record["direction"], pieces, {})
+            yield Line(f"{record['name']} by {size}", record["direction"], pieces)
     for record in document["texts"]:
         data = bytes.fromhex(record["bytes"])
         yield _text(edition, record["command"], record["direction"], data, record["fields"])
@@ -141,20 +146,21 @@ def _frame(frame: Frame, item: Item, codec: Codec, direction: Listening) -> Iter
     said = item.own["frame.command"], item.own["frame.direction"]
     same = said == (message.command.name, message.direction)
     yield Check("" if same else f"{said}, not {message.command.name}")
-    numbers = list(_numbers(message, frame.data))
+    numbers = list(_numbers(message, frame.data, codec.table.frame.overhead + 1))
     yield Check("" if len(numbers) == len(item.leaves) else f"{len(item.leaves)} numbers")
     for leaf, (field, number, value, data) in zip(item.leaves, numbers):
         name = number.name or field.name
         words = _label(name, field, number, value)
         shown = leaf.filter.split(".")[-1], _value(leaf.value), leaf.data
         label = re.sub(r" \[-?\d+ on the wire\]| \[echo of the request\]$", "", leaf.label)
-        same = shown == (name, value, data) and label == words
+        # Wireshark shows 15 digits, which is all that the editions' values have.
+        digits = float(f"{value:.15g}")
+        same = shown == (name, digits, data) and label == words
         difference = f"{name}: {shown} {label!r}, not {value} {data.hex()} {words!r}"
         yield Check("" if same else difference, is_field=True)
 
 
-def _numbers(message: Message, frame: bytes) -> Iterator[tuple[Field, Number, Any, bytes]]:
-    at = frame.index(message.command.id, 2) + 1
+def _numbers(message: Message, frame: bytes, at: int) -> Iterator[tuple[Field, Number, Any, bytes]]:
     for field, value in zip(message.layout.fields, message.values):
         picked = [case for case in field.cases if not case.when]
         if field.selector >= 0:

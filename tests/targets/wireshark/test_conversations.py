@@ -40,7 +40,8 @@ def exchanges(chunks: list[Chunk], edition: str, path: Path) -> list[dict[str, s
 
 
 def exchange(item: Item) -> dict[str, str]:
-    found = {key: item.own[key] for key in ("request_in", "response_in") if key in item.own}
+    ends = ("request_in", "response_in")
+    found: dict[str, str] = {key: item.own[key] for key in ends if key in item.own}
     if "response_time" in item.own:
         found["ms"] = f"{float(item.own['response_time']) * 1000:g}"
     return found | ({"expert": ",".join(item.experts)} if item.experts else {})
