@@ -22,8 +22,8 @@ from targets.wireshark.captures import Chunk, serial
 from targets.wireshark.dissecting import ABSENT, Item, dissected, joined
 from targets.wireshark.truth import events_of, told
 
-# Streams come whole, byte by byte, and in pieces of seven.
-PIECES = (10_000, 1, 7)
+# Streams come whole, and in pieces of seven.
+PIECES = (10_000, 7)
 
 
 class Line(NamedTuple):
@@ -44,15 +44,15 @@ class Check(NamedTuple):
     is_field: bool = False
 
 
-def compare(edition: str, scripts: list[Path] | None = None) -> Comparison:
-    """Run every vector of an edition through tshark; ``scripts`` in place of our dissectors.
+def compare(edition: str) -> Comparison:
+    """Run every vector of an edition through tshark with our dissector.
 
     Raises:
         ToolMissing: tshark is not installed.
     """
     if shutil.which("tshark") is None:
         raise ToolMissing(ABSENT)
-    return compared(list(_lines(edition)), codec_of(edition, "reference"), scripts)
+    return compared(list(lines_of(edition)), codec_of(edition, "reference"))
 
 
 def compared(lines: list[Line], codec: Codec, scripts: list[Path] | None = None) -> Comparison:
@@ -82,7 +82,7 @@ def _chunks(number: int, line: Line) -> Iterator[Chunk]:
         yield Chunk(number, line.direction, data)
 
 
-def _lines(edition: str) -> Iterator[Line]:
+def lines_of(edition: str) -> Iterator[Line]:
     """The spec's own vectors, and the shared ones."""
     for name, vector in vectors.every():
         printed = vector.frame or vector.printed

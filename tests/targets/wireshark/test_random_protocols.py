@@ -24,7 +24,7 @@ pytestmark = needs_tshark
 NUMBERS = itertools.count()
 
 
-@settings(max_examples=8, suppress_health_check=list(HealthCheck))
+@settings(max_examples=5, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_a_random_protocol_is_dissected(tmp_path: Path, data: st.DataObject) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}"))
