@@ -2555,13 +2555,25 @@ local function echoes(message, asked)
   return true
 end
 
+local function is_old(exchange, moment)
+  return milliseconds(moment.time, exchange.asked_at) > exchange.command.wait_ms
+end
+
+-- From the front: an order that is never acknowledged must not pile up through a long capture.
+local function forget_old(open, moment)
+  while open[1] and is_old(open[1], moment) do
+    table.remove(open, 1)
+  end
+end
+
 -- A question that was asked before the last answer to its like, and is still open, was lost: nobody
 -- asks again while he waits. Orders may be acknowledged late, so theirs stay open.
 local function drop_lost(line, open, command)
+  if command.ack then return end
   for index = #open, 1, -1 do
     local exchange = open[index]
     local answered = line.answered[command] or 0
-    if exchange.command == command and not command.ack and exchange.order < answered then
+    if exchange.command == command and exchange.order < answered then
       table.remove(open, index)
     end
   end
@@ -2577,6 +2589,7 @@ local function ask(line, message, moment)
   if #command.reply > 0 then
     local open = line.open[command.id] or {}
     line.open[command.id] = open
+    forget_old(open, moment)
     drop_lost(line, open, command)
     open[#open + 1] = exchange
   end
@@ -2597,20 +2610,12 @@ local function find_question(open, data, moment, with_faults)
     local exchange = open[index]
     local message = read_frame(data, LISTENING.reply, exchange.command)
     local asked_before = milliseconds(moment.time, exchange.asked_at) >= 0
-    if message and asked_before and (with_faults or not message.fault) and echoes(message, exchange.asked) then
+    local readable = message and (with_faults or not message.fault)
+    if readable and asked_before and not is_old(exchange, moment) and echoes(message, exchange.asked) then
       return index, message
     end
   end
   return nil
-end
-
-local function forget_old(open, moment)
-  for index = #open, 1, -1 do
-    local exchange = open[index]
-    if milliseconds(moment.time, exchange.asked_at) > exchange.command.wait_ms then
-      table.remove(open, index)
-    end
-  end
 end
 
 -- The exchange that a reply ends, and how the reply is read; nothing where nobody asked.
@@ -2805,16 +2810,32 @@ local function size_of(read)
   return size
 end
 
+local function same_unit(read)
+  for _, part in ipairs(read.numbers) do
+    if part.number.unit ~= read.numbers[1].number.unit then return false end
+  end
+  return true
+end
+
+-- A field in words; a unit that all its numbers have is said once.
+local function summary_of(read)
+  if #read.numbers == 1 then return in_words(read.field, read.numbers[1]) end
+  local words, once = {}, same_unit(read)
+  for _, part in ipairs(read.numbers) do
+    words[#words + 1] = once and in_digits(part.value) or in_words(read.field, part)
+  end
+  local list = table.concat(words, ", ")
+  return once and with_unit(read.numbers[1].number, list) or list
+end
+
 local function add_field(tree, bytes, read)
-  local words = {}
-  for _, part in ipairs(read.numbers) do words[#words + 1] = in_words(read.field, part) end
-  local summary = read.field.name .. " " .. table.concat(words, ", ")
+  local summary = summary_of(read)
   if read.field.group then
     tree = tree:add(shown[read.field.group], bytes(read.at - 1, size_of(read)))
-    tree:set_text(read.field.name .. ": " .. table.concat(words, ", "))
+    tree:set_text(read.field.name .. ": " .. summary)
   end
   for _, part in ipairs(read.numbers) do add_number(tree, bytes, read, part) end
-  return summary
+  return read.field.name .. " " .. summary
 end
 
 local function add_exchange(tree, event)
@@ -2873,7 +2894,7 @@ local function add_noise_span(root, bytes, event)
   local text = printable(bytes:raw())
   tree:add(own["noise.reason"], bytes, event.reason):set_generated()
   if text then tree:add(own["noise.text"], bytes, text):set_generated() end
-  local words = text and ': "' .. text .. '"' or ""
+  local words = text and ': "' .. text:gsub("%s+", " ") .. '"' or ""
   if event.text then
     tree:set_text("text outside any frame" .. words)
     add_text(tree, bytes, event)
@@ -2899,10 +2920,10 @@ end
 
 local function add_faults(root, record)
   if record.missing then
-    root:add_proto_expert_info(expert_of.missing, record.missing .. " bytes before this are missing")
+    root:add_proto_expert_info(expert_of.missing, in_digits(record.missing) .. " bytes before this are missing")
   end
   if record.cut_off > 0 then
-    root:add_proto_expert_info(expert_of.cut_off, record.cut_off .. " bytes were not captured")
+    root:add_proto_expert_info(expert_of.cut_off, in_digits(record.cut_off) .. " bytes were not captured")
   end
   if record.began_in then root:add(own.began_in, record.began_in):set_generated() end
 end
@@ -2938,11 +2959,13 @@ for name, filter in pairs({
   section = "frame.section_number", description = "frame.interface_description",
   stream = "tcp.stream", sequence = "tcp.seq",
 }) do
-  field_of[name] = Field.new(filter)
+  -- Not every version of Wireshark has every one of them.
+  local known, field = pcall(Field.new, filter)
+  field_of[name] = known and field or nil
 end
 
 local function value_now(name)
-  local found = field_of[name]()
+  local found = field_of[name] and field_of[name]()
   return found and found.value
 end
 
@@ -2981,7 +3004,8 @@ local function serial_place(place, pinfo)
 end
 
 local function place_of(buffer, pinfo)
-  local place = { number = pinfo.number, time = value_now("time") }
+  -- A packet may have no time (pcapng's simple packets).
+  local place = { number = pinfo.number, time = value_now("time") or NSTime.new(0, 0) }
   place.cut_off = buffer:reported_len() - buffer:len()
   if over_tcp() then tcp_place(place, pinfo) else serial_place(place, pinfo) end
   return place

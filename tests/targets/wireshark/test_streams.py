@@ -15,12 +15,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import damage
+from cobotwire.capture.blocks import SIMPLE_PACKET, interface, section
 from cobotwire.codec.interface import Listening
 from codec.test_found import STREAMS
 from strategies import TABLES, chunked, codec_of, received, streams
 from streams import stream_a
 from targets.wireshark.captures import STEP_NS, Chunk, pcap, segment, serial, tcp
-from targets.wireshark.dissecting import Item, dissected, joined, needs_tshark, tshark
+from targets.wireshark.dissecting import DISSECTORS, Item, dissected, joined, needs_tshark, tshark
 from targets.wireshark.truth import events_of, told
 
 pytestmark = needs_tshark
@@ -130,6 +131,8 @@ def test_a_frame_over_packets_names_where_it_begins_and_goes_on(tmp_path: Path) 
     assert "continued_in" not in last[1].own
     assert last[1].experts == ["incomplete.expert"]
     assert first[0].experts == []
+    began = tshark(path, "-Y", "mycobot.began_in", "-T", "fields", "-e", "mycobot.began_in")
+    assert began.split() == ["1", "1"]
 
 
 def test_silence_refutes_what_waits_on_a_serial_line_and_not_over_tcp(tmp_path: Path) -> None:
@@ -234,6 +237,23 @@ def test_packets_that_were_cut_off_when_captured_are_told(tmp_path: Path) -> Non
     assert [i.data for i in second] == [ON]
     told = tshark(path, "-Y", "mycobot280.cut_off", "-T", "fields", "-e", "frame.number")
     assert told.split() == ["1"]
+
+
+def test_packets_without_time_or_direction_are_read(tmp_path: Path) -> None:
+    """Simple packets of pcapng, as other programs write them."""
+    path = tmp_path / "simple.pcapng"
+    question = bytes.fromhex("FE FE 02 12 FA")
+    packets = []
+    for data in (question, ON):
+        padded = data + bytes(-len(data) % 4)
+        size = 16 + len(padded)
+        packets.append(struct.pack("<III", SIMPLE_PACKET, size, len(data)) + padded)
+        packets[-1] += struct.pack("<I", size)
+    path.write_bytes(section("test") + interface("", "", 0) + b"".join(packets))
+    asked, answered = dissected(path, "mycobot", scripts=[DISSECTORS / "mycobot.lua"])
+    assert (asked[0].own["frame.direction"], asked[0].data) == ("request", question)
+    assert (answered[0].own["frame.direction"], answered[0].data) == ("reply", ON)
+    assert answered[0].own["request_in"] == "1"
 
 
 def test_packets_in_any_order_show_the_same(tmp_path: Path) -> None:
