@@ -115,7 +115,7 @@ def environment(templates: Path | None = None) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701  (the output is Python, Markdown and JSON, never HTML)
+        autoescape=False,  # noqa: S701  (the output is Python, Markdown, JSON and Lua, never HTML)
     )
     jinja.globals.update(
         api=python_api,
