@@ -49,8 +49,8 @@ class Text:
 class ReadBack:
     """How what a command has set is read: the query, and what its reply then says.
 
-    ``fields`` pairs a field of the reply with the argument that it repeats, or with the whole number
-    that it then has; none: the fields of the same name.
+    ``fields`` pairs a field of the reply with the argument that it repeats, or with the whole
+    number that it then has; none: the fields of the same name.
     """
 
     place: Place

@@ -51,7 +51,8 @@ def command_expression(family: Family, command: Command, named: dict[Type, str])
         "ack": command.ack,
         "request_text": _text_request(command.request_text),
         "role": command.role,
-        "read_by": command.read_by and Call("ReadBack", command.read_by.query, command.read_by.fields),
+        "read_by": command.read_by
+        and Call("ReadBack", command.read_by.query, command.read_by.fields),
     }
     needed = ("reply", "text", "notes", "ack", "request_text", "role", "read_by")
     return Call("Command", **{k: v for k, v in keywords.items() if k not in needed or v})
