@@ -56,6 +56,7 @@ _WIRE = {
     "selector-changed": "what decides the type was {old}, is {new}: numbers are misread",
     "sign-rule-changed": "raw words stood for {old}, stand for {new}: some are misread",
     "text-changed": "the text was `{old}`, is `{new}`: it is misread",
+    "tries-changed": "a conformance run sent {old}, sends {new}",
     "type-layout-changed": "was {old} on the line, is {new}: the frame is misread or refused",
     "width-changed": "bytes were {old}, are {new}: the frame is refused",
 }

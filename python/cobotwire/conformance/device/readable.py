@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cobotwire.conformance.device.distinct import choices_of, spread
-from cobotwire.conformance.device.values import numbers_of, requests
+from cobotwire.conformance.device.values import Limits, numbers_of, requests
 from cobotwire.table import Command, Field, Layout, Number, Table
 
 Values = dict[str, Any]
@@ -37,7 +37,16 @@ class Readable:
         fields = {field.name: field for field in self.form.fields}
         layout = Layout(tuple(fields[field.name] for field in self.asked.fields))
         names = [field.name for field in layout.fields]
-        return [dict(zip(names, values)) for values in requests(layout, {})]
+        return [dict(zip(names, values)) for values in requests(layout, {}, self.limits)]
+
+    @property
+    def limits(self) -> Limits:
+        """What may be sent, by argument, where not every legal number is harmless."""
+        names = {field.name for field in self.form.fields}
+        for tried in self.command.tries:
+            if {name for name, _ in tried} <= names:
+                return dict(tried)
+        return {}
 
     def question(self, key: Values) -> list[Any]:
         """The arguments of the query for a key."""

@@ -66,6 +66,10 @@ class Case:
                 raise Hopeless
         return holds
 
+    def without(self, rule: Rule) -> None:
+        """Say that a rule has no meaning for this command."""
+        self._rules = [other for other in self._rules if other is not rule]
+
     def note(self, rule: Rule, text: str) -> None:
         """Say something beside a verdict that passes."""
         self._notes[rule] = text

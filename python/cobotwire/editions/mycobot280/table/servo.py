@@ -551,6 +551,7 @@ COMMANDS = (
         ),
         ack=True,
         read_by=ReadBack("get_servo_data", ()),
+        tries=((("register", (24,)), ("mode", (1,))), (("register", (21, 22, 23)),)),
     ),
     Command(
         id=0x53,
