@@ -87,6 +87,7 @@ def _command(
         request_text=build_text(reader, "request_text"),
         read_by=build_read_back(reader),
         tries=build_tries(reader),
+        agrees_with=tuple(reader.names("agrees_with")),
         notes=reader.texts("notes"),
         disputed=disputes(reader),
         changes=tuple(parts.changes.get(name, ())),

@@ -54,4 +54,16 @@ def tries_fit(edition: Edition) -> Iterator[Problem]:
                 yield Problem(command.place, "bad-tries", message)
 
 
-RULES = (read_back_fits, tries_fit)
+def agreement_fits(edition: Edition) -> Iterator[Problem]:
+    """Only queries agree, and with queries."""
+    queries = {command.name for command in edition.commands if command.safety == "query"}
+    for command in edition.commands:
+        for name in command.agrees_with:
+            if command.name not in queries or name not in queries:
+                wrong = command.name if command.name not in queries else name
+                hint = nearest(wrong, queries)
+                message = f"{command.name} agrees with {name}; {wrong} is no query here{hint}"
+                yield Problem(command.place, "bad-agreement", message)
+
+
+RULES = (read_back_fits, tries_fit, agreement_fits)

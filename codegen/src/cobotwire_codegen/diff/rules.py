@@ -61,6 +61,7 @@ _WIRE = {
     "width-changed": "bytes were {old}, are {new}: the frame is refused",
 }
 _API = {
+    "agreement-changed": "agreed at rest with {old}, agrees with {new}: runs compare others",
     "alias-removed": "the method {old} went; its message is {new} and stays",
     "argument-now-required": "could be left out, must be given now",
     "argument-order-changed": "the arguments were ({old}), are ({new})",

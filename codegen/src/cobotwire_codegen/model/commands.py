@@ -68,8 +68,9 @@ class Command:
     the arm, which tells whether a target is reached.
     ``requests`` and ``replies`` hold the forms of the messages, the full one first. With ``alias``
     the call is another one's message under a name of its own; ``shares_id`` names the calls that
-    have the same id with other data. ``tries`` are the numbers that a conformance run may send, where
-    not every legal one is harmless.
+    have the same id with other data. ``tries`` are the numbers that a conformance run may
+    send, where not every legal one is harmless; ``agrees_with`` are queries that tell the same at
+    rest.
     """
 
     place: Place
@@ -90,6 +91,7 @@ class Command:
     request_text: Text | None
     read_by: ReadBack | None
     tries: tuple[Tries, ...]
+    agrees_with: tuple[str, ...]
     notes: tuple[str, ...]
     disputed: tuple[Dispute, ...]
     changes: tuple[Change, ...]

@@ -1,4 +1,4 @@
-"""Which values are tried: boundaries, every member of short lists, and what tells mistakes apart."""
+"""Which values are tried: boundaries, and every member of a short list."""
 
 from __future__ import annotations
 
@@ -57,6 +57,18 @@ def requests(form: Layout, known: Known, limits: Limits | None = None) -> list[V
             for value in tried:
                 found[(*base[:at], value, *base[at + 1 :])] = None
     return list(found)
+
+
+def gentle(form: Layout) -> Values:
+    """Arguments that do the least: the number nearest to one step from zero."""
+    selected = next(selections(form))
+    values: list[Any] = []
+    for at, field in enumerate(form.fields):
+        numbers = numbers_of(field, selected)
+        row = [physical(number, min(max(1, number.minimum), number.maximum)) for number in numbers]
+        value = tuple(row) if field.many else (field.choices[0] if field.choices else row[0])
+        values.append(selected.get(at, value))
+    return tuple(values)
 
 
 def numbers_of(field: Field, selected: Mapping[int, int]) -> tuple[Number, ...]:

@@ -96,6 +96,14 @@ EXPLANATIONS = (
         "safety: motion",
     ),
     Explanation(
+        "bad-agreement",
+        "A command agrees with what is no query, or is none itself.",
+        "A conformance run asks both while the arm rests, and compares.",
+        "Name a query of the edition, or leave it out.",
+        "agrees_with: move\nsafety: query",
+        "safety: query",
+    ),
+    Explanation(
         "alias-differs",
         "A command says that it is another one's message, but differs from it.",
         "An alias is the same message byte for byte: id, types in order, safety.",

@@ -21,7 +21,7 @@ from cobotwire.table import Command, Table
 
 def is_setting(table: Table, command: Command) -> bool:
     """Whether a command sets what a query tells, and its own arguments set it back."""
-    return command.safety in ("setting", "persistent write") and bool(readable(table, command))
+    return command.safety not in ("query", "motion") and bool(readable(table, command))
 
 
 @dataclass(frozen=True, slots=True)
