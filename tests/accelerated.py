@@ -10,7 +10,7 @@ import struct
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
-from unittest.mock import patch
+from typing import Self
 
 from cobotwire.driver.streaming import Stream
 from cobotwire.editions.mycobot import Angles, MyCobot
@@ -18,20 +18,25 @@ from cobotwire.editions.mycobot import Angles, MyCobot
 ANSWER_SECONDS = 0.008
 # Every so manieth answer never comes, comes 30 ms late, comes after its deadline of 500 ms.
 LOST, SLOW, LATE = 5_000, 7_001, 11_003
-CLOCKED = ("line", "streaming", "watching")
 
 
 class Arm:
     """The line, the arm at its end, and the clock: reading is what takes time."""
 
     url = "memory"
+    real = False
 
     def __init__(self) -> None:
         self.now = 1000.0
         self.asked = 0
         self._coming: deque[tuple[float, bytes]] = deque()
 
-    def monotonic(self) -> float:
+    @property
+    def clock(self) -> Self:
+        """By which the driver goes."""
+        return self
+
+    def __call__(self) -> float:
         """The time."""
         return self.now
 
@@ -76,15 +81,8 @@ def number_in(angles: Angles) -> int:
 def accelerated(rate: float) -> Iterator[tuple[Arm, Stream]]:
     """A stream of get_angles over such a line, by its clock."""
     arm = Arm()
-    patches = [patch(f"cobotwire.driver.{module}.time", arm) for module in CLOCKED]
-    for one in patches:
-        one.start()
-    try:
-        with MyCobot(arm) as client, client.stream("get_angles", rate=rate) as stream:
-            yield arm, stream
-    finally:
-        for one in patches:
-            one.stop()
+    with MyCobot(arm) as client, client.stream("get_angles", rate=rate) as stream:
+        yield arm, stream
 
 
 class Checker:

@@ -11,10 +11,11 @@ from cobotwire import codec as codecs
 from cobotwire.driver.aio_line import AsyncLine
 from cobotwire.driver.opening import check_port, opened, seconds, settings
 from cobotwire.driver.watching import Watcher, Watchers
-from cobotwire.errors import LinkError
+from cobotwire.errors import LinkError, UsageError
 from cobotwire.session import Conversation, Question, Request, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
+from cobotwire.transport.timing import times_of
 
 if TYPE_CHECKING:
     from cobotwire.driver.aio_streaming import AsyncStream
@@ -49,6 +50,9 @@ class AsyncDriver:
             UsageError: an argument is not allowed.
         """
         check_port(port)
+        if not times_of(port).real:
+            allowed = "a link in real time; an event loop knows no other"
+            raise UsageError("port", port, allowed)
         self._settings = settings(self.table, timeout, retry, codec, limits)
         self.codec = self._settings.codec.name
         self._port = port

@@ -13,6 +13,7 @@ from cobotwire.driver.watching import Watcher, Watchers
 from cobotwire.session import Conversation, Question, Request, RetryPolicy
 from cobotwire.table import Table
 from cobotwire.transport import Transport
+from cobotwire.transport.timing import times_of
 
 if TYPE_CHECKING:
     from cobotwire.driver.streaming import Stream
@@ -65,7 +66,8 @@ class Driver:
         self.codec = self._settings.codec.name
         self._conversation = Conversation(self._settings.codec)
         self._link = opened(port, self.table, baudrate)
-        self._watchers = Watchers(trace, self._link.url)
+        self._times = times_of(self._link)
+        self._watchers = Watchers(trace, self._link.url, self._times.now)
         self._line = SharedLine(self._link, self._conversation, self._watchers)
 
     def __enter__(self) -> Self:
@@ -139,7 +141,7 @@ class Driver:
             return self._line.ask(request, chosen.retry, chosen.timeout)
 
         asked = streamed(type(self), self.table, queries, self._conversation.prepare)
-        return Stream(ask, asked, rate)
+        return Stream(ask, asked, rate, self._times)
 
     def _tell(
         self,

@@ -20,6 +20,7 @@ from cobotwire.errors import LinkError
 from cobotwire.session import Conversation, Question, Request, RetryPolicy, Ticket
 from cobotwire.session.conversation import CLEAR_SECONDS
 from cobotwire.transport import Transport
+from cobotwire.transport.timing import times_of
 
 # The longest that the reading thread waits before it looks whether others have queued a question.
 SLICE_SECONDS = 0.02
@@ -32,6 +33,7 @@ class SharedLine:
 
     def __init__(self, link: Transport, conversation: Conversation, watchers: Watchers) -> None:
         self._link = link
+        self._now = times_of(link).now
         self._conversation = conversation
         self._watchers = watchers
         # Around every step of the conversation.
@@ -45,7 +47,7 @@ class SharedLine:
         """Send an order at once; wait for its acknowledgement if ``ack_within`` says how long."""
         with self._writing:
             with self._state:
-                now = time.monotonic()
+                now = self._now()
                 data, order = self._conversation.order(request, now, ack_within)
             self._link.write(data)
         self._watchers.sent(data)
@@ -60,21 +62,22 @@ class SharedLine:
     def ask(self, request: Request, policy: RetryPolicy, wait: float | None) -> Question:
         """Ask a question and wait for its reply; gives the question, which is answered."""
         with self._state:
-            question = self._conversation.ask(request, time.monotonic(), policy, wait)
+            question = self._conversation.ask(request, self._now(), policy, wait)
         # What lies there already is read first, without waiting.
         self._await(question, 0.0)
         return question
 
     def listen(self, seconds: float) -> None:
         """Read what comes unasked for so long; the watchers are told of it."""
-        until = time.monotonic() + seconds
-        while (left := until - time.monotonic()) > 0:
+        until = self._now() + seconds
+        while (left := until - self._now()) > 0:
             if self._leads():
                 try:
                     self._turn(min(left, SLICE_SECONDS))
                 finally:
                     self._resign()
             else:
+                # In real time, whatever the link's: it is another thread that is waited for.
                 time.sleep(min(left, LOOK_SECONDS))
 
     def _await(self, ticket: Ticket, longest: float) -> dict[str, Any]:
@@ -112,7 +115,7 @@ class SharedLine:
         conversation = self._conversation
         if longest:
             with self._state:
-                wait = conversation.wait(time.monotonic())
+                wait = conversation.wait(self._now())
             if wait is not None and wait < longest:
                 longest = wait
         try:
@@ -120,7 +123,7 @@ class SharedLine:
         except LinkError as error:
             self._break(error)
             raise
-        now = time.monotonic()
+        now = self._now()
         with self._state:
             # What has come is received before time passes, or it would count as late.
             events = conversation.receive(data, now) if data else []
@@ -135,7 +138,7 @@ class SharedLine:
     def _send_question(self, dry: bool) -> None:
         with self._writing:
             with self._state:
-                data = self._conversation.outgoing(time.monotonic(), dry)
+                data = self._conversation.outgoing(self._now(), dry)
             if not data:
                 return
             try:
@@ -149,7 +152,7 @@ class SharedLine:
     def _sweep(self, until: float) -> None:
         """Read what has come, so that no buffer runs over while only orders are given."""
         while data := self._link.read(0):
-            now = time.monotonic()
+            now = self._now()
             with self._state:
                 events = self._conversation.receive(data, now)
             self._watchers.heard(events, now)

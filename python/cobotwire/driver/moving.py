@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
@@ -106,7 +105,7 @@ class Moving(Driver):
             raise
 
     def _wait(self, target: Sequence[float], kind: int, timeout: float) -> None:
-        started = time.monotonic()
+        started = self._times.now()
         steps = until_reached(self.table, target, kind, timeout, started)
         step = next(steps)
         with suppress(StopIteration):
@@ -117,11 +116,11 @@ class Moving(Driver):
     def _go(self, step: Ask | Pause) -> Went:
         fields = None
         if isinstance(step, Pause):
-            time.sleep(max(0.0, step.until - time.monotonic()))
+            self._times.sleep(max(0.0, step.until - self._times.now()))
         else:
             with suppress(ReplyTimeout):
                 fields = self._ask(step.name, step.values, longest=step.longest)
-        return Went(time.monotonic(), fields)
+        return Went(self._times.now(), fields)
 
     def _stop(self) -> None:
         # What interrupts is told; that the arm could not be told, too, would hide it.

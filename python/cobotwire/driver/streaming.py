@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from types import TracebackType
 from typing import Self
@@ -12,6 +11,7 @@ from cobotwire.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.session import Question, Request
 from cobotwire.session.sample import Reading, Sample, StreamReport
 from cobotwire.session.sampling import Sampler
+from cobotwire.transport.timing import Times
 
 # The longest sleep, after which it is looked whether another thread has closed the stream.
 LOOK_SECONDS = 0.05
@@ -26,9 +26,14 @@ class Stream:
     """
 
     def __init__(
-        self, ask: Callable[[Request], Question], queries: tuple[Streamed, ...], rate: float
+        self,
+        ask: Callable[[Request], Question],
+        queries: tuple[Streamed, ...],
+        rate: float,
+        times: Times,
     ) -> None:
         self._ask = ask
+        self._now, self._pause = times.now, times.sleep
         self._queries = queries
         self._sampler = Sampler(tuple(one.query for one in queries), rate)
         self._closed_at: float | None = None
@@ -36,13 +41,13 @@ class Stream:
     @property
     def report(self) -> StreamReport:
         """Samples, missed ones and the rate reached, until now or until it was closed."""
-        now = time.monotonic() if self._closed_at is None else self._closed_at
+        now = self._now() if self._closed_at is None else self._closed_at
         return self._sampler.report(now)
 
     def close(self) -> None:
         """End the loop and the report, from any thread. Closing twice is harmless."""
         if self._closed_at is None:
-            self._closed_at = time.monotonic()
+            self._closed_at = self._now()
 
     def __iter__(self) -> Self:
         return self
@@ -56,25 +61,25 @@ class Stream:
             UsageError: another thread waits for the next sample of this stream.
         """
         while self._closed_at is None:
-            at = self._sampler.plan(time.monotonic())
+            at = self._sampler.plan(self._now())
             try:
                 if not self._sleep(at):
                     break
                 readings = self._readings()
             except BaseException as error:
-                self._sampler.interrupted(time.monotonic())
+                self._sampler.interrupted(self._now())
                 if isinstance(error, LinkError):
                     self.close()
                 raise
             if readings is not None:
-                return self._sampler.answered(readings, time.monotonic())
-            self._sampler.unanswered(time.monotonic())
+                return self._sampler.answered(readings, self._now())
+            self._sampler.unanswered(self._now())
         raise StopIteration
 
     def _sleep(self, until: float) -> bool:
         """Wait; False if the stream was closed meanwhile."""
-        while (left := until - time.monotonic()) > 0 and self._closed_at is None:
-            time.sleep(min(left, LOOK_SECONDS))
+        while (left := until - self._now()) > 0 and self._closed_at is None:
+            self._pause(min(left, LOOK_SECONDS))
         return self._closed_at is None
 
     def _readings(self) -> list[Reading] | None:

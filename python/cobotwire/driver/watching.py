@@ -15,12 +15,15 @@ Watcher = Callable[[Traffic], None]
 class Watchers:
     """Whoever wants to see the traffic: recordings, logs, monitors. Costs nothing without any."""
 
-    def __init__(self, first: Watcher | None, url: str) -> None:
+    def __init__(
+        self, first: Watcher | None, url: str, now: Callable[[], float] = time.monotonic
+    ) -> None:
         # Here, not above: who only imports the package need not wait for logging.
         from cobotwire.driver.logbook import Logbook
 
         self._watchers: tuple[Watcher, ...] = () if first is None else (first,)
         self._log = Logbook(url)
+        self._now = now
 
     def add(self, watcher: Watcher) -> Callable[[], None]:
         """Tell this one too, until what is returned is called."""
@@ -35,7 +38,7 @@ class Watchers:
         """A frame, with the text that follows some, has been written."""
         self._log.sent(data)
         if self._watchers:
-            self._tell(Traffic(time.monotonic(), "sent", data))
+            self._tell(Traffic(self._now(), "sent", data))
 
     def heard(self, events: Sequence[SessionEvent], now: float) -> None:
         """The session has made this of what was read at ``now``."""

@@ -10,7 +10,10 @@ Query = str | tuple[str, *tuple[Any, ...]]
 
 
 class Reading(NamedTuple):
-    """The answer to one query, as its method gives it; times are those of ``time.monotonic()``."""
+    """The answer to one query, as its method gives it.
+
+    Times are those of ``time.monotonic()``, unless the link has a clock of its own.
+    """
 
     value: Any
     asked_at: float

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Literal
 
 from cobotwire.errors import LinkError
 from cobotwire.transport.interface import Link
+from cobotwire.transport.timing import times_of
 
-# Called with the direction, the bytes of one read or write, and its time.monotonic() second.
+# Called with the direction, the bytes of one read or write, and its second: that of
+# ``time.monotonic()``, or of the link's own clock.
 Tap = Callable[[Literal["sent", "heard"], bytes, float], None]
 
 
@@ -24,9 +25,15 @@ class TappedLink:
     def __init__(self, link: Link, tap: Tap) -> None:
         self._link, self._tap = link, tap
         self.url, self.kind = link.url, link.kind
+        self._now = times_of(link).now
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} around {self._link!r}>"
+
+    @property
+    def clock(self) -> object:
+        """As the link says; None: it goes by the system's."""
+        return getattr(self._link, "clock", None)
 
     @property
     def low_latency(self) -> bool:
@@ -68,4 +75,4 @@ class TappedLink:
 
     def _show(self, direction: Literal["sent", "heard"], data: bytes) -> None:
         if data:
-            self._tap(direction, data, time.monotonic())
+            self._tap(direction, data, self._now())

@@ -88,6 +88,7 @@ _BEHAVIOUR = {
     "range-moved": "the range was {old}, is {new}: values on either side are refused",
     "range-narrowed": "the range was {old}, is {new}: values between are refused now",
     "range-widened": "the range was {old}, is {new}: an old peer refuses values between",
+    "read-back-changed": "was read back by {old}, is by {new}: a conformance run asks otherwise",
     "role-changed": "the role was {old}, is {new}: waits and limits apply to other commands",
     "safety-changed": "was {old}, is {new}: retries and conformance runs treat it otherwise",
     "scale-changed": "a step was {old}, is {new}: the same bytes mean another value to an old peer",

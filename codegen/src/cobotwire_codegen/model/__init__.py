@@ -3,7 +3,14 @@
 Everything knows its place, so that a rule that fails can say where.
 """
 
-from cobotwire_codegen.model.commands import Command, Family, Field, Form, Text
+from cobotwire_codegen.model.commands import (
+    Command,
+    Family,
+    Field,
+    Form,
+    ReadBack,
+    Text,
+)
 from cobotwire_codegen.model.edition import Edition, Erratum, Frame, Vector
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Type, Value, Wire
@@ -42,6 +49,7 @@ __all__ = [
     "Lines",
     "Member",
     "Quantity",
+    "ReadBack",
     "Text",
     "Type",
     "Value",

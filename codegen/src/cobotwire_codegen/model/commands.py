@@ -46,6 +46,19 @@ class Text:
 
 
 @dataclass(frozen=True, slots=True)
+class ReadBack:
+    """How what a command has set is read: the query, and what its reply then says.
+
+    ``fields`` pairs a field of the reply with the argument that it repeats, or with the whole
+    number that it then has; none: the fields of the same name.
+    """
+
+    place: Place
+    query: str
+    fields: tuple[tuple[str, str | int], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Command:
     """One call.
 
@@ -72,6 +85,7 @@ class Command:
     shares_id: tuple[str, ...]
     text: Text | None
     request_text: Text | None
+    read_by: ReadBack | None
     notes: tuple[str, ...]
     disputed: tuple[Dispute, ...]
     changes: tuple[Change, ...]

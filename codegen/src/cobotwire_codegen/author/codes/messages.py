@@ -80,6 +80,14 @@ EXPLANATIONS = (
         "id: 0x23\ntitle: Set a pin",
     ),
     Explanation(
+        "bad-read-back",
+        "A command says which query reads back what it sets, but that query does not tell it.",
+        "A conformance run sets, asks that query and compares; it needs the fields of both.",
+        "Name a query of the edition, and the fields that differ: `{QUERY: {reply's: request's}}`.",
+        "id: 0x23\nread_by: get_angel\ntitle: Set a pin",
+        "id: 0x23\ntitle: Set a pin",
+    ),
+    Explanation(
         "alias-differs",
         "A command says that it is another one's message, but differs from it.",
         "An alias is the same message byte for byte: id, types in order, safety.",
