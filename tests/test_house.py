@@ -48,6 +48,7 @@ ONE_IMPORTER = {
     "rich": ["cli/"],
     "numpy": ["codec/columns.py"],
     "pyarrow": ["codec/arrow.py"],
+    "ruamel": ["sim/faults/nodes.py"],
 }
 
 
