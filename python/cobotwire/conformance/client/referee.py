@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -31,11 +31,7 @@ class _Tally:
 
 
 class Referee:
-    """A peer (:mod:`cobotwire.sim.peer`) that answers as an arm, and holds requests to the rules.
-
-    ``over``, if given, is called when the client has been silent for ``idle`` seconds after its
-    last byte.
-    """
+    """A peer (:mod:`cobotwire.sim.peer`) that answers as an arm and holds requests to the rules."""
 
     def __init__(
         self,
@@ -46,8 +42,7 @@ class Referee:
         script: Sequence[Told] | None = None,
         acks: bool = True,
         patience: float = 0.03,
-        idle: float | None = None,
-        over: Callable[[], None] | None = None,
+        places: Mapping[str, str] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Switch the arm on and wait for requests.
@@ -59,8 +54,7 @@ class Referee:
             script: what the client was told to send, if that is known.
             acks: whether orders are acknowledged, where the edition says that they may be.
             patience: seconds within which a reply comes or never.
-            idle: seconds of silence after which ``over`` is called.
-            over: told once, when the silence has lasted.
+            places: where the spec says each command, for the report.
             clock: gives the time in seconds.
 
         Raises:
@@ -74,7 +68,7 @@ class Referee:
         self._past = Past(codec, patience)
         self._manners = manners or Manners(DELAY_SECONDS)
         self._script = None if script is None else Script(codec, script)
-        self._idle, self._over = idle, over
+        self._places = places or {}
         self._last_byte: float | None = None
         self._last_request: Heard | None = None
         self._tallies: dict[tuple[str, str], _Tally] = {}
@@ -83,14 +77,17 @@ class Referee:
         self.report = Report("client", table.edition, subject, began)
 
     @property
+    def silence(self) -> float | None:
+        """Seconds since the client's last byte; None: it has sent none."""
+        return None if self._last_byte is None else self._now() - self._last_byte
+
+    @property
     def wait(self) -> float | None:
         """In how many seconds :meth:`flush` must be called if nothing is heard; None: never."""
         now = self._now()
         waits = [] if self._arm.wait is None else [self._arm.wait]
         if self._manners.due is not None:
             waits.append(max(0.0, self._manners.due - now))
-        if self._idle is not None and self._last_byte is not None:
-            waits.append(max(0.0, self._last_byte + self._idle - now))
         return min(waits) if waits else None
 
     def receive(self, data: bytes) -> bytes:
@@ -105,10 +102,6 @@ class Referee:
         last = self._last_byte
         if self._arm.wait is not None and last is not None and now >= last + self._arm.wait:
             self._arm.flush()
-        if self._idle is not None and last is not None and now >= last + self._idle:
-            self._last_byte = None
-            if self._over is not None:
-                self._over()
         return self._manners.give(now)
 
     def finish(self) -> Report:
@@ -169,7 +162,8 @@ class Referee:
         results = []
         for (rule, command), tally in self._tallies.items():
             what, source = known[rule]
-            results.append(_result(rule, command, tally, what, source))
+            place = self._places.get(command, "")
+            results.append(_result(rule, command, tally, what, place or source))
         told = self._script is not None
         for rule, what in scripts.RULES.items():
             if not any(broken == rule for broken, _ in self._tallies):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
@@ -71,9 +71,18 @@ class Run:
         *,
         expected: Sequence[Expectation] = (),
         repeat: int = 1,
+        places: Mapping[str, str] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Greet the implementation.
+
+        Args:
+            table: the edition that it must keep to.
+            implementation: who is asked.
+            expected: failures that are known.
+            repeat: how often each trial is asked; answers that differ are unstable.
+            places: where the spec says each command, for the report.
+            clock: gives the time in seconds, for the evidence.
 
         Raises:
             UsageError, NoAnswer: as :func:`greet`.
@@ -82,6 +91,7 @@ class Run:
         self._implementation = implementation
         self._expected = list(expected)
         self._repeat = repeat
+        self._places = places or {}
         self._clock = clock
         self._began = clock()
         self._crashes = 0
@@ -163,7 +173,8 @@ class Run:
 
     def _results(self) -> list[Result]:
         results = [
-            _result(rule, command, tally) for (rule, command), tally in self._tallies.items()
+            _result(rule, command, tally, self._places.get(command, SOURCE))
+            for (rule, command), tally in self._tallies.items()
         ]
         for rule, ability in ABILITIES.items():
             if ability not in self.greeting.can:
@@ -172,18 +183,18 @@ class Run:
         return results + [_unexpected(known) for known in self._expected if _wrong(known)]
 
 
-def _result(rule: str, command: str, tally: _Tally) -> Result:
+def _result(rule: str, command: str, tally: _Tally, source: str) -> Result:
     if tally.complaints:
         trial, complaint, evidence = tally.complaints[0]
         failed = f"{len(tally.complaints)} of {tally.asked} failed; {trial.name}: {complaint}"
-        return Result(rule, command, Verdict.FAIL, failed, evidence, SOURCE)
+        return Result(rule, command, Verdict.FAIL, failed, evidence, source)
     if tally.unstable:
-        return Result(rule, command, Verdict.UNSTABLE, tally.unstable, (), SOURCE)
+        return Result(rule, command, Verdict.UNSTABLE, tally.unstable, (), source)
     if tally.excused or (tally.refused and not tally.asked):
         why = tally.excused or tally.refused
-        return Result(rule, command, Verdict.NOT_SUPPORTED, why, (), SOURCE)
+        return Result(rule, command, Verdict.NOT_SUPPORTED, why, (), source)
     kept = f"{tally.asked} trials: {RULES[rule]}"
-    return Result(rule, command, Verdict.PASS, kept, (), SOURCE)
+    return Result(rule, command, Verdict.PASS, kept, (), source)
 
 
 def _wrong(known: Expectation) -> bool:
