@@ -70,7 +70,6 @@ class Referee:
         self._script = None if script is None else Script(codec, script)
         self._places = places or {}
         self._last_byte: float | None = None
-        self._last_request: Heard | None = None
         self._tallies: dict[tuple[str, str], _Tally] = {}
         self.requests = 0
         began = datetime.now(UTC).isoformat(timespec="seconds")
@@ -128,7 +127,7 @@ class Referee:
             elif judgement is not None and name:
                 self._tally(rule.id, name).kept += 1
         if self._script is not None:
-            for finding in self._script.hear(heard, self._last_request):
+            for finding in self._script.hear(heard):
                 evidence = self._past.evidence(heard)
                 self._broken(finding.rule, finding.command, finding.reason, evidence)
         self._remember(heard)
@@ -138,7 +137,6 @@ class Referee:
         self._past.powered = self._arm.state.powered
         if heard.command is not None:
             self.requests += 1
-            self._last_request = heard
         self._manners.take(heard)
 
     def _end_text(self) -> None:

@@ -18,7 +18,7 @@ RULES: dict[str, str] = {
     "sent-rounded": "values are sent as the nearest step",
     "sent-value": "values are sent as they were told",
     "sent-form": "requests are sent in the form that was told",
-    "sent-once": "what was told once is sent once",
+    "sent-once": "an order that was told once is sent once",
     "sent-all": "all that was told is sent",
     "sent-nothing-else": "nothing is sent that was not told",
 }
@@ -55,15 +55,15 @@ class Script:
         self._frames = [codec.encode(t.command.name, "request", t.values) for t in told]
         self._at = 0
 
-    def hear(self, heard: Heard, last: Heard | None) -> Iterator[Finding]:
-        """Judge a frame; ``last`` is the request before it."""
+    def hear(self, heard: Heard) -> Iterator[Finding]:
+        """Judge a frame."""
         if not isinstance(heard.event, Asked | Malformed):
             return
         data = heard.data
         if self._at < len(self._frames) and data == self._frames[self._at]:
             self._at += 1
         elif self._at and data == self._frames[self._at - 1]:
-            yield from self._again(heard, last)
+            yield from self._again()
         elif self._at < len(self._frames) and self._same_id(data):
             told = self._told[self._at]
             rule, reason = differs(self._codec, told, self._frames[self._at], data)
@@ -76,10 +76,10 @@ class Script:
         at = self._codec.table.frame.overhead
         return data[at] == self._frames[self._at][at] and data not in self._frames[self._at :]
 
-    def _again(self, heard: Heard, last: Heard | None) -> Iterator[Finding]:
+    def _again(self) -> Iterator[Finding]:
+        """A query may be asked again: a reply that came may have been lost on the way."""
         told = self._told[self._at - 1]
-        unanswered = last is not None and last.answered_at is None
-        if told.command.safety != "query" or not unanswered:
+        if told.command.safety != "query":
             yield Finding("sent-once", told.command.name, f"{told.place}: it came once more")
 
     def _elsewhere(self, heard: Heard) -> Iterator[Finding]:
