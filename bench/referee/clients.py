@@ -13,7 +13,7 @@ from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 from cobotwire.errors import CobotwireError
 from referee.calls import SESSION
 
-# Opens what the url names, makes all calls, closes it; gives what calls raised, or gave for failure.
+# Opens what the url names, makes all calls, closes it; gives which calls failed, and how.
 Play = Callable[[str], list[str]]
 
 
