@@ -1,0 +1,107 @@
+"""What every trial works with: the line, the edition, what is known of the arm, and what to undo."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from cobotwire.codec.interface import Codec
+from cobotwire.conformance.device.asking import Asker, Waits
+from cobotwire.conformance.device.hearing import Hearing
+from cobotwire.conformance.device.leave import Leave
+from cobotwire.conformance.device.line import Line
+from cobotwire.conformance.device.values import Known, units
+from cobotwire.errors import UsageError
+from cobotwire.table import Command, Role, Table
+
+Undo = Callable[[], None]
+
+
+class Bench:
+    """The arm under test as the trials see it."""
+
+    def __init__(
+        self,
+        line: Line,
+        codec: Codec,
+        *,
+        leave: Leave,
+        places: Mapping[str, str],
+        waits: Waits,
+        retries: int = 0,
+    ) -> None:
+        self.line = line
+        self.table: Table = codec.table
+        self.leave = leave
+        self.places = places
+        self.waits = waits
+        self.asker = Asker(line, codec, waits)
+        self.retries = retries
+        # Reply times in seconds by command.
+        self.reply_seconds: dict[str, list[float]] = {}
+        # Bytes of noise heard, by its kind.
+        self.noise: dict[str, int] = {}
+        # Commands that were asked again, and answered then.
+        self.retried: set[str] = set()
+        # Which commands were acknowledged, of those that may be.
+        self.acknowledged: dict[str, bool] = {}
+        self.undo: dict[str, Undo] = {}
+
+    def command(self, role: Role) -> Command | None:
+        """The first command in a role; None where the edition has none."""
+        return next((c for c in self.table.commands if c.role == role), None)
+
+    def ask(
+        self,
+        command: Command,
+        values: Sequence[Any] = (),
+        text: Mapping[str, str] | None = None,
+    ) -> Hearing:
+        """Send a request and hear what comes; a query is asked again as often as is allowed."""
+        request = self.asker.request(command, values, text)
+        hearing = self.note(self.asker.ask(request))
+        tries = self.retries if command.safety == "query" else 0
+        while hearing.good is None and not hearing.replies and tries:
+            tries -= 1
+            hearing = self.note(self.asker.ask(request))
+            if hearing.good is not None:
+                self.retried.add(command.name)
+        return hearing
+
+    def note(self, hearing: Hearing) -> Hearing:
+        """Count what a hearing brought."""
+        for finding in hearing.noise:
+            self.noise[finding.kind] = self.noise.get(finding.kind, 0) + len(finding.data)
+        command = hearing.request.command
+        if command.answers and hearing.good is not None:
+            self.reply_seconds.setdefault(command.name, []).append(hearing.good.seconds)
+        return hearing
+
+    def read(self, command: Command, values: Sequence[Any] = ()) -> dict[str, Any] | None:
+        """The fields of a query's legal answer; None where none came."""
+        good = self.ask(command, values).good
+        return None if good is None else good.fields
+
+    def known(self) -> Known:
+        """Where the arm is, by the units of the rows: what it surely can calculate with."""
+        found: dict[tuple[str, ...], tuple[float, ...]] = {}
+        for role in ("joints", "coordinates"):
+            command = self.command(role)
+            if command is None:
+                continue
+            fields = self.read(command)
+            field = command.reply[0].fields[0]
+            if fields is not None:
+                found[units(field.cases[0].numbers)] = fields[field.name]
+        return found
+
+    def undo_all(self) -> list[str]:
+        """Set everything back, last first; gives what went wrong, in words."""
+        problems = []
+        for name, undo in reversed(list(self.undo.items())):
+            try:
+                undo()
+            except UsageError as error:
+                problems.append(f"{name}: {error}")
+        self.undo.clear()
+        return problems
