@@ -34,7 +34,17 @@ MAY_IMPORT: dict[str, set[str]] = {
         *("errors", "table", "codec", "diagnose", "session", "transport", "driver"),
     },
     "conformance": {
-        *("errors", "table", "codec", "session", "transport", "diagnose", "sim"),
+        *(
+            "errors",
+            "table",
+            "codec",
+            "session",
+            "transport",
+            "diagnose",
+            "sim",
+            "editions",
+            "editions",
+        ),
     },
     "demo": {"codec", "driver", "editions", "sim"},
     "testing": {"errors", "table", "codec", "driver", "editions", "sim"},
@@ -53,6 +63,7 @@ ONE_IMPORTER = {
     "numpy": ["codec/columns.py"],
     "scipy": ["sim/kinematics/refine.py"],
     "pyarrow": ["codec/arrow.py"],
+    "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
     "ruamel": ["sim/faults/nodes.py"],
 }
 

@@ -41,7 +41,7 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
     }
     # So that type checkers believe the package's annotations where it is installed.
     files[PurePosixPath("py.typed")] = ""
-    for part in ("__init__", "types"):
+    for part in ("__init__", "places", "types"):
         template = jinja.get_template(f"python/table/{part}.py.j2")
         files[PurePosixPath(f"table/{part}.py")] = template.render(common)
     for family in edition.families:

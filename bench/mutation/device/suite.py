@@ -1,0 +1,50 @@
+"""The device tester's suite: an edition's mutants, and its right device on clean and noisy lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cobotwire.sim.arm import SimulatedArm
+from cobotwire.sim.clock import SteppedClock
+from cobotwire.table import Table
+from mutation.device import device_mutants
+from mutation.device.noise import NoisyLine
+from mutation.device.testing import complaints
+from mutation.oracle.reasons import reason
+from mutation.suite import Case, Outcome, Trial
+
+RUNS = 20
+
+
+class DeviceSuite:
+    """See :class:`mutation.suite.Suite`."""
+
+    def __init__(self, table: Table) -> None:
+        self._table = table
+        self._mutants = {mutant.id: mutant for mutant in device_mutants(table)}
+        self.name = f"device, {table.edition}"
+
+    def cases(self) -> Sequence[Case]:
+        """Every mutant of the edition's device."""
+        return [Case(mutant.id, mutant.kind) for mutant in self._mutants.values()]
+
+    def judge(self, case: Case) -> Outcome:
+        """Run the tester until it complains; where it does not, ask the oracle why."""
+        mutant = self._mutants[case.id]
+        clock = SteppedClock()
+        found = next(complaints(self._table, mutant.make(clock), clock), "")
+        return Outcome(case, found, "" if found else reason(self._table, mutant))
+
+    def trials(self) -> Sequence[str]:
+        """Each run on a line of its own: clean, and with light noise."""
+        return [f"{line} {number}" for line in ("clean", "noisy") for number in range(RUNS)]
+
+    def accept(self, trial: str) -> Trial:
+        """Run the tester on the right device, to its end."""
+        line, number = trial.split()
+        # Each run begins at another time, so that no two are the same.
+        clock = SteppedClock(int(number) * 1000.003)
+        arm = SimulatedArm(self._table, clock=clock)
+        peer = NoisyLine(arm, int(number)) if line == "noisy" else arm
+        found = list(complaints(self._table, peer, clock))
+        return Trial(trial, not found, "; ".join(found))

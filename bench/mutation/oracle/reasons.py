@@ -1,0 +1,78 @@
+"""Why nobody on the line could tell a mutant from the right device; empty if somebody could."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cobotwire.table import Field, Table
+from mutation.device.exchanges import reply_fields
+from mutation.mutant import Mutant
+from mutation.oracle.compare import conversations, only_legal, said_by, values_of
+from mutation.oracle.conversation import Conversation
+
+
+def reason(table: Table, mutant: Mutant) -> str:
+    """Plays long conversations with the mutant, and looks at what its edition says."""
+    had = list(conversations(table, mutant.command))
+    wrong = [said_by(mutant, conversation) for conversation in had]
+    requests = sum(len(conversation.steps) for conversation in had)
+    if all(conversation.heard == said for conversation, said in zip(had, wrong)):
+        return _alike(table, mutant, had, requests)
+    field = _field(table, mutant)
+    if field is None or field.echo or _told(table, mutant.command, field):
+        return ""
+    if not all(only_legal(table, said) for said in wrong):
+        return ""
+    return (
+        f"nobody knows the true value: every wrong one is legal, no command sets "
+        f"`{field.name}` and no other reply repeats it"
+    )
+
+
+def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation], requests: int) -> str:
+    """What shows that it is the same: the values that were there to be sent wrong."""
+    same = f"not one byte differs in {len(had)} conversations of {requests} writes in all"
+    field = _field(table, mutant)
+    if field is None:
+        return f"{same}: no reply shows what it does"
+    seen = {
+        value
+        for conversation in had
+        for told in values_of(table, mutant.command, field.name, conversation.heard)
+        for value in (told if isinstance(told, tuple) else (told,))
+    }
+    return f"{same}: `{field.name}` was {_range(seen)}, which is sent alike"
+
+
+def _range(values: set[int | float]) -> str:
+    if not values:
+        return "never told"
+    low, high = min(values), max(values)
+    return f"always {low:g}" if low == high else f"between {low:g} and {high:g}"
+
+
+def _field(table: Table, mutant: Mutant) -> Field | None:
+    """The reply's field that is wrong; None where something else is."""
+    if not mutant.command:
+        return None
+    command = table.command(mutant.command)
+    if not command.answers:
+        return None
+    return next((f for f in reply_fields(command) if f.name == mutant.field), None)
+
+
+def _told(table: Table, name: str, field: Field) -> bool:
+    """Whether anything but this reply says what the field's value is."""
+    command = table.command(name)
+    if any(c.read_by is not None and c.read_by.query == name for c in table.commands):
+        return True
+    return any(
+        other.name == field.name or (_units(field) and _units(other) == _units(field))
+        for query in table.commands
+        if query.answers and query.id != command.id
+        for other in reply_fields(query)
+    )
+
+
+def _units(field: Field) -> set[str]:
+    return {number.unit for case in field.cases for number in case.numbers} - {""}

@@ -1,0 +1,14 @@
+"""Every suite that `make conform` runs. A new tester's mutants join here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cobotwire.editions import mycobot, mycobot280
+from mutation.device.suite import DeviceSuite
+from mutation.suite import Suite
+
+SUITES: tuple[Callable[[], Suite], ...] = (
+    lambda: DeviceSuite(mycobot.TABLE),
+    lambda: DeviceSuite(mycobot280.TABLE),
+)
