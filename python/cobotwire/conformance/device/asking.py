@@ -156,6 +156,4 @@ def _first_line(text: bytes) -> tuple[bytes, bytes]:
     """A text to the end of its line, and what stands behind it."""
     ends = [at for at in (text.find(b"\n"), text.find(b"\xff"), text.find(b"\xfe")) if at >= 0]
     at = min(ends, default=len(text))
-    return (
-        (text[: at + 1], text[at + 1 :]) if text[at : at + 1] == b"\n" else (text[:at], text[at:])
-    )
+    return (text[: at + 1], text[at + 1 :]) if text[at : at + 1] == b"\n" else (text[:at], text[at:])

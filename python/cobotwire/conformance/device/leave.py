@@ -71,6 +71,4 @@ class Leave:
 
 def class_of(command: Command) -> frozenset[str]:
     """The leave that a command needs by its safety class."""
-    return (
-        frozenset() if command.safety == "query" else frozenset({command.safety.replace(" ", "-")})
-    )
+    return frozenset() if command.safety == "query" else frozenset({command.safety.replace(" ", "-")})

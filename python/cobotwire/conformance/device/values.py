@@ -65,13 +65,7 @@ def selections(form: Layout) -> Iterator[dict[int, int]]:
     """Every combination of values of the fields that decide others' types, by their place."""
     places = sorted({field.selector for field in form.fields} - {-1})
     lists = [
-        [
-            when
-            for field in form.fields
-            if field.selector == at
-            for c in field.cases
-            for when in c.when
-        ]
+        [when for field in form.fields if field.selector == at for c in field.cases for when in c.when]
         for at in places
     ]
     for chosen in product(*lists):
@@ -83,9 +77,7 @@ def _tried(field: Field, numbers: tuple[Number, ...], known: Known) -> list[Any]
         return [physical(numbers[0], whole) for whole in wholes(field, numbers[0])]
     # A row that the arm told is one that it can calculate with; any other may have no answer.
     told = known.get(units(numbers))
-    zeros = tuple(
-        physical(number, min(max(0, number.minimum), number.maximum)) for number in numbers
-    )
+    zeros = tuple(physical(number, min(max(0, number.minimum), number.maximum)) for number in numbers)
     return [zeros if told is None else tuple(map(_nearest, numbers, told))]
 
 

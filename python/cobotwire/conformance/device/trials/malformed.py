@@ -155,9 +155,7 @@ def together(case: Case, request: Request) -> None:
 def unknown(case: Case) -> None:
     """Ids that the edition lacks, without data and with some."""
     table = case.bench.table
-    carrier = next(
-        c for c in table.commands if is_framed_query(table, c) and not c.request[0].fields
-    )
+    carrier = next(c for c in table.commands if is_framed_query(table, c) and not c.request[0].fields)
     request = case.bench.asker.request(carrier, ())
     if table.frame.check != "footer":
         return
