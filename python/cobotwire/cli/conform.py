@@ -6,6 +6,8 @@ import click
 
 from cobotwire.cli.conform_client import client
 from cobotwire.cli.conform_codec import codec
+from cobotwire.cli.conform_device import device
+from cobotwire.cli.conform_rules import rules
 
 
 @click.group()
@@ -16,5 +18,5 @@ def conform() -> None:
     """
 
 
-for verb in (client, codec):
+for verb in (device, client, codec, rules):
     conform.add_command(verb)

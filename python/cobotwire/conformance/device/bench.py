@@ -1,4 +1,4 @@
-"""What every trial works with: the line, the edition, what is known of the arm, and what to undo."""
+"""What every trial works with: the line, the edition, what was heard, and what to set back."""
 
 from __future__ import annotations
 
@@ -11,10 +11,14 @@ from cobotwire.conformance.device.hearing import Hearing
 from cobotwire.conformance.device.leave import Leave
 from cobotwire.conformance.device.line import Line
 from cobotwire.conformance.device.values import Known, units
-from cobotwire.errors import UsageError
+from cobotwire.session.request import Request
 from cobotwire.table import Command, Role, Table
 
 Undo = Callable[[], None]
+
+
+# How often an unframed answer is asked for until two are the same.
+TEXT_TRIES = 5
 
 
 class Bench:
@@ -45,7 +49,9 @@ class Bench:
         self.retried: set[str] = set()
         # Which commands were acknowledged, of those that may be.
         self.acknowledged: dict[str, bool] = {}
+        # What to set back at the end of a trial, and what at the end of the run.
         self.undo: dict[str, Undo] = {}
+        self.undo_last: dict[str, Undo] = {}
 
     def command(self, role: Role) -> Command | None:
         """The first command in a role; None where the edition has none."""
@@ -59,6 +65,8 @@ class Bench:
     ) -> Hearing:
         """Send a request and hear what comes; a query is asked again as often as is allowed."""
         request = self.asker.request(command, values, text)
+        if command.text is not None:
+            return self._ask_text(request)
         hearing = self.note(self.asker.ask(request))
         tries = self.retries if command.safety == "query" else 0
         while hearing.good is None and not hearing.replies and tries:
@@ -67,6 +75,16 @@ class Bench:
             if hearing.good is not None:
                 self.retried.add(command.name)
         return hearing
+
+    def _ask_text(self, request: Request) -> Hearing:
+        """Text has no frame, and noise behind it reads as more of it: two answers must agree."""
+        said: list[Hearing] = []
+        while len(said) < TEXT_TRIES:
+            hearing = self.note(self.asker.ask(request))
+            if not hearing.replies or any(_same_text(hearing, other) for other in said):
+                return hearing
+            said.append(hearing)
+        return said[-1]
 
     def note(self, hearing: Hearing) -> Hearing:
         """Count what a hearing brought."""
@@ -95,13 +113,20 @@ class Bench:
                 found[units(field.cases[0].numbers)] = fields[field.name]
         return found
 
-    def undo_all(self) -> list[str]:
-        """Set everything back, last first; gives what went wrong, in words."""
-        problems = []
-        for name, undo in reversed(list(self.undo.items())):
-            try:
-                undo()
-            except UsageError as error:
-                problems.append(f"{name}: {error}")
-        self.undo.clear()
-        return problems
+    def switch(self, query: Command, value: int) -> Command | None:
+        """The command that makes a query's flag say ``value``."""
+        for command in self.table.commands:
+            back = command.read_by
+            if back and back.query == query.name and any(said == value for _, said in back.fields):
+                return command
+        return None
+
+    def set_back(self, undo: dict[str, Undo]) -> None:
+        """Set back what a trial, or the run, has changed: the last first."""
+        while undo:
+            _, step = undo.popitem()
+            step()
+
+
+def _same_text(one: Hearing, other: Hearing) -> bool:
+    return one.replies[0].fields == other.replies[0].fields
