@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 from cobotwire.conformance.client import Told
 from cobotwire.conformance.codec.trials.malformed import damages
@@ -60,7 +61,7 @@ def wrong_times(session: Session) -> Iterator[ClientMutant]:
 
 def wrong_turns(table: Table, sessions: list[Session]) -> Iterator[ClientMutant]:
     """Two requests in the wrong order, a motion behind a power-off, a like question too early."""
-    for first, second in zip(sessions, sessions[1:]):
+    for first, second in pairwise(sessions):
         if first.frame == second.frame:
             continue
         told = (first.told()[1], second.told()[1])

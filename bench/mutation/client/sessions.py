@@ -42,7 +42,7 @@ class Session(NamedTuple):
         spelled = self.command.request_text
         if spelled is None:
             return b""
-        return text.spell(spelled, {name: "word" for name in spelled.fields})  # type: ignore[arg-type]
+        return text.spell(spelled, {name: "word" for name in spelled.fields})
 
     @property
     def other(self) -> Command:

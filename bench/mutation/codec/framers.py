@@ -19,18 +19,17 @@ class _Broken(ReferenceFramer):
 
     flaw: ClassVar[str]
 
+    def _claimed(self, data: bytes, start: int) -> int:
+        """The bytes that a header claims."""
+        return self._frame.overhead + data[start + self._frame.length_at]
+
 
 class _NoFooter(_Broken):
     flaw = "does not look at the footer"
 
     def _judge(self, data: bytes, start: int) -> Verdict:
         verdict = super()._judge(data, start)
-        size = (
-            self._frame.overhead + data[start + self._frame.length_at : start + 256][0]
-            if (verdict == "bad-check")
-            else 0
-        )
-        return size or verdict
+        return self._claimed(data, start) if verdict == "bad-check" else verdict
 
 
 class _AnyId(_Broken):
@@ -92,12 +91,7 @@ class _SkipsClaimed(_Skipping):
     flaw = "skips what a header claimed when the footer is wrong"
 
     def _step(self, data: bytes, start: int, verdict: NoiseReason) -> int:
-        size = (
-            self._frame.overhead + data[start + self._frame.length_at]
-            if (verdict == "bad-check")
-            else 1
-        )
-        return size
+        return self._claimed(data, start) if verdict == "bad-check" else 1
 
 
 class _SkipsHeader(_Skipping):

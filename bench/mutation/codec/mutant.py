@@ -6,12 +6,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from cobotwire.conformance.codec import Implementation
-from mutation.tables import Place
 from cobotwire.table import Table
+from mutation.tables import Place
 
 
 class CodecMutant(NamedTuple):
-    """``make`` gives a new one. Where a table is at fault, ``place`` says where and ``table`` has it.
+    """``make`` gives a new one. ``place`` says where a table is at fault, ``table`` has the fault.
 
     ``command`` is where to look first; empty: anywhere.
     """

@@ -74,7 +74,7 @@ def _alike(table: Table, right: Codec, wrong: Codec, place: Place, wholes: Whole
     if _encoded(right, place, values) != _encoded(wrong, place, values):
         return False
     data = frame_of(table, table.command(place.command).id, wire_data(layout, wholes))
-    return _decoded(right, place, data) == _decoded(wrong, place, data)
+    return bool(_decoded(right, place, data) == _decoded(wrong, place, data))
 
 
 def _encoded(codec: Codec, place: Place, values: dict[str, Any]) -> bytes | None:
