@@ -57,6 +57,7 @@ class Program:
         self._process: subprocess.Popen[bytes] | None = None
         self._said = b""
         self._count = 0
+        self._greeting: Json | None = None
         # Its complaints go to a file: a pipe that nobody reads would stop it when it is full.
         self._complaints = tempfile.TemporaryFile()  # noqa: SIM115  (closed by __exit__)
 
@@ -79,6 +80,11 @@ class Program:
             LinkError: the command cannot be started at all.
             NoAnswer: as above.
         """
+        if question["do"] == "hello":
+            self._greeting = question
+        elif self._process is None and self._greeting is not None:
+            # A new process knows nothing: it is greeted as the first one was.
+            self.ask(self._greeting)
         process = self._process or self._start()
         self._count += 1
         line = json.dumps({"id": self._count, **question}, separators=(",", ":")) + "\n"
