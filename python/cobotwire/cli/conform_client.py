@@ -14,7 +14,7 @@ import click
 from cobotwire import editions
 from cobotwire.cli.arguments import parse
 from cobotwire.cli.conform_codec import places_of
-from cobotwire.cli.conforming import conclude, could_not_run
+from cobotwire.cli.conforming import ReportFiles, conclude, could_not_run, report_options
 from cobotwire.cli.serving import serve
 from cobotwire.conformance.client import MISDEEDS, Manners, Referee, Told
 from cobotwire.errors import UsageError
@@ -33,6 +33,7 @@ from cobotwire.table import Table
 @click.option("--no-acks", is_flag=True, help="Acknowledge no orders, as older firmware.")
 @click.option("--seconds", type=float, help="End after so long.")
 @click.option("--idle", type=float, help="End when the client was silent for so many seconds.")
+@report_options
 @click.pass_obj
 def client(
     edition: str,
@@ -45,6 +46,7 @@ def client(
     no_acks: bool,
     seconds: float | None,
     idle: float | None,
+    files: ReportFiles,
 ) -> None:
     """Serve an arm, and judge the client that drives it.
 
@@ -73,7 +75,7 @@ def client(
         )
         server = _server(listen, referee)
         serve(server, look=_Ending(server, referee, seconds, idle).look)
-    conclude(referee.finish())
+    conclude(referee.finish(), files)
 
 
 class _Ending:

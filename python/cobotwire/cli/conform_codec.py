@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from cobotwire import editions
-from cobotwire.cli.conforming import conclude, could_not_run
+from cobotwire.cli.conforming import ReportFiles, conclude, could_not_run, report_options
 from cobotwire.conformance.codec import Program, Run, derive, read_expectations
 from cobotwire.conformance.codec.expected import Expectation
 from cobotwire.errors import UsageError
@@ -22,6 +22,7 @@ from cobotwire.errors import UsageError
 @click.option("--only", metavar="PATTERN", help="Ask only trials with such a name.")
 @click.option("--timeout", type=float, default=10.0, help="Seconds for each answer [10].")
 @click.option("--repeat", type=int, default=1, help="Ask each trial so often [1].")
+@report_options
 @click.pass_obj
 def codec(
     edition: str,
@@ -30,6 +31,7 @@ def codec(
     only: str | None,
     timeout: float,
     repeat: int,
+    files: ReportFiles,
 ) -> None:
     """Ask COMMAND, over its standard input and output, what its codec makes of an edition.
 
@@ -51,7 +53,7 @@ def codec(
                 run.ask_all(trials)
             except KeyboardInterrupt:
                 click.echo("interrupted", err=True)
-    conclude(run.report)
+    conclude(run.report, files)
 
 
 def places_of(edition: str) -> dict[str, str]:
