@@ -6,6 +6,7 @@ import click
 
 from cobotwire.cli.conform_client import client
 from cobotwire.cli.conform_codec import codec
+from cobotwire.cli.conform_compare import compare
 from cobotwire.cli.conform_device import device
 from cobotwire.cli.conform_rules import rules
 
@@ -18,5 +19,5 @@ def conform() -> None:
     """
 
 
-for verb in (device, client, codec, rules):
+for verb in (device, client, codec, compare, rules):
     conform.add_command(verb)

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from cobotwire.conformance import Report, Verdict
-from cobotwire.conformance.json_report import to_json
+from cobotwire.conformance.reports import to_html, to_json, to_junit
 from cobotwire.errors import CobotwireError, UsageError
 
 CONFORMS, DOES_NOT, COULD_NOT_RUN = 0, 1, 2
@@ -34,21 +34,32 @@ class ReportFiles:
     """The files that a report is written to; ``-`` is standard output."""
 
     json: str | None = None
+    html: str | None = None
+    junit: str | None = None
 
 
 NO_FILES = ReportFiles()
+FORMS: dict[str, Callable[[Report], str]] = {"json": to_json, "html": to_html, "junit": to_junit}
 
 
 def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     """The options of every verb that reports; it gets them as ``files``."""
 
     @wraps(verb)
-    def with_files(*words: Any, json: str | None, **options: Any) -> Any:
-        return verb(*words, files=ReportFiles(json), **options)
+    def with_files(
+        *words: Any, json: str | None, html: str | None, junit: str | None, **options: Any
+    ) -> Any:
+        return verb(*words, files=ReportFiles(json, html, junit), **options)
 
-    return click.option("--json", metavar="FILE", help="Write the report as JSON; - prints it.")(
-        with_files
-    )
+    help = {
+        "--junit": "Write the report as JUnit XML, for build servers.",
+        "--html": "Write the report as one HTML page: a matrix, and the evidence.",
+        "--json": "Write the report as JSON, for programs and `conform compare`.",
+    }
+    found: Callable[..., Any] = with_files
+    for name, text in help.items():
+        found = click.option(name, metavar="FILE", help=f"{text} - prints it.")(found)
+    return found
 
 
 def write_reports(report: Report, files: ReportFiles) -> None:
@@ -57,19 +68,22 @@ def write_reports(report: Report, files: ReportFiles) -> None:
     Raises:
         UsageError: a file cannot be written.
     """
-    if files.json is not None:
+    for form, text_of in FORMS.items():
+        name = getattr(files, form)
+        if name is None:
+            continue
         try:
-            with click.open_file(files.json, "w", encoding="utf-8") as file:
-                file.write(to_json(report))
+            with click.open_file(name, "w", encoding="utf-8") as file:
+                file.write(text_of(report))
         except OSError as error:
-            raise UsageError("json", files.json, f"a file that can be written ({error})") from error
+            raise UsageError(form, name, f"a file that can be written ({error})") from error
 
 
 def conclude(report: Report, files: ReportFiles = NO_FILES) -> None:
     """Write the reports, print what was found, and end with the exit code."""
     with could_not_run():
         write_reports(report, files)
-    _summary(report, to_stderr=files.json == "-")
+    _summary(report, to_stderr="-" in (files.json, files.html, files.junit))
     if not report.finished:
         sys.exit(DOES_NOT if _bad(report) else COULD_NOT_RUN)
     sys.exit(CONFORMS if report.conforms else DOES_NOT)

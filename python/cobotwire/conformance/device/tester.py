@@ -81,6 +81,7 @@ class Tester:
         began = datetime.now(UTC).isoformat(timespec="seconds")
         self.report = Report("device", table.edition, line.link.url, began)
         self.report.reply_seconds = self.bench.reply_seconds
+        self.report.deadline_seconds = {c.name: c.deadline_ms / 1000 for c in table.commands}
 
     def steps(self) -> Iterator[Step]:
         """The trials in the order of a run."""

@@ -27,6 +27,7 @@ def to_json(report: Report) -> str:
         "conforms": report.conforms,
         "results": [_result(result) for result in report.results],
         "reply_seconds": report.reply_seconds,
+        "deadline_seconds": report.deadline_seconds,
     }
     return json.dumps(data, indent=1) + "\n"
 
@@ -59,6 +60,7 @@ def _report(data: dict[str, Any]) -> Report:
         finished=data["finished"],
         results=[_read_result(item) for item in data["results"]],
         reply_seconds=data["reply_seconds"],
+        deadline_seconds=data["deadline_seconds"],
     )
 
 
