@@ -163,9 +163,7 @@ def _command(family: str, command: Command) -> dict[str, Any]:
             "query": command.read_by.query,
             "fields": [list(pair) for pair in command.read_by.fields],
         },
-        "tries": [
-            [[name, list(numbers)] for name, numbers in tried] for tried in command.tries
-        ],
+        "tries": [[[name, list(numbers)] for name, numbers in tried] for tried in command.tries],
         "agrees_with": list(command.agrees_with),
     }
 

@@ -74,7 +74,7 @@ def client(
             places=places_of(edition),
         )
         server = _server(listen, referee)
-        serve(server, look=_Ending(server, referee, seconds, idle).look)
+        serve(server, looks=[_Ending(server, referee, seconds, idle).look])
     conclude(referee.finish(), files)
 
 

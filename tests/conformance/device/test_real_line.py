@@ -17,7 +17,7 @@ import vectors
 from cobotwire import editions
 from cobotwire.conformance import Verdict
 from cobotwire.conformance.device import Line, Tester
-from cobotwire.conformance.json_report import from_json, to_json
+from cobotwire.conformance.reports import from_json, to_json
 from cobotwire.sim import PtyServer, SimulatedArm
 from cobotwire.transport import open_link
 
