@@ -96,7 +96,8 @@ def test_the_pytest_plugin_makes_a_test_of_each_rule_and_command(tmp_path: Path)
         done = _pytest(tmp_path, server.url, "--collect-only", "-q")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "get_angles::reply-once" in done.stdout
-    assert int(re.findall(r"(\d+) tests collected", done.stdout)[0]) > 200
+    # pytest's own count is of what it found in files; these tests are in none.
+    assert done.stdout.count("::reply-") > 200
 
 
 def test_the_plugin_fails_where_the_device_does(tmp_path: Path) -> None:
