@@ -146,6 +146,9 @@ class Command:
     the first is the full one. No ``reply`` and no ``text`` means that nothing answers. With ``ack``
     the reply is an acknowledgement that may come, late or never, and is not waited for. ``role`` is
     what hand-written code knows the command by. ``read_by`` tells how its effect is read.
+    ``tries`` are the numbers by argument that a conformance run may send, for the first form that
+    has these arguments; none: every legal one. ``agrees_with`` names queries that tell the same
+    while the arm rests.
     """
 
     id: int
@@ -163,6 +166,8 @@ class Command:
     request_text: TextRequest | None = None
     role: Role = ""
     read_by: ReadBack | None = None
+    tries: tuple[tuple[tuple[str, tuple[int, ...]], ...], ...] = ()
+    agrees_with: tuple[str, ...] = ()
 
     @property
     def answers(self) -> bool:

@@ -1,9 +1,9 @@
-"""``read_by``: which query tells what a command has set."""
+"""``read_by``: which query tells what a command has set, and ``tries``, what may be set."""
 
 from __future__ import annotations
 
 from cobotwire_codegen.load import Mapping, Node, Scalar
-from cobotwire_codegen.model import ReadBack
+from cobotwire_codegen.model import ReadBack, Tries
 from cobotwire_codegen.reader import Reader
 
 _ALLOWED = "a query's name, or {QUERY: {reply field: request field or whole number}}"
@@ -23,6 +23,25 @@ def build_read_back(reader: Reader) -> ReadBack | None:
             return ReadBack(node.place, query, pairs)
     reader.problem("wrong-kind", f"read_by of {reader.what} must be {_ALLOWED}", node.place)
     return None
+
+
+def build_tries(reader: Reader) -> tuple[Tries, ...]:
+    """The numbers that a conformance run may send, form by form; none: every legal one."""
+    found = []
+    for node in reader.items("tries"):
+        inner = Reader(node, f"an entry of tries of {reader.what}", reader.problems)
+        names = node.entries if isinstance(node, Mapping) else {}
+        found.append(tuple((name, _numbers(inner, name)) for name in names))
+        inner.done()
+    return tuple(found)
+
+
+def _numbers(reader: Reader, name: str) -> tuple[int, ...]:
+    values = [item.value for item in reader.items(name) if isinstance(item, Scalar)]
+    numbers = tuple(value for value in values if type(value) is int)
+    if not numbers or len(numbers) != len(values):
+        reader.problem("wrong-kind", f"{name} of {reader.what} must be a list of whole numbers")
+    return numbers
 
 
 def _pairs(node: Node) -> tuple[tuple[str, str | int], ...]:

@@ -41,4 +41,29 @@ def _fields(command: Command, back: ReadBack, query: Command) -> Iterator[Proble
         yield Problem(back.place, "bad-read-back", message)
 
 
-RULES = (read_back_fits,)
+def tries_fit(edition: Edition) -> Iterator[Problem]:
+    """What may be tried are arguments of one form of the request."""
+    for command in edition.commands:
+        forms = [{field.name for field in form} for form in command.requests]
+        for tried in command.tries:
+            names = {name for name, _ in tried}
+            if not any(names <= form for form in forms):
+                message = (
+                    f"no request of {command.name} has the arguments {', '.join(sorted(names))}"
+                )
+                yield Problem(command.place, "bad-tries", message)
+
+
+def agreement_fits(edition: Edition) -> Iterator[Problem]:
+    """Only queries agree, and with queries."""
+    queries = {command.name for command in edition.commands if command.safety == "query"}
+    for command in edition.commands:
+        for name in command.agrees_with:
+            if command.name not in queries or name not in queries:
+                wrong = command.name if command.name not in queries else name
+                hint = nearest(wrong, queries)
+                message = f"{command.name} agrees with {name}; {wrong} is no query here{hint}"
+                yield Problem(command.place, "bad-agreement", message)
+
+
+RULES = (read_back_fits, tries_fit, agreement_fits)

@@ -56,10 +56,12 @@ _WIRE = {
     "selector-changed": "what decides the type was {old}, is {new}: numbers are misread",
     "sign-rule-changed": "raw words stood for {old}, stand for {new}: some are misread",
     "text-changed": "the text was `{old}`, is `{new}`: it is misread",
+    "tries-changed": "a conformance run sent {old}, sends {new}",
     "type-layout-changed": "was {old} on the line, is {new}: the frame is misread or refused",
     "width-changed": "bytes were {old}, are {new}: the frame is refused",
 }
 _API = {
+    "agreement-changed": "agreed at rest with {old}, agrees with {new}: runs compare others",
     "alias-removed": "the method {old} went; its message is {new} and stays",
     "argument-now-required": "could be left out, must be given now",
     "argument-order-changed": "the arguments were ({old}), are ({new})",

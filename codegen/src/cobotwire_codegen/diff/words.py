@@ -21,6 +21,7 @@ __all__ = [
     "sign",
     "span",
     "template",
+    "tries",
     "yes",
 ]
 
@@ -85,6 +86,14 @@ def read_back(command: Command) -> str:
         return "nothing"
     told = names(f"{name} = {said}" for name, said in back.fields)
     return f"{back.query} ({told})" if told else back.query
+
+
+def tries(command: Command) -> str:
+    """What a conformance run may send."""
+    entries = (
+        names(f"{name} {list(numbers)}" for name, numbers in entry) for entry in command.tries
+    )
+    return "; ".join(entries) or "any legal number"
 
 
 def template(text: Text | None) -> str:

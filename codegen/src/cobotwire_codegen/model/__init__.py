@@ -10,6 +10,7 @@ from cobotwire_codegen.model.commands import (
     Form,
     ReadBack,
     Text,
+    Tries,
 )
 from cobotwire_codegen.model.edition import Edition, Erratum, Frame, Vector
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
@@ -51,6 +52,7 @@ __all__ = [
     "Quantity",
     "ReadBack",
     "Text",
+    "Tries",
     "Type",
     "Value",
     "Vector",

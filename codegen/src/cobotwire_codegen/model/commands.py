@@ -31,6 +31,8 @@ class Field:
 
 
 Form = tuple[Field, ...]
+# Numbers to send by argument, for the first form that has these arguments.
+Tries = tuple[tuple[str, tuple[int, ...]], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,9 @@ class Command:
     the arm, which tells whether a target is reached.
     ``requests`` and ``replies`` hold the forms of the messages, the full one first. With ``alias``
     the call is another one's message under a name of its own; ``shares_id`` names the calls that
-    have the same id with other data.
+    have the same id with other data. ``tries`` are the numbers that a conformance run may
+    send, where not every legal one is harmless; ``agrees_with`` are queries that tell the same at
+    rest.
     """
 
     place: Place
@@ -86,6 +90,8 @@ class Command:
     text: Text | None
     request_text: Text | None
     read_by: ReadBack | None
+    tries: tuple[Tries, ...]
+    agrees_with: tuple[str, ...]
     notes: tuple[str, ...]
     disputed: tuple[Dispute, ...]
     changes: tuple[Change, ...]

@@ -53,8 +53,20 @@ def command_expression(family: Family, command: Command, named: dict[Type, str])
         "role": command.role,
         "read_by": command.read_by
         and Call("ReadBack", command.read_by.query, command.read_by.fields),
+        "tries": command.tries,
+        "agrees_with": command.agrees_with,
     }
-    needed = ("reply", "text", "notes", "ack", "request_text", "role", "read_by")
+    needed = (
+        "reply",
+        "text",
+        "notes",
+        "ack",
+        "request_text",
+        "role",
+        "read_by",
+        "tries",
+        "agrees_with",
+    )
     return Call("Command", **{k: v for k, v in keywords.items() if k not in needed or v})
 
 

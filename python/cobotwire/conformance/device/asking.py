@@ -100,7 +100,7 @@ class Asker:
     def _hear_text(self, hearing: Hearing, began: float) -> None:
         """Text has no frame: what no packet explains is it, until the line is silent."""
         form = hearing.request.command.text
-        assert form is not None  # noqa: S101  (the caller asked for it)
+        assert form is not None
         until = began + hearing.request.command.deadline_ms / 1000
         heard = b""
         first = 0.0
@@ -112,7 +112,7 @@ class Asker:
     def _read_text(self, hearing: Hearing, heard: bytes, seconds: float) -> None:
         """Find the text among what was heard; the rest is frames and noise like any other."""
         form = hearing.request.command.text
-        assert form is not None  # noqa: S101  (the caller asked for it)
+        assert form is not None
         start = heard.find(form.prefixes[0].encode("ascii"))
         if start < 0:
             self._sort(hearing, self._framer.feed(heard), self.line.now)
@@ -156,4 +156,6 @@ def _first_line(text: bytes) -> tuple[bytes, bytes]:
     """A text to the end of its line, and what stands behind it."""
     ends = [at for at in (text.find(b"\n"), text.find(b"\xff"), text.find(b"\xfe")) if at >= 0]
     at = min(ends, default=len(text))
-    return (text[: at + 1], text[at + 1 :]) if text[at : at + 1] == b"\n" else (text[:at], text[at:])
+    return (
+        (text[: at + 1], text[at + 1 :]) if text[at : at + 1] == b"\n" else (text[:at], text[at:])
+    )

@@ -1,4 +1,4 @@
-"""What every trial works with: the line, the edition, what is known of the arm, and what to undo."""
+"""What every trial works with: the line, the edition, what was heard, and what to set back."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from cobotwire.conformance.device.hearing import Hearing
 from cobotwire.conformance.device.leave import Leave
 from cobotwire.conformance.device.line import Line
 from cobotwire.conformance.device.values import Known, units
-from cobotwire.errors import UsageError
 from cobotwire.table import Command, Role, Table
 
 Undo = Callable[[], None]
@@ -45,7 +44,9 @@ class Bench:
         self.retried: set[str] = set()
         # Which commands were acknowledged, of those that may be.
         self.acknowledged: dict[str, bool] = {}
+        # What to set back at the end of a trial, and what at the end of the run.
         self.undo: dict[str, Undo] = {}
+        self.undo_last: dict[str, Undo] = {}
 
     def command(self, role: Role) -> Command | None:
         """The first command in a role; None where the edition has none."""
@@ -95,13 +96,16 @@ class Bench:
                 found[units(field.cases[0].numbers)] = fields[field.name]
         return found
 
-    def undo_all(self) -> list[str]:
-        """Set everything back, last first; gives what went wrong, in words."""
-        problems = []
-        for name, undo in reversed(list(self.undo.items())):
-            try:
-                undo()
-            except UsageError as error:
-                problems.append(f"{name}: {error}")
-        self.undo.clear()
-        return problems
+    def switch(self, query: Command, value: int) -> Command | None:
+        """The command that makes a query's flag say ``value``."""
+        for command in self.table.commands:
+            back = command.read_by
+            if back and back.query == query.name and any(said == value for _, said in back.fields):
+                return command
+        return None
+
+    def set_back(self, undo: dict[str, Undo]) -> None:
+        """Set back what a trial, or the run, has changed: the last first."""
+        while undo:
+            _, step = undo.popitem()
+            step()

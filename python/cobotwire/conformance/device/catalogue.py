@@ -42,20 +42,34 @@ class Rule:
 
 
 ANSWERED = Rule("query-answered", "A query is answered within its deadline.")
-FRAME = Rule("reply-frame", "A reply is a whole frame: header, LEN, id, footer as the edition says.", _framed)
+FRAME = Rule(
+    "reply-frame", "A reply is a whole frame: header, LEN, id, footer as the edition says.", _framed
+)
 FIELDS = Rule("reply-fields", "Each field of a reply holds a value that the edition allows.")
-ECHO = Rule("reply-echo", "A reply repeats the arguments that the edition says it repeats.", _echoes)
+ECHO = Rule(
+    "reply-echo", "A reply repeats the arguments that the edition says it repeats.", _echoes
+)
 ONCE = Rule("reply-once", "A query is answered once, and nothing stands behind the answer.")
 REPEATS = Rule("reply-repeats", "A query that is asked again while nothing changes says the same.")
 SILENT = Rule("order-silent", "A command without a reply is not answered.", _silent)
 ACKNOWLEDGED = Rule(
-    "order-acknowledged", "An acknowledgement comes once at most, is legal, and says 1: done.", _acknowledged
+    "order-acknowledged",
+    "An acknowledgement comes once at most, is legal, and says 1: done.",
+    _acknowledged,
 )
 ALIKE = Rule("acks-alike", "An arm that acknowledges commands acknowledges all that it may.")
-REPLIED = Rule("order-answered", "A command that has a reply is answered once, and legally.", _answers)
+REPLIED = Rule(
+    "order-answered", "A command that has a reply is answered once, and legally.", _answers
+)
 READ_BACK = Rule("read-back", "What was set is what is read.")
 NEIGHBOURS = Rule("neighbours-stay", "Setting one joint, pin or register leaves the others.")
 RESTORED = Rule("restored", "What was there before a test can be set again, and is.")
+AGREES = Rule("agrees", "While the arm rests, queries of the same thing tell the same.")
+EFFECT = Rule("effect", "What a command switches is what the query of it tells.")
+ARRIVES = Rule("arrives", "The arm goes where it was sent, and its other joints stay.")
+REACHED = Rule("reached", "The arm says that it is where it was sent, and nowhere else.")
+MOVING = Rule("moving", "The arm says that it moves while it does, and not when it stands.")
+STOPS = Rule("stops", "A stop ends the motion, and the arm stands.")
 WRONG_LENGTH = Rule("wrong-length", "A request with a wrong LEN is not answered.")
 WRONG_FOOTER = Rule("wrong-footer", "A request with a wrong footer is not answered.")
 CUT = Rule("cut-request", "A request that breaks off is given up when the line is silent.")

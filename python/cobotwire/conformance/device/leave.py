@@ -15,7 +15,7 @@ CLASSES: dict[str, str] = {
     "power": "switch the arm's power, hold and release joints",
     "motion": "move the arm; needs a speed limit and a workspace",
     "malformed": "send what is no legal request: wrong LEN, unknown ids, values out of range",
-    "irreversible": "send what cannot be set back: calibrations, deletions, writes without a reader",
+    "irreversible": "send what cannot be set back: calibrations, deletions, what no query reads",
 }
 EVERYTHING = frozenset(CLASSES)
 SPEEDS = range(1, 101)
@@ -71,4 +71,6 @@ class Leave:
 
 def class_of(command: Command) -> frozenset[str]:
     """The leave that a command needs by its safety class."""
-    return frozenset() if command.safety == "query" else frozenset({command.safety.replace(" ", "-")})
+    return (
+        frozenset() if command.safety == "query" else frozenset({command.safety.replace(" ", "-")})
+    )

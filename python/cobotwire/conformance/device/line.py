@@ -7,7 +7,6 @@ from cobotwire.sim.clock import Clock, RunningClock
 from cobotwire.transport.interface import Transport
 
 
-
 class Line:
     """A link and its clock. Everything that passes is kept as evidence."""
 

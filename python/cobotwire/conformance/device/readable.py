@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cobotwire.conformance.device.distinct import choices_of, spread
-from cobotwire.conformance.device.values import numbers_of, requests
+from cobotwire.conformance.device.values import Limits, gentle, numbers_of, requests
 from cobotwire.table import Command, Field, Layout, Number, Table
 
 Values = dict[str, Any]
@@ -37,7 +37,16 @@ class Readable:
         fields = {field.name: field for field in self.form.fields}
         layout = Layout(tuple(fields[field.name] for field in self.asked.fields))
         names = [field.name for field in layout.fields]
-        return [dict(zip(names, values)) for values in requests(layout, {})]
+        return [dict(zip(names, values)) for values in requests(layout, {}, self.limits)]
+
+    @property
+    def limits(self) -> Limits:
+        """What may be sent, by argument, where not every legal number is harmless."""
+        names = {field.name for field in self.form.fields}
+        for tried in self.command.tries:
+            if {name for name, _ in tried} <= names:
+                return dict(tried)
+        return {}
 
     def question(self, key: Values) -> list[Any]:
         """The arguments of the query for a key."""
@@ -54,7 +63,7 @@ class Readable:
         return [{**key, **values}[field.name] for field in self.form.fields], {}
 
     def tries(self, key: Values, old: Values) -> list[Values]:
-        """Values that tell mistakes apart: the ends, both signs, and such as differ in each byte."""
+        """Values that tell mistakes apart: the ends, both signs, and what differs in each byte."""
         names = [argument for _, argument in self.pairs]
         if self.command.request_text is not None:
             return [dict(zip(names, texts)) for texts in TEXTS]
@@ -72,14 +81,27 @@ class Readable:
             for variant in spread(rows, present)
         ]
 
-    def differences(self, wanted: Values, got: Values | None) -> list[str]:
-        """In words: each part that is not what it should be, with both values."""
+    def rest(self, speed: int) -> Values:
+        """The arguments that are neither key nor value: speeds as given, else what does least."""
+        told = {argument for _, argument in self.pairs}
+        mild = dict(zip((field.name for field in self.form.fields), gentle(self.form)))
+        speeds = {f.name: speed for f in self.form.fields if _is_speed(f) and not f.many}
+        return {name: value for name, value in {**mild, **speeds}.items() if name not in told}
+
+    def differences(
+        self, wanted: Values, got: Values | None, near: Mapping[str, float] | None = None
+    ) -> list[str]:
+        """In words: each part that is not what it should be, with both values.
+
+        ``near`` says by unit how far apart they may be.
+        """
         if got is None:
             return ["nothing was told"]
         found = []
         for _, name in self.pairs:
             for at, (want, have) in enumerate(zip(_row(wanted[name]), _row(got[name]))):
-                if want != have and not (_number(want) and abs(want - have) < EXACT):
+                most = (near or {}).get(self._unit(name, at), EXACT)
+                if want != have and not (_number(want) and abs(want - have) <= most):
                     found.append(f"{self._label(name, at)}: set {want}, read {have}")
         return found
 
@@ -90,6 +112,10 @@ class Readable:
         number = self._field(name).cases[0].numbers[at]
         part = f"{name}.{number.name}" if number.name else name
         return f"{part} ({number.unit})" if number.unit else part
+
+    def _unit(self, name: str, at: int) -> str:
+        text = self.command.request_text is not None
+        return "" if text else self._field(name).cases[0].numbers[at].unit
 
     def _field(self, name: str) -> Field:
         return next(field for field in self.form.fields if field.name == name)
@@ -131,7 +157,7 @@ def _question(query: Command, form: Layout) -> Layout | None:
 
 
 def _pairs(command: Command, form: Layout, query: Command) -> tuple[tuple[str, str], ...]:
-    assert command.read_by is not None  # noqa: S101  (the caller looked)
+    assert command.read_by is not None
     if command.read_by.fields:
         return tuple((name, str(said)) for name, said in command.read_by.fields)
     told = {field.name for form in query.reply for field in form.fields if not field.echo}
@@ -140,6 +166,10 @@ def _pairs(command: Command, form: Layout, query: Command) -> tuple[tuple[str, s
 
 def _row(value: Any) -> tuple[Any, ...]:
     return tuple(value) if isinstance(value, tuple | list) else (value,)
+
+
+def _is_speed(field: Field) -> bool:
+    return field.cases[0].numbers[0].unit == "percent"
 
 
 def _number(value: Any) -> bool:

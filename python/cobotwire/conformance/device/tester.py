@@ -17,7 +17,7 @@ from cobotwire.conformance.device.trial import TRIALS, Case, Hopeless, Trial, Un
 from cobotwire.conformance.report import Report, Result, Verdict
 from cobotwire.table import Command, Table
 
-assert trials  # noqa: S101  (importing them has registered them)
+assert trials
 
 Progress = Callable[["Step", int, int], None]
 
@@ -101,8 +101,15 @@ class Tester:
                 self.report.results += self.results(step)
             self.report.finished = True
         finally:
-            self.bench.undo_all()
+            self.bench.set_back(self.bench.undo_last)
         return self.report
+
+    def _halt(self) -> None:
+        """Stop the arm; where it is not at rest, it is not sent anywhere."""
+        self.bench.undo_last.clear()
+        stop = self.bench.command("stop")
+        if stop is not None and self.bench.leave.workspace:
+            self.bench.ask(stop)
 
     def results(self, step: Step) -> list[Result]:
         """Run one step as often as is asked for."""
@@ -120,8 +127,11 @@ class Tester:
             pass
         except Unsupported as reason:
             unsupported = str(reason)
+        except KeyboardInterrupt:
+            self._halt()
+            raise
         finally:
-            self.bench.undo_all()
+            self.bench.set_back(self.bench.undo)
         return [self._excused(result) for result in case.results(unsupported)]
 
     def _excused(self, result: Result) -> Result:

@@ -18,11 +18,11 @@ EVIDENCE = 12
 PATIENCE = 3
 
 
-class Hopeless(Exception):  # noqa: N818  (it ends a case, it is no error)
+class Hopeless(Exception):
     """The rest of a case would show nothing new."""
 
 
-class Unsupported(Exception):  # noqa: N818  (it ends a case, it is no error)
+class Unsupported(Exception):
     """The arm is not in a state, or not of a kind, in which this can be tried."""
 
 
@@ -47,7 +47,7 @@ class Case:
     @property
     def command(self) -> Command:
         """The command that is tried."""
-        assert self._command is not None  # noqa: S101  (only trials of the line have none)
+        assert self._command is not None
         return self._command
 
     def expect(self, rule: Rule, holds: bool, reason: str) -> bool:
@@ -65,6 +65,10 @@ class Case:
             if len(self._failed[rule]) >= PATIENCE:
                 raise Hopeless
         return holds
+
+    def without(self, rule: Rule) -> None:
+        """Say that a rule has no meaning for this command."""
+        self._rules = [other for other in self._rules if other is not rule]
 
     def note(self, rule: Rule, text: str) -> None:
         """Say something beside a verdict that passes."""
@@ -101,38 +105,35 @@ class Case:
 Run = Callable[[Case], None]
 
 
+Applies = Callable[[Table, Command], bool]
+
+
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """``applies`` picks the commands; without it the trial is of the line as a whole, once."""
+    """``applies`` picks the commands; without it the trial is of the line as a whole, once.
+
+    ``leave`` is what it needs beside the leave for the command's safety class.
+    """
 
     name: str
     rules: tuple[Rule, ...]
     run: Run
-    applies: Callable[[Table, Command], bool] | None
-    classes: frozenset[str]
-    by_class: bool
+    applies: Applies | None
+    leave: frozenset[str]
 
     def needs(self, command: Command | None) -> frozenset[str]:
         """The leave that it needs for a command."""
-        return self.classes | (class_of(command) if command and self.by_class else frozenset())
+        return self.leave | (class_of(command) if command else frozenset())
 
 
 TRIALS: list[Trial] = []
 
 
-def trial(
-    *rules: Rule,
-    of: Callable[[Table, Command], bool] | None,
-    leave: tuple[str, ...] = (),
-    by_class: bool = True,
-) -> Callable[[Run], Run]:
-    """Register a function as a trial that judges by ``rules``.
-
-    It needs the leave ``leave``, and with ``by_class`` that of the command's safety class.
-    """
+def trial(*rules: Rule, of: Applies | None, leave: tuple[str, ...] = ()) -> Callable[[Run], Run]:
+    """Register a function as a trial that judges by ``rules``; see :class:`Trial`."""
 
     def register(run: Run) -> Run:
-        TRIALS.append(Trial(run.__name__, rules, run, of, frozenset(leave), by_class))
+        TRIALS.append(Trial(run.__name__, rules, run, of, frozenset(leave)))
         return run
 
     return register

@@ -1,4 +1,4 @@
-"""Which values are tried: boundaries, every member of short lists, and what tells mistakes apart."""
+"""Which values are tried: boundaries, and every member of a short list."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from cobotwire.table import Field, Layout, Number
 Values = tuple[Any, ...]
 # What stands for a row of numbers that the arm itself told, by the units of its parts.
 Known = Mapping[tuple[str, ...], tuple[float, ...]]
+
+# What may be sent, by argument, where not every legal number is harmless.
+Limits = Mapping[str, tuple[int, ...]]
 
 # A list or range of up to so many numbers is tried whole.
 SHORT = 12
@@ -37,12 +40,15 @@ def wholes(field: Field, number: Number) -> list[int]:
     return sorted({low, *middle, high})
 
 
-def requests(form: Layout, known: Known) -> list[Values]:
+def requests(form: Layout, known: Known, limits: Limits | None = None) -> list[Values]:
     """Arguments to ask with: each field in turn takes what is worth a try; the rest stay."""
     found: dict[Values, None] = {}
     for selected in selections(form):
         lists = [
-            [selected[at]] if at in selected else _tried(field, numbers_of(field, selected), known)
+            [selected[at]]
+            if at in selected
+            else list((limits or {}).get(field.name, ()))
+            or _tried(field, numbers_of(field, selected), known)
             for at, field in enumerate(form.fields)
         ]
         base = [tried[0] for tried in lists]
@@ -51,6 +57,18 @@ def requests(form: Layout, known: Known) -> list[Values]:
             for value in tried:
                 found[(*base[:at], value, *base[at + 1 :])] = None
     return list(found)
+
+
+def gentle(form: Layout) -> Values:
+    """Arguments that do the least: the number nearest to one step from zero."""
+    selected = next(selections(form))
+    values: list[Any] = []
+    for at, field in enumerate(form.fields):
+        numbers = numbers_of(field, selected)
+        row = [physical(number, min(max(1, number.minimum), number.maximum)) for number in numbers]
+        value = tuple(row) if field.many else (field.choices[0] if field.choices else row[0])
+        values.append(selected.get(at, value))
+    return tuple(values)
 
 
 def numbers_of(field: Field, selected: Mapping[int, int]) -> tuple[Number, ...]:
@@ -65,7 +83,13 @@ def selections(form: Layout) -> Iterator[dict[int, int]]:
     """Every combination of values of the fields that decide others' types, by their place."""
     places = sorted({field.selector for field in form.fields} - {-1})
     lists = [
-        [when for field in form.fields if field.selector == at for c in field.cases for when in c.when]
+        [
+            when
+            for field in form.fields
+            if field.selector == at
+            for c in field.cases
+            for when in c.when
+        ]
         for at in places
     ]
     for chosen in product(*lists):
@@ -77,7 +101,9 @@ def _tried(field: Field, numbers: tuple[Number, ...], known: Known) -> list[Any]
         return [physical(numbers[0], whole) for whole in wholes(field, numbers[0])]
     # A row that the arm told is one that it can calculate with; any other may have no answer.
     told = known.get(units(numbers))
-    zeros = tuple(physical(number, min(max(0, number.minimum), number.maximum)) for number in numbers)
+    zeros = tuple(
+        physical(number, min(max(0, number.minimum), number.maximum)) for number in numbers
+    )
     return [zeros if told is None else tuple(map(_nearest, numbers, told))]
 
 

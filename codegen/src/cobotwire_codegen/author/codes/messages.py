@@ -88,6 +88,22 @@ EXPLANATIONS = (
         "id: 0x23\ntitle: Set a pin",
     ),
     Explanation(
+        "bad-tries",
+        "A command lists numbers that a conformance run may send, for arguments that it lacks.",
+        "The list guards the device; for a misspelt argument it would guard nothing.",
+        "Name arguments that one form of the request has.",
+        "tries: [{parts: [1]}]\nsafety: motion",
+        "safety: motion",
+    ),
+    Explanation(
+        "bad-agreement",
+        "A command agrees with what is no query, or is none itself.",
+        "A conformance run asks both while the arm rests, and compares.",
+        "Name a query of the edition, or leave it out.",
+        "agrees_with: move\nsafety: query",
+        "safety: query",
+    ),
+    Explanation(
         "alias-differs",
         "A command says that it is another one's message, but differs from it.",
         "An alias is the same message byte for byte: id, types in order, safety.",

@@ -139,6 +139,11 @@ def command() -> Schema:
             ROLES, "What hand-written code knows it by: targets, what tells of them, stop."
         ),
         "read_by": read_by(),
+        "agrees_with": words("Queries that tell the same while the arm rests."),
+        "tries": listed(
+            named(listed(whole("A number."), "What may be sent.", 1), "Numbers by argument."),
+            "What a conformance run may send, where not every legal number is harmless.",
+        ),
         "shares_id": words("Calls with the same id and other data."),
         "deadline_ms": whole("How long an answer is awaited. Left out: as the link says.", 1),
         "notes": listed({"type": "string"}, "Sentences for the reference."),

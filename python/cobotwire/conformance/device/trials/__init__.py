@@ -1,5 +1,13 @@
 """The trials, by what they send; importing them registers them, in the order of a run."""
 
-from cobotwire.conformance.device.trials import queries, malformed, settings  # isort: skip
+from cobotwire.conformance.device.trials import (  # isort: skip  (the order of a run)
+    queries,
+    malformed,
+    settings,
+    effects,
+    motion,
+    agreement,
+    alike,
+)
 
-__all__ = ["malformed", "queries", "settings"]
+__all__ = ["agreement", "alike", "effects", "malformed", "motion", "queries", "settings"]

@@ -86,7 +86,17 @@ def _answered_once(case: Case, rule: Rule, hearing: Hearing, what: str) -> None:
     case.expect(rule, once, f"{what}: expected one legal reply; came {hearing.came}")
 
 
-@trial(OUT_OF_RANGE, RECOVERS, of=is_framed_query, leave=("malformed",))
+def can_be_forbidden(table: Table, command: Command) -> bool:
+    """Whether bytes can say arguments that the edition does not allow."""
+    fields = command.request[0].fields
+    return is_framed_query(table, command) and any(
+        _forbidden(field.choices, number.minimum, number.maximum, number.width)
+        for field in fields
+        for number in field.cases[0].numbers
+    )
+
+
+@trial(OUT_OF_RANGE, RECOVERS, of=can_be_forbidden, leave=("malformed",))
 def forbidden(case: Case) -> None:
     """Arguments that the edition does not allow."""
     request = sample(case)
@@ -155,7 +165,9 @@ def together(case: Case, request: Request) -> None:
 def unknown(case: Case) -> None:
     """Ids that the edition lacks, without data and with some."""
     table = case.bench.table
-    carrier = next(c for c in table.commands if is_framed_query(table, c) and not c.request[0].fields)
+    carrier = next(
+        c for c in table.commands if is_framed_query(table, c) and not c.request[0].fields
+    )
     request = case.bench.asker.request(carrier, ())
     if table.frame.check != "footer":
         return

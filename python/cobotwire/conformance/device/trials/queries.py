@@ -76,7 +76,9 @@ def _late(call: str, hearing: Hearing) -> str:
 def repeats(case: Case, first: Reply, again: Reply) -> None:
     """Two answers to the same question, one right after the other."""
     same = first.fields.keys() == again.fields.keys()
-    case.expect(REPEATS, same, f"expected the same form of reply; came {first.fields}, {again.fields}")
+    case.expect(
+        REPEATS, same, f"expected the same form of reply; came {first.fields}, {again.fields}"
+    )
     if first.message is None or again.message is None:
         case.expect(REPEATS, first.fields == again.fields, f"came {first.fields}, {again.fields}")
         return

@@ -21,7 +21,7 @@ from cobotwire.table import Command, Table
 
 def is_setting(table: Table, command: Command) -> bool:
     """Whether a command sets what a query tells, and its own arguments set it back."""
-    return command.safety in ("setting", "persistent write") and bool(readable(table, command))
+    return command.safety not in ("query", "motion") and bool(readable(table, command))
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +42,8 @@ def set_and_read(case: Case) -> None:
     """Back up, set several values for each joint, pin or register, read all, set back."""
     for setting in readable(case.bench.table, case.command):
         spots = [_spot(case, setting, key) for key in setting.keys]
+        if len(spots) == 1:
+            case.without(NEIGHBOURS)
         for spot in spots:
             case.bench.undo[str(spot)] = lambda spot=spot: _set(case, spot, spot.old)
         for spot in spots:

@@ -74,6 +74,7 @@ COMMANDS = (
         notes=(
             "The reply does not say which joint it is for; wait for it before asking for the next joint.",
         ),
+        agrees_with=("get_encoders",),
     ),
     Command(
         id=0x3C,
@@ -126,6 +127,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        agrees_with=("get_angles",),
     ),
     Command(
         id=0x4A,
@@ -550,5 +552,6 @@ COMMANDS = (
             ),
         ),
         notes=("A servo that gets power may take up its load at once; keep clear of the arm.",),
+        read_by=ReadBack("is_all_servo_enable", (("enabled", 1),)),
     ),
 )

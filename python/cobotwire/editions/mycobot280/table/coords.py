@@ -194,6 +194,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        agrees_with=("get_angles", "get_coords"),
     ),
     Command(
         id=0xF7,
@@ -218,5 +219,6 @@ COMMANDS = (
             ),
         ),
         notes=("This is where the end shall be, not where it is; get_coords reads that.",),
+        agrees_with=("get_coords",),
     ),
 )

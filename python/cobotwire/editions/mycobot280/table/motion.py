@@ -487,6 +487,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        agrees_with=("get_angles",),
     ),
     Command(
         id=0x22,
@@ -624,5 +625,6 @@ COMMANDS = (
             ),
         ),
         notes=("These are where the joints shall be, not where they are; get_angles reads that.",),
+        agrees_with=("get_angles",),
     ),
 )

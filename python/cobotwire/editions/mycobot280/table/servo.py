@@ -55,6 +55,7 @@ COMMANDS = (
         ),
         ack=True,
         read_by=ReadBack("get_encoder", ()),
+        tries=((("joint", (1, 2, 3, 4, 5, 6)),),),
     ),
     Command(
         id=0x3B,
@@ -91,6 +92,7 @@ COMMANDS = (
         notes=(
             "The reply does not say which joint it is for; wait for it before asking for the next joint.",
         ),
+        agrees_with=("get_encoders",),
     ),
     Command(
         id=0x3C,
@@ -157,6 +159,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        agrees_with=("get_angles",),
     ),
     Command(
         id=0x4A,
@@ -551,6 +554,7 @@ COMMANDS = (
         ),
         ack=True,
         read_by=ReadBack("get_servo_data", ()),
+        tries=((("register", (24,)), ("mode", (1,))), (("register", (21, 22, 23)),)),
     ),
     Command(
         id=0x53,
@@ -797,6 +801,7 @@ COMMANDS = (
         ),
         notes=("A servo that gets power may take up its load at once; keep clear of the arm.",),
         ack=True,
+        read_by=ReadBack("is_all_servo_enable", (("enabled", 1),)),
     ),
     Command(
         id=0x3E,
@@ -882,6 +887,7 @@ COMMANDS = (
         ),
         notes=("Servos that get power may take up the arm's load at once; keep clear of the arm.",),
         ack=True,
+        read_by=ReadBack("is_all_servo_enable", (("enabled", 1),)),
     ),
     Command(
         id=0xE1,
