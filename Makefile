@@ -81,7 +81,7 @@ clean: ## forget the environment and what was built
 
 # A release build of the Rust codec, installed in place together with what the command line needs.
 .venv/.native: .venv/.base $(RUST_SOURCES)
-	. $(BIN)/activate && maturin develop --release --quiet --extras cli
+	. $(BIN)/activate && maturin develop --release --quiet --extras cli,sim
 	touch $@
 
 .venv/.tools: .venv/.base codegen/pyproject.toml

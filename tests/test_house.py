@@ -33,7 +33,7 @@ MAY_IMPORT: dict[str, set[str]] = {
         *("errors", "table", "codec", "diagnose", "session", "transport", "driver"),
     },
     "conformance": {
-        *("errors", "table", "codec", "session", "transport", "diagnose", "sim"),
+        *("errors", "table", "codec", "session", "transport", "diagnose", "sim", "editions"),
     },
     "demo": {"codec", "driver", "editions", "sim"},
     "cli": {
@@ -48,6 +48,8 @@ ONE_IMPORTER = {
     "rich": ["cli/"],
     "numpy": ["codec/columns.py"],
     "pyarrow": ["codec/arrow.py"],
+    "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
+    "ruamel": ["sim/faults/nodes.py"],
 }
 
 

@@ -1,11 +1,12 @@
 """Everything that can go wrong, sorted by whose fault it is.
 
-One root, six branches, each also the built-in exception that a caller would expect. The
+One root, seven branches, each also the built-in exception that a caller would expect. The
 attributes are data; the text is made from them here and nowhere else.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 
@@ -127,6 +128,18 @@ class CaptureError(CobotwireError, ValueError):
         self.name = name
         self.offset = offset
         super().__init__(f"{name}: {detail} (at byte {offset})")
+
+
+class ScenarioError(CobotwireError, ValueError):
+    """A scenario file's fault: it cannot be used.
+
+    Attributes:
+        problems: all that is wrong, in the order of the file, each as ``file:line:column: what``.
+    """
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))
 
 
 def _short(value: Any, limit: int = 80) -> str:

@@ -26,6 +26,7 @@ Role = Literal[
     "joints",
     "coordinates",
     "powered",
+    "version",
 ]
 FieldKind = Literal["number", "flag", "enum"]
 Check = Literal["footer", "crc16-modbus", "sum"]

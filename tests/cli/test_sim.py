@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import fcntl
+import json
 import os
 import select
 import signal
+import socket
+import struct
 import subprocess
 import sys
+import termios
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -76,3 +82,118 @@ def test_it_ends_while_a_client_does_not_read(
         assert sim.wait(timeout=10) == 0
     finally:
         os.close(client)
+
+
+def _run(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *words], capture_output=True, text=True, timeout=30, check=False
+    )
+
+
+@pytest.mark.parametrize("sim", [["--tcp", ":0"]], indirect=True)
+def test_it_serves_tcp_and_says_which_client_said_what(sim: subprocess.Popen[str]) -> None:
+    assert sim.stdout is not None
+    assert sim.stderr is not None
+    url = sim.stdout.readline().strip()
+    assert url.startswith("socket://127.0.0.1:")
+    with MyCobot(url) as one:
+        assert one.is_power_on() is False
+        with MyCobot(url) as two:
+            assert two.is_power_on() is False
+    said = "heard   FE FE 02 12 FA   is_power_on()   answered FE FE 03 12 00 FA\n"
+    assert [sim.stdout.readline() for _ in range(2)] == [f"  1 {said}", f"  2 {said}"]
+    sim.send_signal(signal.SIGTERM)
+    assert sim.wait(timeout=10) == 0
+    assert sim.stderr.read() == ""
+
+
+@pytest.mark.parametrize("sim", [["--tcp", "0.0.0.0:0", "--json"]], indirect=True)
+def test_json_lines_and_a_warning_where_others_can_reach_it(sim: subprocess.Popen[str]) -> None:
+    assert sim.stdout is not None
+    assert sim.stderr is not None
+    serving = json.loads(sim.stdout.readline())
+    assert serving["event"] == "serving"
+    with MyCobot(serving["url"]) as arm:
+        arm.set_color(1, 2, 3)
+        assert arm.is_power_on() is False
+    heard = [json.loads(sim.stdout.readline()) for _ in range(2)]
+    assert heard[0]["command"] == "set_color"
+    assert heard[0]["fields"] == {"red": 1, "green": 2, "blue": 3}
+    assert "answer" not in heard[0]
+    assert heard[1] == {
+        "client": 1,
+        "event": "heard",
+        "data": "FE FE 02 12 FA",
+        "command": "is_power_on",
+        "fields": {},
+        "answer": "FE FE 03 12 00 FA",
+    }
+    assert "whoever can reach 0.0.0.0" in sim.stderr.readline()
+
+
+@pytest.mark.parametrize("sim", [["--speed", "100"]], indirect=True)
+def test_the_arms_time_can_run_faster(sim: subprocess.Popen[str]) -> None:
+    assert sim.stdout is not None
+    with MyCobot(sim.stdout.readline().strip()) as arm:
+        arm.power_on()
+        started = time.monotonic()
+        arm.move_angles([100, 0, 0, 0, 0, 0], 5)  # some 13 s
+        assert time.monotonic() - started < 5
+
+
+def test_a_terminal_gets_a_table_of_the_joints() -> None:
+    master, slave = os.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", 24, 120, 0, 0))
+    process = subprocess.Popen(COMMAND, stdout=slave, stderr=slave, text=True)
+    try:
+        shown = _until(master, b"Ctrl-C ends")
+        url = next(word for word in shown.decode().split() if word.startswith("/dev/"))
+        with MyCobot(url) as arm:
+            arm.power_on()
+            arm.move_angles([30, 0, 0, 0, 0, 0], 100)
+        shown += _until(master, b"j1=30.0")
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=10) == 0
+        shown += _until(master, b"\x1b[?25h")  # the cursor is shown again
+    finally:
+        process.kill()
+        process.wait()
+        os.close(master)
+        os.close(slave)
+    assert b"send_angles" in shown
+    assert b"joints, degrees" in shown
+    assert b"Traceback" not in shown
+
+
+def _until(descriptor: int, wanted: bytes) -> bytes:
+    shown = b""
+    deadline = time.monotonic() + 20
+    while wanted not in shown and time.monotonic() < deadline:
+        if select.select([descriptor], [], [], 0.1)[0]:
+            shown += os.read(descriptor, 65536)
+    assert wanted in shown, shown[-2000:]
+    return shown
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--tcp", "9000"], "HOST:PORT"),
+        (["--tcp", ":70000"], "70000"),
+        (["--pty", "--tcp", ":0"], "one of --pty and --tcp"),
+        (["--speed", "0"], "speed"),
+        (["--speed", "nan"], "speed"),
+    ],
+)
+def test_a_wrong_call_is_told(words: list[str], said: str) -> None:
+    result = _run(*words)
+    assert result.returncode == 2
+    assert said in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_a_taken_port_is_a_failure_of_the_link() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        result = _run("--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
+    assert result.returncode == 3
+    assert "cannot be listened on" in result.stderr

@@ -10,7 +10,7 @@ import time
 from cobotwire import MyCobot
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.sim import PtyServer, SimulatedArm
-from cobotwire.sim.pty import UNREAD_LIMIT
+from cobotwire.sim.line import UNREAD_LIMIT
 
 ASK = bytes.fromhex("FE FE 02 20 FA")
 
@@ -42,7 +42,8 @@ def test_a_client_that_never_reads_does_not_block_the_arm_or_its_end() -> None:
         while heard < 20_000 and time.monotonic() < deadline:
             time.sleep(0.02)
         assert heard == 20_000
-        assert sum(map(len, server._unread)) <= UNREAD_LIMIT + 4096 * 4
+        [channel] = server._channels.values()
+        assert channel.line.unread <= UNREAD_LIMIT + 4096 * 4
         started = time.monotonic()
         server.stop()
         server._thread.join(5.0)

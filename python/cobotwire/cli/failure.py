@@ -14,11 +14,13 @@ from cobotwire.errors import (
     LinkError,
     ProtocolError,
     ReplyTimeout,
+    ScenarioError,
     UsageError,
 )
 
 CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (UsageError, 2),
+    (ScenarioError, 2),
     (LinkError, 3),
     (ReplyTimeout, 4),
     (ProtocolError, 5),

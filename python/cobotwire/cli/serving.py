@@ -5,15 +5,21 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from collections.abc import Callable
 from types import FrameType
 
 import click
 
-from cobotwire.sim import PtyPort
+from cobotwire.sim.server import Server
 
 
-def serve(server: PtyPort) -> None:
-    """Print the port, and serve it until Ctrl-C or SIGTERM."""
+def serve(
+    server: Server, first_line: str | None = None, look: Callable[[], None] | None = None
+) -> None:
+    """Print the port, or the line that tells it, and serve it until Ctrl-C or SIGTERM.
+
+    ``look`` is called now and then, between two requests.
+    """
 
     def stop(number: int, frame: FrameType | None) -> None:
         # Should the end hang, on a full pipe behind our output for one, the next signal ends it.
@@ -24,11 +30,11 @@ def serve(server: PtyPort) -> None:
     signal.set_wakeup_fd(server.stopper)
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
-    say(server.url)
+    say(server.url if first_line is None else first_line)
     if sys.stdout.isatty():
         click.echo(f"Try: cobotwire call get_angles --port {server.url}   (Ctrl-C ends)", err=True)
     try:
-        server.serve()
+        server.serve(look)
     finally:
         signal.set_wakeup_fd(-1)
         server.close()

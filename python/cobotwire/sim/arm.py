@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -44,13 +45,39 @@ class SimulatedArm:
             acks: whether it acknowledges what the edition says it may.
         """
         self.table = table
-        self.state = ArmState(table.joints)
-        for joint, (lowest, highest) in enumerate(_joint_limits(table)):
-            self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
         self._clock = clock
         self._watch = watch
         self._acks = acks
-        self._session = DeviceSession(codecs.load(table, codec))
+        self._codec = codecs.load(table, codec)
+        # In a list that all lines of this arm share, so that each sees when it is replaced.
+        self._states = [ArmState(table.joints)]
+        self.restart()
+
+    @property
+    def state(self) -> ArmState:
+        """What the arm remembers, whoever told it."""
+        return self._states[0]
+
+    @state.setter
+    def state(self, state: ArmState) -> None:
+        self._states[0] = state
+
+    def another_line(self, watch: Watch | None = None) -> SimulatedArm:
+        """The same arm for one more client: its state is shared, its requests are its own.
+
+        ``watch`` is called with what this client says; left out: as for the first one.
+        """
+        line = copy.copy(self)
+        line._watch = watch or self._watch
+        line._session = DeviceSession(self._codec)
+        return line
+
+    def restart(self) -> None:
+        """Lose all state, as when power goes and comes back."""
+        self.state = ArmState(self.table.joints)
+        for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
+            self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
+        self._session = DeviceSession(self._codec)
 
     @property
     def pending(self) -> int:

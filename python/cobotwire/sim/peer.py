@@ -5,6 +5,10 @@ from __future__ import annotations
 from typing import Protocol
 
 
+class LineGone(Exception):
+    """Raised by a peer that takes its line away; whoever serves it closes the line."""
+
+
 class Peer(Protocol):
     """Something that answers; bytes in, bytes out. It reads its own clock."""
 

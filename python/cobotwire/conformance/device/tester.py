@@ -95,6 +95,7 @@ class Tester:
         """
         steps = list(self.steps())
         try:
+            self._ask_version()
             for index, step in enumerate(steps):
                 if progress is not None:
                     progress(step, index, len(steps))
@@ -110,6 +111,12 @@ class Tester:
         stop = self.bench.command("stop")
         if stop is not None and self.bench.leave.workspace:
             self.bench.ask(stop)
+
+    def _ask_version(self) -> None:
+        query = self.bench.command("version")
+        fields = None if query is None else self.bench.read(query)
+        if fields is not None:
+            self.report.firmware = str(next(iter(fields.values())))
 
     def results(self, step: Step) -> list[Result]:
         """Run one step as often as is asked for."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from cobotwire.conformance.device.catalogue import (
     ACKNOWLEDGED,
@@ -11,6 +12,7 @@ from cobotwire.conformance.device.catalogue import (
     REPLIED,
     RESTORED,
     SILENT,
+    Rule,
 )
 from cobotwire.conformance.device.readable import Readable, Values, readable
 from cobotwire.conformance.device.trial import Case, Unsupported, trial
@@ -45,7 +47,7 @@ def set_and_read(case: Case) -> None:
         if len(spots) == 1:
             case.without(NEIGHBOURS)
         for spot in spots:
-            case.bench.undo[str(spot)] = lambda spot=spot: _set(case, spot, spot.old)
+            case.bench.undo[str(spot)] = partial(_set, case, spot, spot.old)
         for spot in spots:
             _try(case, spot, spots)
             del case.bench.undo[str(spot)]
@@ -89,6 +91,6 @@ def _try(case: Case, spot: _Spot, spots: list[_Spot]) -> None:
     _expect(case, RESTORED, spot, spot.old)
 
 
-def _expect(case: Case, rule, spot: _Spot, wanted: Values, when: str = "") -> None:
+def _expect(case: Case, rule: Rule, spot: _Spot, wanted: Values, when: str = "") -> None:
     wrong = spot.setting.differences(wanted, _read(case, spot.setting, spot.key))
     case.expect(rule, not wrong, f"{when}{spot}, {'; '.join(wrong)}")

@@ -51,6 +51,7 @@ COMMANDS = (
                 ),
             ),
         ),
+        role="version",
     ),
     Command(
         id=0x07,
