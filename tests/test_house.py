@@ -33,7 +33,7 @@ MAY_IMPORT: dict[str, set[str]] = {
         *("errors", "table", "codec", "diagnose", "session", "transport", "driver"),
     },
     "conformance": {
-        *("errors", "table", "codec", "session", "transport", "diagnose", "sim", "editions"),
+        *("errors", "table", "codec", "session", "transport", "diagnose", "sim", "editions", "editions"),
     },
     "demo": {"codec", "driver", "editions", "sim"},
     "cli": {

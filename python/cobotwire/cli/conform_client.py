@@ -13,10 +13,10 @@ import click
 
 from cobotwire import editions
 from cobotwire.cli.arguments import parse
-from cobotwire.cli.conform_codec import places_of
 from cobotwire.cli.conforming import conclude, could_not_run
 from cobotwire.cli.serving import serve
 from cobotwire.conformance.client import MISDEEDS, Manners, Referee, Told
+from cobotwire.conformance.places import places_of
 from cobotwire.errors import UsageError
 from cobotwire.sim import PtyPort, Server, TcpPort
 from cobotwire.sim.tcp import address

@@ -10,6 +10,7 @@ from cobotwire import editions
 from cobotwire.cli.conforming import conclude, could_not_run
 from cobotwire.conformance.codec import Program, Run, derive, read_expectations
 from cobotwire.conformance.codec.expected import Expectation
+from cobotwire.conformance.places import places_of
 from cobotwire.errors import UsageError
 
 
@@ -52,19 +53,6 @@ def codec(
             except KeyboardInterrupt:
                 click.echo("interrupted", err=True)
     conclude(run.report)
-
-
-def places_of(edition: str) -> dict[str, str]:
-    """Where the spec says each command; none for an edition that does not tell."""
-    from importlib import import_module
-
-    package = editions.load(edition)
-    name = getattr(package, "__name__", "")
-    try:
-        found = import_module(f"{name}.table.places").PLACES
-    except ImportError:
-        return {}
-    return dict(found)
 
 
 def _fits(name: str, pattern: str) -> bool:

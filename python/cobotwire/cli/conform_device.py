@@ -8,10 +8,10 @@ from contextlib import contextmanager
 import click
 
 from cobotwire import editions
-from cobotwire.cli.conform_codec import places_of
 from cobotwire.cli.conforming import ReportFiles, conclude, could_not_run, report_options
 from cobotwire.cli.progress import Shown
-from cobotwire.conformance.device import CLASSES, Leave, Line, Tester, Waits
+from cobotwire.conformance.device import CLASSES, Leave, Line, Tester, Waits, words, workspace_of
+from cobotwire.conformance.places import places_of
 from cobotwire.errors import LinkError, UsageError
 from cobotwire.sim import SimulatedArm
 from cobotwire.sim.clock import SteppedClock
@@ -64,12 +64,12 @@ def device(
         if repeat < 1 or retries < 0:
             raise UsageError("repeat, retries", (repeat, retries), "repeat from 1, retries from 0")
         leave = Leave.of(
-            _words(allow),
+            words(allow),
             joints=table.joints,
             max_speed=max_speed,
-            workspace=None if workspace is None else ranges(workspace, table.joints),
+            workspace=None if workspace is None else workspace_of(workspace, table.joints),
         )
-        names = frozenset(table.command(name).name for name in _words(optional))
+        names = frozenset(table.command(name).name for name in words(optional))
         waits = Waits() if linger is None else Waits(linger=linger / 1000)
         with _line(table, port, simulated, baudrate) as line:
             tester = Tester(
@@ -110,28 +110,3 @@ def _line(table: Table, port: str | None, simulated: bool, baudrate: int | None)
         yield Line(link)
     finally:
         link.close()
-
-
-def _words(text: str) -> list[str]:
-    return [word.strip() for word in text.split(",") if word.strip()]
-
-
-def ranges(text: str, joints: int) -> dict[int, tuple[float, float]]:
-    """The workspace as it is written: one range for all joints, or ``JOINT=LOW:HIGH`` for each.
-
-    Raises:
-        UsageError: it is no such text.
-    """
-    found: dict[int, tuple[float, float]] = {}
-    for word in _words(text):
-        joint, equals, span = word.rpartition("=")
-        low, colon, high = span.partition(":")
-        try:
-            if not colon:
-                raise ValueError(span)
-            which = [int(joint)] if equals else list(range(1, joints + 1))
-            found |= dict.fromkeys(which, (float(low), float(high)))
-        except ValueError:
-            allowed = "LOW:HIGH in degrees, or JOINT=LOW:HIGH for each joint"
-            raise UsageError("workspace", word, allowed) from None
-    return found

@@ -74,3 +74,29 @@ def class_of(command: Command) -> frozenset[str]:
     return (
         frozenset() if command.safety == "query" else frozenset({command.safety.replace(" ", "-")})
     )
+
+
+def words(text: str) -> list[str]:
+    """The words of a list with commas."""
+    return [word.strip() for word in text.split(",") if word.strip()]
+
+
+def workspace_of(text: str, joints: int) -> dict[int, Range]:
+    """The workspace as it is written: one range for all joints, or ``JOINT=LOW:HIGH`` for each.
+
+    Raises:
+        UsageError: it is no such text.
+    """
+    found: dict[int, Range] = {}
+    for word in words(text):
+        joint, equals, span = word.rpartition("=")
+        low, colon, high = span.partition(":")
+        try:
+            if not colon:
+                raise ValueError(span)
+            which = [int(joint)] if equals else list(range(1, joints + 1))
+            found |= dict.fromkeys(which, (float(low), float(high)))
+        except ValueError:
+            allowed = "LOW:HIGH in degrees, or JOINT=LOW:HIGH for each joint"
+            raise UsageError("workspace", word, allowed) from None
+    return found

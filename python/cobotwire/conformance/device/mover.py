@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from cobotwire.conformance.device.bench import Bench
-from cobotwire.conformance.device.trial import Case, Unsupported
+from cobotwire.conformance.device.ending import Unsupported
+from cobotwire.conformance.device.trial import Case
 from cobotwire.table import Command
 
 Pose = tuple[float, ...]

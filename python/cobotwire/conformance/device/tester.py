@@ -11,10 +11,12 @@ from cobotwire import codec as codecs
 from cobotwire.conformance.device import trials
 from cobotwire.conformance.device.asking import Waits
 from cobotwire.conformance.device.bench import Bench
+from cobotwire.conformance.device.ending import Hopeless, Unsupported
 from cobotwire.conformance.device.leave import Leave
 from cobotwire.conformance.device.line import Line
-from cobotwire.conformance.device.trial import TRIALS, Case, Hopeless, Trial, Unsupported
+from cobotwire.conformance.device.trial import TRIALS, Case, Trial
 from cobotwire.conformance.report import Report, Result, Verdict
+from cobotwire.errors import UsageError
 from cobotwire.table import Command, Table
 
 assert trials
@@ -102,7 +104,7 @@ class Tester:
                 self.report.results += self.results(step)
             self.report.finished = True
         finally:
-            self.bench.set_back(self.bench.undo_last)
+            self.end()
         return self.report
 
     def _halt(self) -> None:
@@ -111,6 +113,10 @@ class Tester:
         stop = self.bench.command("stop")
         if stop is not None and self.bench.leave.workspace:
             self.bench.ask(stop)
+
+    def end(self) -> None:
+        """Set back what the run has changed for its whole length: power and pose."""
+        self.bench.set_back(self.bench.undo_last)
 
     def _ask_version(self) -> None:
         query = self.bench.command("version")
@@ -134,6 +140,8 @@ class Tester:
             pass
         except Unsupported as reason:
             unsupported = str(reason)
+        except UsageError as error:
+            unsupported = f"what the device told cannot be sent to it: {error}"
         except KeyboardInterrupt:
             self._halt()
             raise

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from cobotwire.conformance.device.bench import Bench
 from cobotwire.conformance.device.catalogue import Rule
+from cobotwire.conformance.device.ending import Hopeless
 from cobotwire.conformance.device.leave import class_of
 from cobotwire.conformance.report import Result, Verdict
 from cobotwire.table import Command, Table
@@ -16,14 +17,6 @@ from cobotwire.table import Command, Table
 EVIDENCE = 12
 # A case ends early where it goes on failing: the rest would say the same, slowly.
 PATIENCE = 3
-
-
-class Hopeless(Exception):
-    """The rest of a case would show nothing new."""
-
-
-class Unsupported(Exception):
-    """The arm is not in a state, or not of a kind, in which this can be tried."""
 
 
 class _Said(NamedTuple):

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from cobotwire.conformance.device.catalogue import AGREES
+from cobotwire.conformance.device.ending import Unsupported
 from cobotwire.conformance.device.mover import TICK_DEGREES, Mover
-from cobotwire.conformance.device.trial import Case, Unsupported, trial
+from cobotwire.conformance.device.trial import Case, trial
 from cobotwire.table import Command, Table
 
 # The servo position that is a joint's zero.

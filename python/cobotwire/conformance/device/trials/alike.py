@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from cobotwire.conformance.device.catalogue import ALIKE
-from cobotwire.conformance.device.trial import Case, Unsupported, trial
+from cobotwire.conformance.device.ending import Unsupported
+from cobotwire.conformance.device.trial import Case, trial
 
 
 @trial(ALIKE, of=None)

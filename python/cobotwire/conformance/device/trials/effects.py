@@ -8,9 +8,10 @@ from cobotwire.conformance.device.catalogue import (
     REPLIED,
     SILENT,
 )
+from cobotwire.conformance.device.ending import Unsupported
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.readable import readable
-from cobotwire.conformance.device.trial import Case, Unsupported, trial
+from cobotwire.conformance.device.trial import Case, trial
 from cobotwire.conformance.device.trials.motion import resume
 from cobotwire.conformance.device.trials.orders import order
 from cobotwire.conformance.device.values import gentle, requests

@@ -10,9 +10,10 @@ from cobotwire.conformance.device.catalogue import (
     SILENT,
     STOPS,
 )
+from cobotwire.conformance.device.ending import Unsupported
 from cobotwire.conformance.device.mover import ANGLE_TOLERANCE, Mover, Pose, off_by
 from cobotwire.conformance.device.readable import Readable, Values, readable
-from cobotwire.conformance.device.trial import Applies, Case, Unsupported, trial
+from cobotwire.conformance.device.trial import Applies, Case, trial
 from cobotwire.conformance.device.trials.orders import order
 from cobotwire.session.motion import kind_of
 from cobotwire.table import Command, Role, Table

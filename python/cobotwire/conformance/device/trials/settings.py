@@ -14,8 +14,9 @@ from cobotwire.conformance.device.catalogue import (
     SILENT,
     Rule,
 )
+from cobotwire.conformance.device.ending import Unsupported
 from cobotwire.conformance.device.readable import Readable, Values, readable
-from cobotwire.conformance.device.trial import Case, Unsupported, trial
+from cobotwire.conformance.device.trial import Case, trial
 from cobotwire.conformance.device.trials.orders import order
 from cobotwire.errors import UsageError
 from cobotwire.table import Command, Table
