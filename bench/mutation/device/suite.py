@@ -38,9 +38,10 @@ class DeviceSuite:
         mutant = self._mutants[case.id]
         try:
             found = self._complaint(mutant)
+            return Outcome(case, found, "" if found else reason(self._table, mutant))
         except Exception as error:
+            # Whatever it is: neither tester nor oracle may break on a device.
             return Outcome(case, "", "", f"{type(error).__name__}: {error}")
-        return Outcome(case, found, "" if found else reason(self._table, mutant))
 
     def _complaint(self, mutant: Mutant) -> str:
         """The first thing that the tester finds; empty: nothing."""
