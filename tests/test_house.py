@@ -27,6 +27,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "capture": {"errors", "table", "codec"},
     "editions": {"errors", "table", "values", "driver"},
     "sim": {"errors", "table", "codec", "session", "capture"},
+    "plot": {"errors", "table", "codec", "capture", "sim"},
     "explain": {"errors", "table", "codec"},
     "diagnose": {"errors", "table", "codec"},
     "health": {
@@ -36,9 +37,10 @@ MAY_IMPORT: dict[str, set[str]] = {
         *("errors", "table", "codec", "session", "transport", "diagnose", "sim", "editions", "editions"),
     },
     "demo": {"codec", "driver", "editions", "sim"},
+    "testing": {"errors", "table", "codec", "driver", "editions", "sim"},
     "cli": {
         *("errors", "table", "codec", "driver", "editions", "sim", "session", "explain", "demo"),
-        *("capture", "transport", "diagnose", "health", "conformance"),
+        *("capture", "transport", "diagnose", "health", "conformance", "plot"),
     },
 }
 # Each library of the outside has one importer, so that it can be exchanged in one place.
@@ -46,7 +48,10 @@ ONE_IMPORTER = {
     "serial": ["transport/serial/"],
     "click": ["cli/"],
     "rich": ["cli/"],
+    "pytest": ["testing/plugin.py"],
+    "matplotlib": ["plot/drawing.py", "plot/pose.py"],
     "numpy": ["codec/columns.py"],
+    "scipy": ["sim/kinematics/refine.py"],
     "pyarrow": ["codec/arrow.py"],
     "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
     "ruamel": ["sim/faults/nodes.py"],
@@ -105,7 +110,8 @@ def test_importing_the_package_pulls_in_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"
         "loaded = {name.split('.')[0] for name in sys.modules}\n"
-        "print(sorted(loaded & {'click', 'rich', 'numpy', 'pyarrow', 'ruamel', 'jinja2'}))"
+        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy'\n"
+        "print(sorted(loaded & set(extras.split())))"
     )
     result = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True

@@ -14,6 +14,7 @@ import sys
 import termios
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -150,8 +151,8 @@ def test_a_terminal_gets_a_table_of_the_joints() -> None:
         url = next(word for word in shown.decode().split() if word.startswith("/dev/"))
         with MyCobot(url) as arm:
             arm.power_on()
-            arm.move_angles([30, 0, 0, 0, 0, 0], 100)
-        shown += _until(master, b"j1=30.0")
+            arm.move_angles([45, 0, 0, 0, 0, 0], 100)
+        shown += _until(master, b"j1=45.0")
         process.send_signal(signal.SIGINT)
         assert process.wait(timeout=10) == 0
         shown += _until(master, b"\x1b[?25h")  # the cursor is shown again
@@ -197,3 +198,37 @@ def test_a_taken_port_is_a_failure_of_the_link() -> None:
         result = _run("--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
     assert result.returncode == 3
     assert "cannot be listened on" in result.stderr
+
+
+SLOW = """\
+faults:
+  - fault: late
+    seconds: 0.01
+"""
+
+
+def test_faults_are_done_on_every_line_and_told(tmp_path: Path) -> None:
+    path = tmp_path / "slow.yaml"
+    path.write_text(SLOW)
+    process = subprocess.Popen(
+        [*COMMAND, "--scenario", str(path), "--json", "--tcp", ":0"],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        url = json.loads(process.stdout.readline())["url"]
+        for _ in range(2):
+            with MyCobot(url) as arm:
+                assert arm.is_power_on() is False
+        process.send_signal(signal.SIGTERM)
+        told = [json.loads(line) for line in process.stdout]
+    finally:
+        process.kill()
+        process.communicate()
+    assert [(line["client"], line["event"]) for line in told] == [
+        (1, "heard"),
+        (1, "fault"),
+        (2, "heard"),
+        (2, "fault"),
+    ]

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import pytest
+
 from cobotwire.codec.interface import Noise
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.session import Asked, Told
@@ -13,6 +15,16 @@ from cobotwire.session.device import DeviceEvent
 from cobotwire.sim import PtyServer, SimulatedArm
 from cobotwire.sim.state import ArmState
 from cobotwire.table import Table
+
+# Half of a tick of the encoders on which joints stand; told, an angle is cut to hundredths too.
+HALF_TICK, TOLD = 0.044, 0.054
+# A pose that is bent, from which the end can go anywhere.
+BENT = (10.01953125, -30.05859375, -60.029296875, 20.0390625, 5.009765625, 30.05859375)
+
+
+def on_ticks(*angles: float) -> Any:
+    """Equal to the angles at which joints stand that were sent to ``angles``."""
+    return pytest.approx(angles, abs=HALF_TICK)
 
 
 class Bench:
@@ -38,22 +50,28 @@ class Bench:
 
     @property
     def angles(self) -> tuple[float, ...]:
-        """Where the joints stand."""
-        return self.state.angles.position(self.now)
+        """Where the joints stand, on their ticks."""
+        return self.state.standing(self.now)
 
     @property
     def pose(self) -> tuple[float, ...]:
-        """Where the end stands."""
-        return self.state.pose.position(self.now)
+        """What the arm tells of where its end stands."""
+        coords = self.state.told_coords(self.state.standing(self.now))
+        assert coords is not None
+        return coords
 
     def start_over(self) -> None:
         """A new arm, powered: to have pymycobot power it would take 1.5 s in every test."""
-        self.arm.state = ArmState(self.arm.table.joints)
+        self.arm.state = ArmState(self.arm.table.joints, self.arm.state.geometry)
         self.state.powered = True
         self.state.enabled = [True] * self.arm.table.joints
         self.heard.clear()
         self.refused.clear()
         self.told.clear()
+
+    def bend(self) -> None:
+        """Put the arm where its end can go anywhere."""
+        self.state.angles.place(BENT, self.now)
 
     def settle(self) -> None:
         """Wait until the arm has handled all that was sent: requests are handled in order."""

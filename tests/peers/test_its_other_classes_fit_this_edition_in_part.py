@@ -11,8 +11,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from cobotwire.sim.state import RESTING_COORDS
-from pymycobot_bench import Bench, driven_by
+from cobotwire.sim.kinematics import DEGREES_A_TICK
+from pymycobot_bench import Bench, driven_by, on_ticks
 from pymycobot_classes import MyCobot280, MyPalletizer260
 
 UNANSWERED = -1
@@ -48,27 +48,31 @@ def test_the_280_makes_a_step_once_if_it_does_not_wait(cobot: Bench) -> None:
     cobot.settle()
     assert cobot.heard == ["jog_increment"]
     cobot.advance(60)
-    assert cobot.angles[0] == 10.0
+    assert cobot.angles[:1] == on_ticks(10.0)
 
 
 def test_the_280_truncates_an_angle_that_our_driver_would_round(cobot: Bench) -> None:
-    cobot.peer.send_angle(1, 0.29, 100, _async=True)
+    # 0.58 is sent as 0.57, which is nearer to the sixth tick than to the seventh.
+    cobot.peer.send_angle(1, 0.58, 100, _async=True)
     cobot.settle()
     cobot.advance(60)
-    assert cobot.angles[0] == 0.28
-    assert cobot.peer.get_angles()[0] == 0.28
+    assert cobot.angles[0] == 6 * DEGREES_A_TICK != pytest.approx(0.58, abs=0.05)
+    assert cobot.peer.get_angles()[0] == 0.52
 
 
 def test_the_280s_coordinates_without_a_mode_are_not_obeyed(cobot: Bench) -> None:
-    target = [100, 0, 200, 0, 0, 0]
+    cobot.bend()
+    before = cobot.pose
+    target = [before[0] - 10, before[1] + 25.5, before[2] - 30, *before[3:]]
     cobot.peer.send_coords(target, 100, _async=True)
     cobot.settle()
     cobot.advance(60)
-    assert (cobot.heard, cobot.pose) == ([], RESTING_COORDS)
+    assert (cobot.heard, cobot.pose) == ([], before)
     cobot.peer.send_coords(target, 100, 0, _async=True)
     cobot.settle()
     cobot.advance(60)
-    assert (cobot.heard, cobot.pose) == (["send_coords"], tuple(target))
+    assert cobot.heard == ["send_coords"]
+    assert cobot.pose == pytest.approx(tuple(target), abs=0.8)
 
 
 def test_the_280s_jogs_of_the_same_ids_are_not_taken_for_ours(cobot: Bench) -> None:
@@ -81,7 +85,7 @@ def test_the_280s_jogs_of_the_same_ids_are_not_taken_for_ours(cobot: Bench) -> N
     frames = "FE FE 05 31 01 01 32 FA", "FE FE 06 34 01 00 64 32 FA"
     assert b"".join(cobot.refused) == b"".join(map(bytes.fromhex, frames))
     cobot.advance(60)
-    assert (cobot.angles[0], cobot.pose) == (100.0, RESTING_COORDS)
+    assert cobot.angles == on_ticks(100.0, 0, 0, 0, 0, 0)
 
 
 @pytest.mark.parametrize("which", ["tool", "world"])
@@ -122,8 +126,8 @@ def test_the_280_chooses_the_refresh_mode_and_the_newest_target_wins(cobot: Benc
     cobot.peer.send_angle(1, 90, 10, _async=True)
     cobot.peer.send_angle(1, -15, 100, _async=True)
     cobot.settle()
-    cobot.advance(0.25)
-    assert cobot.angles[0] == -15.0
+    cobot.advance(0.75)
+    assert cobot.angles[:1] == on_ticks(-15.0)
 
 
 def test_the_palletizer_sets_and_reads_the_speed(palletizer: Bench) -> None:
@@ -147,14 +151,14 @@ def test_the_palletizer_jogs_to_an_angle_and_stops_a_jog(palletizer: Bench) -> N
     palletizer.peer.jog_absolute(2, -30.5, 100)
     palletizer.settle()
     palletizer.advance(60)
-    assert palletizer.angles[1] == -30.5
+    assert palletizer.angles[1:2] == on_ticks(-30.5)
     palletizer.peer.jog_angle(1, 1, 10)
     palletizer.settle()
     palletizer.advance(2)
     palletizer.peer.jog_stop()
     palletizer.settle()
     palletizer.advance(60)
-    assert palletizer.angles[:2] == (30.0, -30.5)
+    assert palletizer.angles[:2] == on_ticks(30.0, -30.5)
 
 
 def test_the_palletizer_releases_holds_and_zeroes_single_servos(palletizer: Bench) -> None:
@@ -168,7 +172,7 @@ def test_the_palletizer_releases_holds_and_zeroes_single_servos(palletizer: Benc
     state.angles.place((12.0, 34.0, 0, 0, 0, 0), palletizer.now)
     peer.set_servo_calibration(2)
     palletizer.settle()
-    assert palletizer.angles == (12.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert palletizer.angles == on_ticks(12.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def test_the_palletizer_brakes_a_joint(palletizer: Bench) -> None:
@@ -178,7 +182,7 @@ def test_the_palletizer_brakes_a_joint(palletizer: Bench) -> None:
     palletizer.peer.joint_brake(1)
     palletizer.settle()
     palletizer.advance(60)
-    assert palletizer.angles[0] == 30.0
+    assert palletizer.angles[:1] == on_ticks(30.0)
 
 
 def test_the_palletizer_drives_the_gripper(palletizer: Bench) -> None:

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 import pytest
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim.state import RESTING_COORDS, ArmState
-from pymycobot_bench import Bench, driven_by
+from cobotwire.sim.state import ArmState
+from pymycobot_bench import TOLD, Bench, driven_by, on_ticks
 from pymycobot_classes import MyCobot280
 
 DONE = 1
@@ -43,11 +43,11 @@ def test_a_setter_is_acknowledged_and_so_sent_once_and_at_once(bench: Bench) -> 
 def test_a_step_is_made_once(bench: Bench) -> None:
     assert bench.peer.jog_increment(1, 10, 100) == DONE
     bench.advance(60)
-    assert (bench.heard, bench.angles[0]) == (["jog_increment"], 10.0)
+    assert (bench.heard, bench.angles[:1]) == (["jog_increment"], on_ticks(10.0))
 
 
 def test_it_powers_the_arm_on_and_off(bench: Bench) -> None:
-    bench.arm.state = ArmState(TABLE.joints)
+    bench.arm.state = ArmState(TABLE.joints, bench.state.geometry)
     peer = bench.peer
     assert [peer.is_power_on(), peer.is_servo_enable(3), peer.is_all_servo_enable()] == [0, 0, 0]
     assert peer.power_on() == DONE
@@ -61,8 +61,8 @@ def test_it_sends_all_joints_to_angles_and_reads_them_back(bench: Bench) -> None
     target = [10.5, -20.25, 30.0, -2.58, 2.5, -160.0]
     assert bench.peer.send_angles(target, 100) == DONE
     bench.advance(60)
-    assert bench.angles == tuple(target)
-    assert bench.peer.get_angles() == target
+    assert bench.angles == on_ticks(*target)
+    assert bench.peer.get_angles() == pytest.approx(target, abs=TOLD)
     assert bench.peer.is_in_position(target) == 1
 
 
@@ -75,26 +75,32 @@ def test_it_sends_and_reads_radians(bench: Bench) -> None:
 
 
 def test_it_sends_coordinates_and_reads_them_back(bench: Bench) -> None:
-    target = [120.5, -80.3, 200.1, -90.0, 45.25, 179.5]
-    assert bench.peer.get_coords() == list(RESTING_COORDS)
+    bench.bend()
+    before = bench.peer.get_coords()
+    assert before == list(bench.pose)
+    target = [before[0] - 10, before[1] + 25.5, before[2] - 30, *before[3:]]
     assert bench.peer.send_coords(target, 100, 1) == DONE
     bench.advance(60)
-    assert bench.pose == tuple(target)
-    assert bench.peer.get_coords() == target
-    assert bench.peer.send_coord(2, -33.3, 100) == DONE
+    assert bench.peer.get_coords() == pytest.approx(target, abs=0.8)
+    assert bench.peer.is_in_position(target, 1) == 1
+    assert bench.peer.send_coord(2, target[1] - 12.3, 100) == DONE
     bench.advance(60)
-    assert bench.peer.get_coords()[1] == -33.3
+    assert bench.peer.get_coords()[1] == pytest.approx(target[1] - 12.3, abs=0.8)
 
 
 def test_it_pauses_resumes_and_stops_a_motion(bench: Bench) -> None:
     peer = bench.peer
     bench.state.angles.go((100.0, 0, 0, 0, 0, 0), 10.0, bench.now)
     bench.advance(1)
-    assert [peer.pause(), peer.is_paused(), peer.is_moving()] == [DONE, 1, 0]
+    assert [peer.pause(), peer.is_paused()] == [DONE, 1]
+    bench.advance(1)
+    assert peer.is_moving() == 0
     bench.advance(5)
     assert [peer.resume(), peer.is_paused(), peer.is_moving()] == [DONE, 0, 1]
     bench.advance(1)
-    assert [peer.stop(), peer.is_moving(), bench.angles[0]] == [DONE, 0, 20.0]
+    assert peer.stop() == DONE
+    bench.advance(1)
+    assert [peer.is_moving(), bench.angles[:1]] == [0, on_ticks(20.0)]
 
 
 def test_it_moves_the_gripper(bench: Bench) -> None:

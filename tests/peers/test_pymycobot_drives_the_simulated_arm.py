@@ -13,8 +13,8 @@ from collections.abc import Iterator
 import pytest
 
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.sim.state import RESTING_COORDS, ArmState
-from pymycobot_bench import Bench, driven_by
+from cobotwire.sim.state import ArmState
+from pymycobot_bench import TOLD, Bench, driven_by, on_ticks
 from pymycobot_classes import MyCobot
 
 UNANSWERED = -1
@@ -51,11 +51,11 @@ def test_a_step_is_made_three_times(bench: Bench) -> None:
     bench.peer.jog_increment(1, 10, 100)
     assert bench.heard == ["jog_increment"] * 3
     bench.advance(60)
-    assert bench.angles == (30.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert bench.angles == pytest.approx((30.0, 0, 0, 0, 0, 0), abs=0.1)
 
 
 def test_it_powers_the_arm_on_and_off(bench: Bench) -> None:
-    bench.arm.state = ArmState(TABLE.joints)
+    bench.arm.state = ArmState(TABLE.joints, bench.state.geometry)
     peer = bench.peer
     assert [peer.is_power_on(), peer.is_servo_enable(3), peer.is_all_servo_enable()] == [0, 0, 0]
     assert peer.power_on() == UNANSWERED
@@ -78,41 +78,44 @@ def test_it_sends_all_joints_to_angles_and_reads_them_back(bench: Bench) -> None
     target = [10.5, -20.25, 30.0, -2.58, 2.5, -160.0]
     assert bench.peer.send_angles(target, 100) == UNANSWERED
     bench.advance(60)
-    assert bench.angles == tuple(target)
-    assert bench.peer.get_angles() == target
-    assert bench.peer.get_radians() == [round(math.radians(angle), 3) for angle in target]
+    assert bench.angles == on_ticks(*target)
+    assert bench.peer.get_angles() == pytest.approx(target, abs=TOLD)
+    radians = [math.radians(angle) for angle in target]
+    assert bench.peer.get_radians() == pytest.approx(radians, abs=0.002)
 
 
 def test_it_sends_one_joint_and_sees_it_on_the_way(bench: Bench) -> None:
     assert bench.peer.send_angle(3, -75, 50) == UNANSWERED
-    bench.advance(0.5)
+    bench.advance(0.6875)
     assert bench.peer.is_moving() == 1
-    assert bench.peer.get_angles() == [0.0, 0.0, -37.5, 0.0, 0.0, 0.0]
+    # 75 degrees a second take 0.375 s to reach: half of the way is done after 0.6875 s.
+    assert bench.peer.get_angles() == pytest.approx([0, 0, -37.5, 0, 0, 0], abs=TOLD)
     assert bench.peer.is_in_position([0, 0, -75, 0, 0, 0], 0) == 0
     bench.advance(1)
     assert bench.peer.is_moving() == 0
     assert bench.peer.is_in_position([0, 0, -75, 0, 0, 0], 0) == 1
-    assert bench.angles[2] == -75.0
+    assert bench.angles[2:3] == on_ticks(-75.0)
 
 
 def test_it_sends_coordinates_and_reads_them_back(bench: Bench) -> None:
-    target = [120.5, -80.3, 200.1, -90.0, 45.25, 179.5]
-    assert bench.peer.get_coords() == list(RESTING_COORDS)
+    bench.bend()
+    before = bench.peer.get_coords()
+    assert before == list(bench.pose)
+    target = [before[0] - 10, before[1] + 25.5, before[2] - 30, *before[3:]]
     assert bench.peer.send_coords(target, 100, 1) == UNANSWERED
     bench.advance(60)
-    assert bench.pose == tuple(target)
-    assert bench.peer.get_coords() == target
+    assert bench.peer.get_coords() == pytest.approx(target, abs=0.8)
     assert bench.peer.is_in_position(target, 1) == 1
 
 
-@pytest.mark.parametrize(("axis", "value"), [(2, -33.3), (6, 12.5)])
+@pytest.mark.parametrize(("axis", "value"), [(2, -33.3), (6, -77.5)])
 def test_it_sends_one_coordinate(bench: Bench, axis: int, value: float) -> None:
+    bench.bend()
+    expected = list(bench.pose)
     assert bench.peer.send_coord(axis, value, 100) == UNANSWERED
     bench.advance(60)
-    expected = list(RESTING_COORDS)
     expected[axis - 1] = value
-    assert bench.pose == tuple(expected)
-    assert bench.peer.get_coords() == expected
+    assert bench.peer.get_coords() == pytest.approx(expected, abs=0.8)
 
 
 def test_it_pauses_resumes_and_stops_a_motion(bench: Bench) -> None:
@@ -121,22 +124,26 @@ def test_it_pauses_resumes_and_stops_a_motion(bench: Bench) -> None:
     bench.advance(1)
     assert peer.pause() == UNANSWERED
     bench.advance(5)
-    assert [peer.is_paused(), peer.is_moving(), bench.angles[0]] == [1, 0, 10.0]
+    assert [peer.is_paused(), peer.is_moving(), bench.angles[:1]] == [1, 0, on_ticks(10.0)]
     assert peer.resume() == UNANSWERED
     bench.advance(1)
-    assert [peer.is_paused(), peer.is_moving(), bench.angles[0]] == [0, 1, 20.0]
+    assert [peer.is_paused(), peer.is_moving(), bench.angles[:1]] == [0, 1, on_ticks(19.75)]
     assert peer.stop() == UNANSWERED
     bench.advance(5)
-    assert [peer.is_moving(), bench.angles[0], bench.state.stopped] == [0, 20.0, True]
+    assert [peer.is_moving(), bench.angles[:1], bench.state.stopped] == [0, on_ticks(20.0), True]
 
 
 def test_it_jogs_a_joint_and_a_coordinate(bench: Bench) -> None:
+    # Sent three times, it goes on as it went.
     assert bench.peer.jog_angle(2, 0, 10) == UNANSWERED
     bench.advance(1)
-    assert bench.angles == (0.0, -15.0, 0.0, 0.0, 0.0, 0.0)
+    assert bench.angles == on_ticks(0.0, -15.0 + 0.5625, 0.0, 0.0, 0.0, 0.0)
+    bench.bend()
+    x, y, height = bench.pose[:3]
     assert bench.peer.jog_coord(3, 1, 10) == UNANSWERED
     bench.advance(1)
-    assert bench.peer.get_coords()[2] == round(RESTING_COORDS[2] + 30, 1)
+    assert bench.pose[:2] == pytest.approx((x, y), abs=0.8)
+    assert bench.pose[2] > height + 10
 
 
 def test_it_sends_and_reads_encoders(bench: Bench) -> None:
@@ -145,7 +152,7 @@ def test_it_sends_and_reads_encoders(bench: Bench) -> None:
     bench.advance(60)
     assert bench.peer.get_encoders() == [1024, 2048, 2560, 2048, 2048, 2049]
     assert bench.peer.get_encoder(1) == 1024
-    assert bench.angles[:3] == (90.0, 0.0, 45.0)
+    assert bench.angles[:3] == (90.0, 0.0, 45.0), "these stand on ticks"
 
 
 def test_its_set_encoder_is_not_obeyed_because_it_carries_a_speed(bench: Bench) -> None:

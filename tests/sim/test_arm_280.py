@@ -81,15 +81,18 @@ def test_what_was_set_is_read_back(bench: Bench) -> None:
 
 
 def test_steps_and_plans(bench: Bench) -> None:
+    bench.tell("send_angles", (0, -30.0, -60.0, 0, 0, 0), 50)
+    bench.now += 5.0
+    height = bench.ask("get_coords")[2]
     bench.tell("jog_increment_coord", 3, 12.5, 50)
     planned = bench.ask("get_coords_plan")[2]
     bench.now += 5.0
-    assert bench.ask("get_coords")[2] == planned == pytest.approx(411.7 + 12.5)
-    bench.tell("send_angles", (10.0, 0, 0, 0, 0, 0), 50)
-    assert bench.ask("get_angles_plan")[0] == 10.0
+    assert bench.ask("get_coords")[2] == planned == pytest.approx(height + 12.5, abs=0.8)
+    bench.tell("send_angle", 1, 10.0, 50)
+    assert bench.ask("get_angles_plan")[0] == 10.01, "the tick's angle, cut to hundredths"
     bench.now += 5.0
     angles, coords = bench.ask("get_angles_coords")
-    assert (angles[0], coords[2]) == (10.0, planned)
+    assert (angles[0], coords[2]) == (10.01, planned)
 
 
 def test_servo_registers_are_backed_up_and_restored(bench: Bench) -> None:

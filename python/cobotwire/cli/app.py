@@ -15,6 +15,7 @@ from cobotwire.cli.demo import demo
 from cobotwire.cli.doctor import doctor
 from cobotwire.cli.failure import EPILOG, failures
 from cobotwire.cli.monitor import monitor
+from cobotwire.cli.plot import plot
 from cobotwire.cli.ports import ports_
 from cobotwire.cli.replay import replay
 from cobotwire.cli.sim import sim
@@ -56,5 +57,5 @@ def app(ctx: click.Context, edition: str) -> None:
     ctx.obj = edition
 
 
-for verb in (demo, ports_, doctor, monitor, call, decode, sim, replay, conform, commands):
+for verb in (*(demo, ports_, doctor, monitor, call, decode, sim, replay, plot, conform, commands),):
     app.add_command(verb)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import copy
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.session import Asked, DeviceSession, Told
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim.behaviour import BEHAVIOUR
+from cobotwire.sim.kinematics import Geometry, geometry_of
 from cobotwire.sim.state import ArmState
 from cobotwire.table import Command, Field, Table
 
@@ -21,6 +23,19 @@ IDLE_SECONDS = 0.2
 
 Clock = Callable[[], float]
 Watch = Callable[[DeviceEvent, bytes], None]
+# Notes beyond this push the oldest ones out.
+NOTES_KEPT = 1000
+
+
+class Note(NamedTuple):
+    """What no answer tells: that an order is ignored, or refused, and why.
+
+    ``time`` is by the arm's clock, ``command`` the order's name.
+    """
+
+    time: float
+    command: str
+    text: str
 
 
 class SimulatedArm:
@@ -34,6 +49,8 @@ class SimulatedArm:
         codec: codecs.CodecName | None = None,
         watch: Watch | None = None,
         acks: bool = True,
+        geometry: Geometry | None = None,
+        remark: Callable[[Note], None] | None = None,
     ) -> None:
         """Make an arm that is switched off and stands at zero.
 
@@ -43,14 +60,21 @@ class SimulatedArm:
             codec: ``native`` or ``reference``; left out: the one in use.
             watch: called with everything that was heard and what was answered.
             acks: whether it acknowledges what the edition says it may.
+            geometry: where its end is for its joints; left out: that of the arm which speaks this
+                edition. Where none is known, coordinates are answered with zeros, and an order to
+                go to some is refused; the joints move, but stand on no ticks.
+            remark: called with each note when it is made; ``notes`` has the last thousand.
         """
         self.table = table
         self._clock = clock
         self._watch = watch
         self._acks = acks
+        self._remark = remark
+        self._notes: deque[Note] = deque(maxlen=NOTES_KEPT)
+        self._geometry = geometry or geometry_of(table)
         self._codec = codecs.load(table, codec)
         # In a list that all lines of this arm share, so that each sees when it is replaced.
-        self._states = [ArmState(table.joints)]
+        self._states = [ArmState(table.joints, self._geometry)]
         self.restart()
 
     @property
@@ -74,10 +98,15 @@ class SimulatedArm:
 
     def restart(self) -> None:
         """Lose all state, as when power goes and comes back."""
-        self.state = ArmState(self.table.joints)
+        self.state = ArmState(self.table.joints, self._geometry)
         for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
             self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
         self._session = DeviceSession(self._codec)
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What no answer told so far, the oldest first: at most a thousand notes."""
+        return tuple(self._notes)
 
     @property
     def pending(self) -> int:
@@ -119,13 +148,23 @@ class SimulatedArm:
 
     def _do(self, command: Command, given: Mapping[str, Any]) -> dict[str, Any]:
         handler = BEHAVIOUR.get(command.name)
-        return (handler(self.state, self._clock(), **given) if handler else None) or {}
+        if handler is None:
+            return {}
+        state, now = self.state, self._clock()
+        result = handler(state, now, **given) or {}
+        for text in state.remarks:
+            note = Note(now, command.name, text)
+            self._notes.append(note)
+            if self._remark is not None:
+                self._remark(note)
+        state.remarks.clear()
+        return result
 
 
 def _joint_limits(table: Table) -> list[tuple[float, float]]:
     """The limits that the edition gives each joint; none where it gives only the wire's own."""
     for command in table.commands:
-        if command.name == "send_angles":
+        if command.role == "joint targets":
             numbers = command.request[0].fields[0].cases[0].numbers
             limits = [(n.minimum / n.divide, n.maximum / n.divide) for n in numbers]
             return limits if all(high <= HALF_TURN for _, high in limits) else []

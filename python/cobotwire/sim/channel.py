@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from cobotwire.sim.line import Line
+from cobotwire.sim.peer import LineGone
 
 READ_SIZE = 4096
 
@@ -29,18 +30,25 @@ class Channel:
         self.full = False
 
     def hear(self) -> bool:
-        """Take what the client has sent. False: it is gone."""
+        """Take what the client has sent. False: it is gone, or the line is."""
         try:
             data = self.end.read(READ_SIZE)
         except BlockingIOError:
             return True
         except OSError:
             return False
-        self.line.hear(data)
+        try:
+            self.line.hear(data)
+        except LineGone:
+            return False
         return bool(data)
 
     def tell(self) -> bool:
-        """Send what the client takes of the answers. False: it is gone."""
+        """Let time pass, and send what the client takes of the answers. False: it is gone."""
+        try:
+            self.line.pass_time()
+        except LineGone:
+            return False
         while said := self.line.take():
             try:
                 taken = self.end.write(said)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 import threading
+from collections.abc import Callable
 
 from cobotwire.errors import LinkError
 from cobotwire.sim.clock import Clock, RunningClock
 from cobotwire.sim.line import Line
-from cobotwire.sim.peer import Peer
+from cobotwire.sim.peer import LineGone, Peer
 
 # A peer that wants to be woken at once, again and again, does not hold the time up.
 TICK_SECONDS = 1e-6
@@ -55,8 +56,8 @@ class MemoryLink:
         with self._news:
             self._must_be_open("cannot be written")
             # What was due by now comes before the answer to what is said now.
-            self._line.pass_time()
-            self._line.hear(data)
+            self._with_peer(self._line.pass_time)
+            self._with_peer(self._line.hear, data)
             self._news.notify_all()
 
     def write_some(self, data: bytes) -> int:
@@ -76,7 +77,7 @@ class MemoryLink:
             self._must_be_open("cannot be read")
             deadline = self.clock() + timeout
             while True:
-                self._line.pass_time()
+                self._with_peer(self._line.pass_time)
                 if data := self._take():
                     return data
                 left = deadline - self.clock()
@@ -98,11 +99,21 @@ class MemoryLink:
             self._news.notify_all()
 
     def reopen(self) -> None:
-        """Connect again; what was not read is lost. The peer stays as it is."""
+        """Connect again; what was not read is lost. The peer stays as it is.
+
+        So does a scenario that takes the line away: it does so again when its time comes.
+        """
         with self._news:
             self._line = Line(self._peer, self.clock)
             self._closed = False
             self._news.notify_all()
+
+    def _with_peer(self, step: Callable[..., None], *arguments: bytes) -> None:
+        try:
+            step(*arguments)
+        except LineGone:
+            self.close()
+            raise LinkError(self.url, "the peer is gone") from None
 
     def _take(self) -> bytes:
         return b"".join(iter(self._line.take, b""))

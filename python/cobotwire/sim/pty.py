@@ -18,22 +18,21 @@ class PtyPort(Server):
 
     def __init__(self, peer: Peer, clock: RunningClock | None = None) -> None:
         super().__init__(clock)
-        master, self._slave = os.openpty()
+        master, slave = os.openpty()
         # Raw, or the terminal would echo the requests and eat some of their bytes. The slave stays
         # open here, so that a client may come and go.
-        tty.setraw(self._slave)
+        tty.setraw(slave)
         # A client that does not read must not keep the arm from hearing, nor from ending.
         os.set_blocking(master, False)
-        self.url = os.ttyname(self._slave)
-        end = End(
-            master, partial(os.read, master), partial(os.write, master), partial(os.close, master)
-        )
-        self._connect(end, peer)
+        self.url = os.ttyname(slave)
 
-    def close(self) -> None:
-        """Give the pty back; whoever has it open hears that the port is gone."""
-        super().close()
-        os.close(self._slave)
+        def unplug() -> None:
+            os.close(master)
+            os.close(slave)
+
+        self._connect(
+            End(master, partial(os.read, master), partial(os.write, master), unplug), peer
+        )
 
     def _ready(self, descriptor: int, events: int) -> None:
         self._hear(descriptor, events)

@@ -58,7 +58,6 @@ class Server(ABC):
                     return
                 self._ready(key.fd, events)
             for channel in tuple(self._channels.values()):
-                channel.line.pass_time()
                 self._tell(channel)
             if look is not None and look_at is not None and time.monotonic() >= look_at:
                 look()
@@ -95,8 +94,6 @@ class Server(ABC):
             self._drop(channel)
 
     def _tell(self, channel: Channel) -> None:
-        if not channel.line.unread and not channel.full:
-            return
         if not channel.tell():
             self._drop(channel)
         elif channel.full != bool(channel.line.unread):

@@ -1,24 +1,29 @@
-"""What a simulated arm remembers."""
+"""What a simulated arm remembers, and where it stands."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from cobotwire.sim.axes import Axes
+from cobotwire.sim.kinematics import Geometry, Pose, flange
+from cobotwire.sim.kinematics.ticks import (
+    angle_at,
+    encoder_at,
+    inside,
+    on_tick,
+    told_angles,
+    told_coords,
+)
+from cobotwire.sim.motion import Axes
 from cobotwire.sim.settings import Settings
 
-# shared facts of the 280: see the protocol notes on kinematics
-DEGREES_A_SECOND = 1.5
-MILLIMETRES_A_SECOND = 3.0
+# Facts of the 280, from the protocol notes on kinematics.
+DEGREES_A_SECOND = 1.5  # for each percent of speed
+FASTEST = 150.0  # degrees a second
+ACCELERATION = 200.0  # degrees a square second
+# No source says how a gripper moves: full way in two thirds of a second, up to speed at once.
 OPENING_A_SECOND = 1.5
-TICKS_A_TURN = 4096
-ZERO_TICK = 2048
-ENCODER_SIGNS = (-1, -1, 1, -1, -1, -1)
-# How far from a target still counts as there: 0.1 for whatever is in degrees, 5 for millimetres.
-# The notes give both for "in position"; 5 degrees at the end would be far off.
-IN_POSITION_ANGLES = (0.1,) * 6
-IN_POSITION_COORDS = (5.0, 5.0, 5.0, 0.1, 0.1, 0.1)
-RESTING_COORDS = (44.4, -60.8, 411.7, -91.14, -1.72, -86.71)
+OPENING_ACCELERATION = 10_000.0
+ENCODER_MOST = 4096
 
 # The document's chart of servo registers with their initial values (lines 1280-1291).
 SERVO_REGISTERS = {20: 0, 21: 10, 22: 0, 23: 1, 24: 0}
@@ -26,9 +31,10 @@ SERVO_REGISTERS = {20: 0, 21: 10, 22: 0, 23: 1, 24: 0}
 
 @dataclass
 class ArmState:
-    """Every setting of the arm, and its axes."""
+    """Every setting of the arm, and its axes. Angles are in degrees."""
 
     joints: int
+    geometry: Geometry | None = None
     powered: bool = False
     connected: bool = True
     free: bool = False
@@ -47,9 +53,10 @@ class ArmState:
     pins: dict[int, bool] = field(default_factory=dict)
     pin_modes: dict[int, int] = field(default_factory=dict)
     basic_pins: dict[int, bool] = field(default_factory=dict)
-    gripper: Axes = field(default_factory=lambda: Axes((0.0,)))
-    pose: Axes = field(default_factory=lambda: Axes(RESTING_COORDS))
+    gripper: Axes = field(default_factory=lambda: Axes((0.0,), OPENING_ACCELERATION))
     settings: Settings = field(default_factory=Settings)
+    # What happened in the request of the moment that no answer tells; the arm makes notes of it.
+    remarks: list[str] = field(default_factory=list)
     angles: Axes = field(init=False)
     enabled: list[bool] = field(init=False)
     minimum: list[float] = field(init=False)
@@ -57,50 +64,69 @@ class ArmState:
     registers: list[dict[int, int]] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.angles = Axes((0.0,) * self.joints)
+        self.angles = Axes((0.0,) * self.joints, ACCELERATION)
         self.enabled = [False] * self.joints
         self.minimum = [-165.0] * self.joints
         self.maximum = [165.0] * self.joints
         # One servo more than joints: newer firmware counts the gripper's as the last.
         self.registers = [dict(SERVO_REGISTERS) for _ in range(self.joints + 1)]
 
-    def can_move(self) -> bool:
-        """Whether a motion command is obeyed: powered, held, and not stopped."""
-        return self.powered and not self.free and not self.stopped and all(self.enabled)
+    def standing(self, now: float) -> tuple[float, ...]:
+        """Where the joints are, on their encoders' ticks."""
+        position = self.angles.position(now)
+        return tuple(map(on_tick, position)) if self.geometry else position
 
-    def go_to_angles(self, target: tuple[float, ...], speed: int, now: float) -> bool:
-        """Start a joint motion; False if it is refused, which the real arm does not tell either."""
-        reachable = all(a <= t <= b for a, t, b in zip(self.minimum, target, self.maximum))
-        if not reachable or not self.can_move() or speed == 0:
-            return False
-        self.angles.go(target, DEGREES_A_SECOND * speed, now, queue=self.fresh_mode == 0)
-        return True
+    def told_angles(self, angles: tuple[float, ...]) -> tuple[float, ...]:
+        """Angles as the arm tells them."""
+        return told_angles(angles) if self.geometry else angles
 
-    def go_to_coords(self, target: tuple[float, ...], speed: int, now: float) -> bool:
-        """Start a motion of the end; False if it is refused."""
-        if not self.can_move() or speed == 0:
-            return False
-        self.pose.go(target, MILLIMETRES_A_SECOND * speed, now, queue=self.fresh_mode == 0)
-        return True
+    def limits(self) -> list[tuple[float, float]]:
+        """The lowest and the highest angle at which each joint may stand, on ticks.
+
+        Where the first is above the second, there is none.
+        """
+        pairs = list(zip(self.minimum, self.maximum))
+        return [inside(low, high) for low, high in pairs] if self.geometry else pairs
 
     def halt(self, now: float) -> None:
-        """End every motion of the arm."""
+        """End every motion of the arm at once, as where the torque is gone."""
         self.angles.halt(now)
-        self.pose.halt(now)
 
     def encoder(self, joint: int, now: float) -> int:
-        """The servo position of a joint, counted from 0; the gripper's, behind the last joint."""
+        """The encoder of a joint, counted from 0; the gripper's, behind the last joint."""
         if joint >= self.joints:
-            return ZERO_TICK + round(self.gripper.position(now)[0])
-        return angle_to_tick(joint, self.angles.position(now)[joint])
+            return encoder_at(0.0, 1) + round(self.gripper.position(now)[0])
+        reading = encoder_at(self.angles.position(now)[joint], self._sign(joint))
+        return min(max(reading, 0), ENCODER_MOST)
 
+    def angle_at(self, joint: int, encoder: int) -> float:
+        """The angle of a joint, counted from 0, whose encoder reads so much."""
+        return angle_at(encoder, self._sign(joint))
 
-def angle_to_tick(joint: int, degrees: float) -> int:
-    """The servo position that holds a joint at an angle."""
-    tick = ZERO_TICK + ENCODER_SIGNS[joint % 6] * round(degrees * TICKS_A_TURN / 360)
-    return min(max(tick, 0), TICKS_A_TURN - 1)
+    def _sign(self, joint: int) -> int:
+        return self.geometry.encoder_signs[joint] if self.geometry else 1
 
+    def told_coords(
+        self, angles: tuple[float, ...], *, base: bool = False
+    ) -> tuple[float, ...] | None:
+        """The end's coordinates for angles, as the arm tells them; None: nobody knows them.
 
-def tick_to_angle(joint: int, tick: int) -> float:
-    """The angle at which a servo position holds a joint."""
-    return ENCODER_SIGNS[joint % 6] * (tick - ZERO_TICK) * 360 / TICKS_A_TURN
+        With ``base`` they are in the base's frame, whatever reference frame is set.
+        """
+        pose = self.end(angles, base=base)
+        return None if pose is None else told_coords(pose.coords)
+
+    def end(self, angles: tuple[float, ...], *, base: bool = False) -> Pose | None:
+        """Where the end is: flange or tool, in the base's frame or the world's, as it is set."""
+        if self.geometry is None:
+            return None
+        pose = flange(self.geometry, angles)
+        if self.end_type:
+            pose = pose.then(Pose.of(self.tool))
+        return Pose.of(self.world).then(pose) if self.reference_frame and not base else pose
+
+    def flange_for(self, end: Pose) -> Pose:
+        """The flange's pose in the base's frame when the end is at ``end``."""
+        if self.end_type:
+            end = end.then(Pose.of(self.tool).inverted())
+        return Pose.of(self.world).inverted().then(end) if self.reference_frame else end

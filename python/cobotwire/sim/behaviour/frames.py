@@ -1,4 +1,4 @@
-"""Tool and world reference, reference frame and end type. They are held; the pose ignores them."""
+"""Tool and world reference, reference frame and end type: what coordinates are given in."""
 
 from __future__ import annotations
 

@@ -30,6 +30,8 @@ def set_gripper_value(arm: ArmState, now: float, value: int, speed: int, **kind:
     """Open the gripper so far. Like the joints it does not move without power."""
     if arm.powered and speed > 0:
         arm.gripper.go((float(value),), OPENING_A_SECOND * speed, now)
+    else:
+        arm.remarks.append("ignored: the gripper has no power, or its speed is 0")
 
 
 @does("set_gripper_calibration")

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from cobotwire.sim.behaviour.motion import send_angle
 from cobotwire.sim.behaviour.registry import does
+from cobotwire.sim.kinematics import Pose
+from cobotwire.sim.kinematics.pose import turned_about
 from cobotwire.sim.state import ArmState
+from cobotwire.sim.targets import STEP_DEGREES, STEP_MILLIMETRES, go_to_angles, jog, refuse
 
-# Further than the end of any 280 can reach, and inside what the wire can say.
-FAR_MILLIMETRES = 500.0
-FAR_DEGREES = 180.0
+FORWARD = 1
 
 
 @does("jog_angle")
 def jog_angle(arm: ArmState, now: float, joint: int, direction: int, speed: int) -> None:
-    """Turn a joint until its limit, or until it is stopped."""
-    limit = arm.maximum if direction == 1 else arm.minimum
-    arm.halt(now)
-    send_angle(arm, now, joint, limit[joint - 1], speed)
+    """Turn a joint until its limit, or until it is stopped. The other joints stand."""
+    low, high = arm.limits()[joint - 1]
+    target = list(arm.angles.stop_at(now))
+    inside = target[joint - 1] < high if direction == FORWARD else low < target[joint - 1]
+    if low > high or not inside:
+        refuse(arm, f"refused: joint {joint} is at its limit", joint)
+        return
+    target[joint - 1] = high if direction == FORWARD else low
+    go_to_angles(arm, tuple(target), speed, now, queue=False)
 
 
 @does("jog_absolute")
@@ -27,12 +33,25 @@ def jog_absolute(arm: ArmState, now: float, joint: int, angle: float, speed: int
 
 @does("jog_coord")
 def jog_coord(arm: ArmState, now: float, axis: int, direction: int, speed: int) -> None:
-    """Move the end along or about an axis until it is stopped."""
-    far = FAR_MILLIMETRES if axis <= 3 else FAR_DEGREES
-    arm.halt(now)
-    target = list(arm.pose.position(now))
-    target[axis - 1] = far if direction == 1 else -far
-    arm.go_to_coords(tuple(target), speed, now)
+    """Move the end along an axis, or change one of its angles, until it is stopped."""
+    step = STEP_MILLIMETRES if axis <= 3 else STEP_DEGREES
+
+    def way(here: Pose, far: float) -> Pose:
+        coords = list(here.coords)
+        coords[axis - 1] += far
+        return Pose.of(coords)
+
+    jog(arm, way, step if direction == FORWARD else -step, speed, now)
+
+
+@does("jog_rpy")
+def jog_rpy(arm: ArmState, now: float, axis: int, direction: int, speed: int) -> None:
+    """Turn the end about a fixed axis, where it stands, until it is stopped."""
+
+    def way(here: Pose, far: float) -> Pose:
+        return turned_about(axis - 1, far).then(here)._replace(origin=here.origin)
+
+    jog(arm, way, STEP_DEGREES if direction == FORWARD else -STEP_DEGREES, speed, now)
 
 
 @does("jog_increment")
@@ -44,4 +63,4 @@ def jog_increment(arm: ArmState, now: float, joint: int, increment: float, speed
 @does("jog_stop")
 def jog_stop(arm: ArmState, now: float) -> None:
     """End the motion; the next one is obeyed."""
-    arm.halt(now)
+    arm.angles.brake(now)

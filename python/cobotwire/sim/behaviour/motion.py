@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from cobotwire.sim.behaviour.registry import does
-from cobotwire.sim.state import IN_POSITION_ANGLES, IN_POSITION_COORDS, ArmState
+from cobotwire.sim.kinematics import DEGREES_A_TICK, Pose
+from cobotwire.sim.state import ArmState
+from cobotwire.sim.targets import go_to_angles, go_to_coords
+
+# How far from a target still counts as there, by the notes on kinematics.
+DEGREES, MILLIMETRES = 0.1, 5.0
+LINEAR = 1
+COORDS = 1
 
 
 @does("set_fresh_mode")
@@ -17,7 +24,7 @@ def set_fresh_mode(arm: ArmState, now: float, mode: int) -> None:
 @does("get_angles")
 def get_angles(arm: ArmState, now: float) -> dict[str, Any]:
     """Where the joints stand."""
-    return {"angles": arm.angles.position(now)}
+    return {"angles": arm.told_angles(arm.angles.position(now))}
 
 
 @does("send_angle")
@@ -25,35 +32,37 @@ def send_angle(arm: ArmState, now: float, joint: int, angle: float, speed: int) 
     """Move one joint."""
     target = list(arm.angles.target(now))
     target[joint - 1] = angle
-    arm.go_to_angles(tuple(target), speed, now)
+    go_to_angles(arm, tuple(target), speed, now)
 
 
 @does("send_angles")
 def send_angles(arm: ArmState, now: float, angles: tuple[float, ...], speed: int) -> None:
     """Move all joints."""
-    arm.go_to_angles(angles, speed, now)
+    go_to_angles(arm, angles, speed, now)
 
 
 @does("get_coords")
 def get_coords(arm: ArmState, now: float) -> dict[str, Any]:
-    """Where the end stands."""
-    return {"coords": arm.pose.position(now)}
+    """Where the end stands, in the frame and for the end type that are set."""
+    return told("coords", arm.told_coords(arm.standing(now)))
 
 
 @does("send_coord")
 def send_coord(arm: ArmState, now: float, axis: int, coord: float, speed: int) -> None:
-    """Move the end along or about one axis."""
-    target = list(arm.pose.target(now))
+    """Move the end along or about one axis; the other coordinates are those it is on its way to."""
+    end = arm.end(arm.angles.target(now))
+    target = list(end.coords) if end else [0.0] * 6
     target[axis - 1] = coord
-    arm.go_to_coords(tuple(target), speed, now)
+    go_to_coords(arm, target, speed, now, straight=arm.settings.movement_type == LINEAR)
 
 
 @does("send_coords")
 def send_coords(
-    arm: ArmState, now: float, coords: tuple[float, ...], speed: int, mode: int = 0
+    arm: ArmState, now: float, coords: tuple[float, ...], speed: int, mode: int | None = None
 ) -> None:
-    """Move the end."""
-    arm.go_to_coords(coords, speed, now)
+    """Move the end; without a mode in the way that is set."""
+    way = arm.settings.movement_type if mode is None else mode
+    go_to_coords(arm, coords, speed, now, straight=way == LINEAR)
 
 
 @does("pause")
@@ -61,7 +70,6 @@ def pause(arm: ArmState, now: float) -> None:
     """Stand still, and keep the way."""
     arm.paused = True
     arm.angles.pause(now)
-    arm.pose.pause(now)
 
 
 @does("is_paused")
@@ -75,14 +83,13 @@ def resume(arm: ArmState, now: float) -> None:
     """Go on; after a stop, obey motion again."""
     arm.paused, arm.stopped = False, False
     arm.angles.resume(now)
-    arm.pose.resume(now)
 
 
 @does("stop")
 def stop(arm: ArmState, now: float) -> None:
     """End every motion; none is obeyed until resume."""
+    arm.angles.brake(now)
     resume(arm, now)
-    arm.halt(now)
     arm.stopped = True
 
 
@@ -91,18 +98,21 @@ def is_in_position(
     arm: ArmState, now: float, target: tuple[float, ...], kind: int
 ) -> dict[str, Any]:
     """Whether the joints, or the end, stand at a target."""
-    axes, tolerances = (
-        (arm.pose, IN_POSITION_COORDS) if kind == 1 else (arm.angles, IN_POSITION_ANGLES)
-    )
-    ways = (abs(a - b) for a, b in zip(axes.position(now), target))
-    return {"reached": all(way <= most for way, most in zip(ways, tolerances))}
+    there = arm.standing(now)
+    if kind != COORDS:
+        return {"reached": all(abs(a - b) <= DEGREES for a, b in zip(there, target))}
+    end = arm.end(there)
+    if end is None:
+        return {"reached": False}
+    way, turn = end.distance(Pose.of(target))
+    # Each joint stands up to half a tick beside the angle that the target asked for.
+    return {"reached": way <= MILLIMETRES and turn <= DEGREES + arm.joints * DEGREES_A_TICK / 2}
 
 
 @does("is_moving")
 def is_moving(arm: ArmState, now: float) -> dict[str, Any]:
-    """Whether the arm moves right now."""
-    moving = arm.angles.moving(now) or arm.pose.moving(now)
-    return {"moving": moving and not arm.paused}
+    """Whether the arm moves right now; while it brakes it does."""
+    return {"moving": arm.angles.moving(now)}
 
 
 @does("get_speed")
@@ -115,3 +125,8 @@ def get_speed(arm: ArmState, now: float) -> dict[str, Any]:
 def set_speed(arm: ArmState, now: float, speed: int) -> None:
     """Set the speed of commands that carry none."""
     arm.speed = speed
+
+
+def told(name: str, value: tuple[float, ...] | None) -> dict[str, Any]:
+    """A field of a reply; without a value the arm answers what is legal, for it knows no better."""
+    return {} if value is None else {name: value}

@@ -10,9 +10,9 @@ from cobotwire.sim.state import ArmState
 
 @does("power_on")
 def power_on(arm: ArmState, now: float) -> None:
-    """Power and hold every joint where it stands; connect the Atom."""
+    """Power and hold every joint where it stands; connect the Atom. A stop outlives it."""
     arm.connected = True
-    arm.powered, arm.free, arm.stopped = True, False, False
+    arm.powered, arm.free = True, False
     arm.enabled = [True] * arm.joints
 
 

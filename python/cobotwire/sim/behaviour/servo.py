@@ -6,7 +6,8 @@ from typing import Any
 
 from cobotwire.sim.behaviour.motion import send_angle
 from cobotwire.sim.behaviour.registry import does
-from cobotwire.sim.state import ArmState, tick_to_angle
+from cobotwire.sim.state import ArmState
+from cobotwire.sim.targets import go_to_angles
 
 
 @does("set_encoder")
@@ -16,7 +17,7 @@ def set_encoder(
     """Move one servo, at its speed or the one that is set."""
     if joint <= arm.joints:
         chosen = arm.speed if speed is None else speed
-        send_angle(arm, now, joint, tick_to_angle(joint - 1, encoder), chosen)
+        send_angle(arm, now, joint, arm.angle_at(joint - 1, encoder), chosen)
 
 
 @does("get_encoder")
@@ -28,8 +29,8 @@ def get_encoder(arm: ArmState, now: float, joint: int) -> dict[str, Any]:
 @does("set_encoders")
 def set_encoders(arm: ArmState, now: float, encoders: tuple[int, ...], speed: int) -> None:
     """Move all servos."""
-    target = tuple(tick_to_angle(joint, tick) for joint, tick in enumerate(encoders))
-    arm.go_to_angles(target, speed, now)
+    target = tuple(arm.angle_at(joint, tick) for joint, tick in enumerate(encoders))
+    go_to_angles(arm, target, speed, now)
 
 
 @does("get_encoders")
@@ -54,12 +55,14 @@ def get_joint_max_angle(arm: ArmState, now: float, joint: int) -> dict[str, Any]
 def set_joint_min(arm: ArmState, now: float, joint: int, angle: float) -> None:
     """Set a joint's smallest angle."""
     arm.minimum[joint - 1] = angle
+    _mind_limits(arm, now)
 
 
 @does("set_joint_max")
 def set_joint_max(arm: ArmState, now: float, joint: int, angle: float) -> None:
     """Set a joint's largest angle."""
     arm.maximum[joint - 1] = angle
+    _mind_limits(arm, now)
 
 
 @does("is_servo_enable")
@@ -104,8 +107,8 @@ def set_servo_calibration(arm: ArmState, now: float, joint: int) -> None:
 
 @does("joint_brake")
 def joint_brake(arm: ArmState, now: float, joint: int) -> None:
-    """Hold a joint where it stands."""
-    arm.angles.halt(now)
+    """Hold a joint where it stands; the others, which move with it, stand too."""
+    arm.angles.brake(now)
 
 
 @does("release_servo")
@@ -121,3 +124,11 @@ def focus_servo(arm: ArmState, now: float, joint: int) -> None:
     """Hold one joint."""
     if joint <= arm.joints:
         arm.enabled[joint - 1] = arm.powered
+
+
+def _mind_limits(arm: ArmState, now: float) -> None:
+    """A motion that would lead a joint beyond its new limits ends."""
+    pairs = zip(arm.angles.stop_at(now), arm.angles.target(now), arm.limits())
+    if any(at != to and not low <= to <= high for at, to, (low, high) in pairs):
+        arm.angles.brake(now)
+        arm.remarks.append("stopped: the motion leads beyond the new limits")

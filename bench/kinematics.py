@@ -1,0 +1,68 @@
+"""Inverse then forward kinematics over 10,000 random poses that some joint angles reach.
+
+    python bench/kinematics.py [--poses N]
+
+Every pose is that of random angles inside the limits of the edition mycobot280; it is looked for
+from other random angles. Once as it is, once cut to the wire's steps as get_coords tells it, which
+may put it a hair out of reach. And from random coordinates in the box that the edition allows: how
+many are reachable at all.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import time
+from pathlib import Path
+
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.sim.kinematics import MYCOBOT_280, Pose, coords_of, flange, nearest
+from cobotwire.sim.kinematics.ticks import told_coords
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+from kinematic_samples import LIMITS, random_angles, within_limits
+
+MILLIMETRES, DEGREES = 0.1, 0.02
+
+
+def main() -> None:
+    """Measure, and print beside the limits."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--poses", type=int, default=10_000)
+    poses: int = parser.parse_args().poses
+    rng = random.Random(280)
+    exact = [flange(MYCOBOT_280, random_angles(rng)) for _ in range(poses)]
+    _round_trip("as they are", exact, rng, limited=True)
+    told = [Pose.of(told_coords(pose.coords)) for pose in exact]
+    _round_trip("as get_coords tells them", told, rng, limited=False)
+    numbers = TABLE.in_role("coordinate targets").request[0].fields[0].cases[0].numbers
+    box = [(number.minimum / number.divide, number.maximum / number.divide) for number in numbers]
+    anywhere = [Pose.of([rng.uniform(low, high) for low, high in box]) for _ in range(poses)]
+    _round_trip("anywhere in the box that send_coords takes", anywhere, rng, limited=False)
+
+
+def _round_trip(what: str, poses: list[Pose], rng: random.Random, *, limited: bool) -> None:
+    ways, turns, outside = [], [], 0
+    started = time.perf_counter()
+    for pose in poses:
+        found = nearest(MYCOBOT_280, pose, random_angles(rng), LIMITS)
+        if found is not None:
+            way, turn = flange(MYCOBOT_280, found).distance(pose)
+            ways.append(way)
+            turns.append(turn)
+            outside += not within_limits(found)
+    each = (time.perf_counter() - started) / len(poses)
+    print(
+        f"{len(poses)} poses {what}: {len(ways)} reachable, at most {max(ways):.2g} mm and "
+        f"{max(turns):.2g} degrees off; {outside} outside the limits; {each * 1e6:.0f} us each"
+    )
+    if limited:
+        right = len(ways) == len(poses) and not outside
+        right = right and max(ways) <= MILLIMETRES and max(turns) <= DEGREES
+        print(f"  {'within' if right else 'OVER'} {MILLIMETRES} mm and {DEGREES} degrees")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,169 @@
+"""A whole session with the served arm: pymycobot 4.0.7, unmodified, beside ours, call by call.
+
+Each client has an arm of its own, in real time, on a pty and over TCP. What is printed is the table
+of docs/simulation.md, "What pymycobot does with it". A motion takes as long as the arm does; what
+the client adds to that is what differs.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any, NamedTuple
+
+from cobotwire.editions.mycobot280 import TABLE, MyCobot280
+from cobotwire.sim import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
+
+POSE = [30.0, -20.0, -35.0, 25.0, 40.0, 15.0]
+# What else runs on the machine only adds: each call counts by its fastest turn.
+TURNS = 3
+NEAR = [20.0, -25.0, -30.0, 20.0, 35.0, 10.0]
+# Where a session moves to the coordinates that it read at POSE.
+READ = "the coordinates read before"
+
+
+class Step(NamedTuple):
+    """A call by pymycobot's name; then so many seconds of the arm's time pass."""
+
+    name: str
+    values: tuple[Any, ...] = ()
+    pause: float = 0.0
+
+
+SESSION = (
+    Step("is_power_on"),
+    Step("power_on"),
+    Step("is_power_on"),
+    Step("sync_send_angles", (POSE, 60)),
+    Step("get_angles"),
+    Step("get_coords"),
+    Step("sync_send_angles", (NEAR, 60)),
+    Step("sync_send_coords", (READ, 60, 0)),
+    Step("get_angles"),
+    Step("get_coords"),
+    Step("send_angle", (1, 0, 80), 1.5),
+    Step("jog_angle", (1, 1, 20), 0.5),
+    Step("is_moving"),
+    Step("stop", pause=0.5),  # it brakes
+    Step("is_moving"),
+    Step("resume"),
+    Step("jog_increment", (2, 10, 60), 1.0),
+    Step("get_angles"),
+    Step("set_gripper_value", (60, 100), 2.0),
+    Step("get_gripper_value"),
+    Step("set_digital_output", (23, 1)),
+    Step("get_digital_input", (23,)),
+    Step("set_basic_output", (5, 1)),
+    Step("get_basic_input", (5,)),
+    Step("set_color", (0, 128, 255)),
+    Step("power_off"),
+    Step("is_power_on"),
+)
+OUR_NAMES = {"sync_send_angles": "move_angles", "sync_send_coords": "move_coords"}
+
+
+class Called(NamedTuple):
+    """What a call returned, or raised, and the real seconds that it took."""
+
+    result: Any
+    seconds: float
+
+
+def play(client: Any, clock: RunningClock) -> list[Called]:
+    """Go through the session; what a call raises is its result."""
+    called: list[Called] = []
+    coords: Sequence[float] = ()
+    for step in SESSION:
+        name = step.name if hasattr(client, step.name) else OUR_NAMES[step.name]
+        values = [coords if value is READ else value for value in step.values]
+        started = time.perf_counter()
+        try:
+            result = getattr(client, name)(*values)
+        except Exception as error:  # whatever it is, it goes into the table
+            result = error
+        called.append(Called(result, time.perf_counter() - started))
+        if step.name == "get_coords" and isinstance(result, list | tuple):
+            coords = result
+        clock.sleep(step.pause)
+    return called
+
+
+def pymycobot_on(url: str) -> Any:
+    """Its class for a port, or for a socket, as its users open it; both sleep 1.5 s over it."""
+    with warnings.catch_warnings():
+        # Importing it compiles and calls what Python deprecates.
+        warnings.simplefilter("ignore")
+        from pymycobot import MyCobot280 as Theirs
+        from pymycobot import MyCobot280Socket as TheirSocket
+    if not url.startswith("socket://"):
+        return Theirs(url, "115200")
+    host, _, port = url.removeprefix("socket://").rpartition(":")
+    return TheirSocket(host, int(port))
+
+
+CLIENTS: dict[str, Callable[[str], Any]] = {"pymycobot": pymycobot_on, "cobotwire": MyCobot280}
+SERVERS: dict[str, Callable[[SimulatedArm, RunningClock], Server]] = {
+    "pty": PtyServer,
+    "TCP": lambda arm, clock: TcpServer(arm, clock=clock),
+}
+
+
+@contextmanager
+def session(who: str, link: str, speed: float = 1.0) -> Iterator[tuple[Any, RunningClock]]:
+    """A client that is connected to a new arm."""
+    clock = RunningClock(speed)
+    with SERVERS[link](SimulatedArm(TABLE, clock=clock), clock) as server:
+        client = CLIENTS[who](server.url)
+        try:
+            yield client, clock
+        finally:
+            with suppress(OSError):
+                client.close()
+
+
+def main() -> None:
+    """Measure and print."""
+    columns: dict[str, list[Called]] = {}
+    for _ in range(TURNS):
+        for link in SERVERS:
+            for who in CLIENTS:
+                with session(who, link) as (client, clock):
+                    called = play(client, clock)
+                best = columns.setdefault(f"{who}, {link}", called)
+                columns[f"{who}, {link}"] = [min(pair, key=_seconds) for pair in zip(best, called)]
+    print("| call | " + " | ".join(columns) + " |")
+    print("|---" * (len(columns) + 1) + "|")
+    for index, step in enumerate(SESSION):
+        cells = [_cell(column[index]) for column in columns.values()]
+        print(f"| `{step.name}` | " + " | ".join(cells) + " |")
+    waits = [index for index, step in enumerate(SESSION) if step.name not in OUR_NAMES]
+    sums = [sum(column[index].seconds for index in waits) for column in columns.values()]
+    print("| all but the motions waited for | " + " | ".join(map(_time, sums)) + " |")
+
+
+def _seconds(called: Called) -> float:
+    return called.seconds
+
+
+def _cell(called: Called) -> str:
+    return f"{_said(called.result)} · {_time(called.seconds)}"
+
+
+def _said(result: Any) -> str:
+    if isinstance(result, BaseException):
+        return f"**{type(result).__name__}**"
+    if isinstance(result, list | tuple):
+        return " ".join(f"{part:g}" for part in result)
+    return "-" if result is None else str(result)
+
+
+def _time(seconds: float) -> str:
+    digits = max(0, 1 - math.floor(math.log10(max(seconds * 1000, 1e-3))))
+    return f"{seconds * 1000:.{digits}f} ms"
+
+
+if __name__ == "__main__":
+    main()
