@@ -34,7 +34,17 @@ MAY_IMPORT: dict[str, set[str]] = {
         *("errors", "table", "codec", "diagnose", "session", "transport", "driver"),
     },
     "conformance": {
-        *("errors", "table", "codec", "session", "transport", "diagnose", "sim", "editions", "editions"),
+        *(
+            "errors",
+            "table",
+            "codec",
+            "session",
+            "transport",
+            "diagnose",
+            "sim",
+            "editions",
+            "editions",
+        ),
     },
     "demo": {"codec", "driver", "editions", "sim"},
     "testing": {"errors", "table", "codec", "driver", "editions", "sim"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import pytest
 
@@ -91,7 +92,7 @@ def test_what_is_broken_is_found_where_it_is(name: str) -> None:
     assert not report.conforms
 
 
-BEHAVIOURS = {
+BEHAVIOURS: dict[str, tuple[str, Callable[[Any], Any], str]] = {
     "ignored": ("set_joint_min", lambda real: lambda arm, now, **a: None, "read-back"),
     "the next joint": (
         "set_joint_max",
@@ -100,10 +101,11 @@ BEHAVIOURS = {
     ),
     "all joints": (
         "set_joint_max",
-        lambda real: lambda arm, now, joint, angle: [
-            real(arm, now, each, angle) for each in range(1, 7)
-        ]
-        and None,
+        lambda real: (
+            lambda arm, now, joint, angle: (
+                [real(arm, now, each, angle) for each in range(1, 7)] and None
+            )
+        ),
         "neighbours-stay",
     ),
     "a tenth": (

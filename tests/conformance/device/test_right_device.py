@@ -8,6 +8,8 @@ import pytest
 
 from cobotwire import editions
 from cobotwire.conformance import Verdict
+from cobotwire.sim import SimulatedArm
+from cobotwire.sim.clock import SteppedClock
 from conformance.device.testing import Altered, bad, leave, prepared
 
 EDITIONS = ["mycobot", "mycobot280"]
@@ -47,9 +49,6 @@ def test_it_conforms_under_light_noise_twenty_times_of_twenty(edition: str, seed
 
 
 def test_an_arm_that_never_acknowledges_conforms() -> None:
-    from cobotwire.sim import SimulatedArm
-    from cobotwire.sim.clock import SteppedClock
-
     table = editions.load("mycobot280").TABLE
     open_loop = prepared(table, lambda arm: SimulatedArm(table, clock=arm._clock, acks=False))
     assert isinstance(open_loop.line.clock, SteppedClock)
@@ -60,7 +59,7 @@ def test_an_arm_that_never_acknowledges_conforms() -> None:
 def test_a_run_leaves_the_arm_as_it_was(edition: str) -> None:
     kept = []
 
-    def keep(arm):  # type: ignore[no-untyped-def]  # a peer as it comes
+    def keep(arm: SimulatedArm) -> SimulatedArm:
         kept.append((arm, repr(_settings(arm))))
         return arm
 
@@ -71,15 +70,12 @@ def test_a_run_leaves_the_arm_as_it_was(edition: str) -> None:
     assert repr(_settings(arm)) == before
 
 
-def _settings(arm):  # type: ignore[no-untyped-def]  # whatever the state holds
+def _settings(arm: SimulatedArm) -> tuple[object, ...]:
     state = arm.state
     names = ("powered", "free", "stopped", "paused", "fresh_mode", "speed", "reference_frame")
     plain = {name: getattr(state, name) for name in names}
     rows = (state.end_type, state.ssid, state.password, state.tool, state.world, state.registers)
     limits = (state.minimum, state.maximum)
-    high = [sorted(pin for pin, high in pins.items() if high) for pins in _pins(state)]
+    both = (state.pins, state.basic_pins)
+    high = [sorted(pin for pin, high in pins.items() if high) for pins in both]
     return plain, rows, limits, high
-
-
-def _pins(state):  # type: ignore[no-untyped-def]  # whatever the state holds
-    return state.pins, state.basic_pins

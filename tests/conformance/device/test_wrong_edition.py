@@ -34,9 +34,7 @@ def _ten_times_finer(command: Command, field: str) -> Command:
 def _wrong(name: str, field: str) -> Table:
     return replace(
         TABLE,
-        commands=tuple(
-            _ten_times_finer(c, field) if c.name == name else c for c in TABLE.commands
-        ),
+        commands=tuple(_ten_times_finer(c, field) if c.name == name else c for c in TABLE.commands),
     )
 
 

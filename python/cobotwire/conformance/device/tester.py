@@ -39,6 +39,9 @@ class Step(NamedTuple):
 class Tester:
     """Tests the device at the other end of a line against an edition."""
 
+    # So that pytest does not take it for a class of tests where it is imported.
+    __test__ = False
+
     def __init__(
         self,
         line: Line,

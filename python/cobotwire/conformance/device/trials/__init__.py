@@ -5,9 +5,23 @@ from cobotwire.conformance.device.trials import (  # isort: skip  (the order of 
     malformed,
     settings,
     effects,
+    holding,
     motion,
+    coordinates,
+    jogging,
     agreement,
     alike,
 )
 
-__all__ = ["agreement", "alike", "effects", "malformed", "motion", "queries", "settings"]
+__all__ = [
+    "agreement",
+    "alike",
+    "coordinates",
+    "effects",
+    "holding",
+    "jogging",
+    "malformed",
+    "motion",
+    "queries",
+    "settings",
+]
