@@ -29,15 +29,17 @@ class Complaint(NamedTuple):
         return ": ".join(part for part in self if part)
 
 
-def complaints(table: Table, peer: Peer, clock: SteppedClock) -> Iterator[Complaint]:
-    """What the tester finds wrong, as it finds it."""
-    for result in results(table, peer, clock):
+def complaints(
+    table: Table, peer: Peer, clock: SteppedClock, only: str = ""
+) -> Iterator[Complaint]:
+    """What the tester finds wrong, as it finds it; ``only`` leaves out all other commands."""
+    for result in results(table, peer, clock, only):
         if result.verdict in BAD:
             yield Complaint(result.command, result.rule, result.reason)
 
 
-def results(table: Table, peer: Peer, clock: SteppedClock) -> Iterator[Result]:
-    """The results of a whole run, step by step."""
+def results(table: Table, peer: Peer, clock: SteppedClock, only: str = "") -> Iterator[Result]:
+    """The results of a whole run, step by step, or of the steps of one command."""
     leave = Leave.of(
         EVERYTHING,
         joints=table.joints,
@@ -46,4 +48,5 @@ def results(table: Table, peer: Peer, clock: SteppedClock) -> Iterator[Result]:
     )
     tester = Tester(Line(MemoryLink(peer, clock), clock), table, leave=leave)
     for step in tester.steps():
-        yield from tester.results(step)
+        if not only or (step.command is not None and step.command.name == only):
+            yield from tester.results(step)

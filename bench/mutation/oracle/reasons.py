@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cobotwire.table import Field, Table
-from mutation.device.exchanges import reply_fields
+from mutation.device.exchanges import reply_fields, request_fields
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, only_legal, said_by, values_of
 from mutation.oracle.conversation import Conversation
@@ -18,6 +18,9 @@ def reason(table: Table, mutant: Mutant) -> str:
     requests = sum(len(conversation.steps) for conversation in had)
     if all(conversation.heard == said for conversation, said in zip(had, wrong)):
         return _alike(table, mutant, had, requests)
+    unsaid = _unsaid(table, mutant)
+    if unsaid:
+        return unsaid
     field = _field(table, mutant)
     if field is None or field.echo or _told(table, mutant.command, field):
         return ""
@@ -42,6 +45,31 @@ def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation], requests: 
         for value in (told if isinstance(told, tuple) else (told,))
     }
     return f"{same}: `{field.name}` was {_range(seen)}, which is sent alike"
+
+
+# What the edition leaves open, by what a request's field is measured in or called.
+SHARE = "percent"
+TURNS = "CLOCKWISE"
+
+
+def _unsaid(table: Table, mutant: Mutant) -> str:
+    """What the edition does not say of an order's field, so that whatever is done is right."""
+    if not mutant.command or mutant.field in ("", *_replied(table, mutant.command)):
+        return ""
+    fields = {field.name: field for field in request_fields(table.command(mutant.command))}
+    field = fields[mutant.field]
+    if field.cases[0].numbers[0].unit == SHARE and field.name == "speed":
+        return (
+            "the edition gives a speed as a share of the fastest, and no line says how fast that is"
+        )
+    if TURNS in field.labels:
+        return "the edition does not say whether the angle of a joint that turns clockwise grows"
+    return ""
+
+
+def _replied(table: Table, name: str) -> list[str]:
+    command = table.command(name)
+    return [field.name for field in reply_fields(command)] if command.answers else []
 
 
 def _range(values: set[int | float]) -> str:
