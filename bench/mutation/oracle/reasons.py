@@ -13,27 +13,31 @@ from mutation.oracle.conversation import Conversation
 
 def reason(table: Table, mutant: Mutant) -> str:
     """Plays long conversations with the mutant, and looks at what its edition says."""
-    had = list(conversations(table, mutant.command))
-    wrong = [said_by(mutant, conversation) for conversation in had]
-    requests = sum(len(conversation.steps) for conversation in had)
-    if all(conversation.heard == said for conversation, said in zip(had, wrong)):
-        return _alike(table, mutant, had, requests)
     unsaid = _unsaid(table, mutant)
     if unsaid:
         return unsaid
     field = _field(table, mutant)
-    if field is None or field.echo or _told(table, mutant.command, field):
-        return ""
-    if not all(only_legal(table, said) for said in wrong):
-        return ""
+    known = field is None or field.echo or _told(table, mutant.command, field)
+    had, differs = [], False
+    for conversation in conversations(table, mutant.command):
+        said = said_by(mutant, conversation)
+        had.append(conversation)
+        if said != conversation.heard:
+            differs = True
+            if known or not only_legal(table, said):
+                return ""
+    if not differs:
+        return _alike(table, mutant, had)
+    assert field is not None
     return (
         f"nobody knows the true value: every wrong one is legal, no command sets "
         f"`{field.name}` and no other reply repeats it"
     )
 
 
-def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation], requests: int) -> str:
+def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
     """What shows that it is the same: the values that were there to be sent wrong."""
+    requests = sum(len(conversation.steps) for conversation in had)
     same = f"not one byte differs in {len(had)} conversations of {requests} writes in all"
     field = _field(table, mutant)
     if field is None:
