@@ -11,8 +11,8 @@ from cobotwire.conformance.device.trial import Case
 from cobotwire.table import Command
 
 Pose = tuple[float, ...]
-# Shares of each joint's range in the workspace: no joint stands as another one, nor at zero. From the
-# last two, where joints 2 and 3 are bent the same way, the end can go a little way in any direction.
+# Shares of each joint's range in the workspace: no joint stands as another one, nor at zero. From
+# the last two, where joints 2 and 3 are bent the same way, the end can go a little way anywhere.
 POSES = (
     (0.71, 0.37, 0.62, 0.29, 0.83, 0.17),
     (0.33, 0.68, 0.41, 0.77, 0.21, 0.58),

@@ -9,15 +9,19 @@ from cobotwire.conformance.device.trials import (  # isort: skip  (the order of 
     motion,
     coordinates,
     jogging,
+    gripping,
     agreement,
+    calibrating,
     alike,
 )
 
 __all__ = [
     "agreement",
     "alike",
+    "calibrating",
     "coordinates",
     "effects",
+    "gripping",
     "holding",
     "jogging",
     "malformed",
