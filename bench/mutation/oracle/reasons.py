@@ -9,6 +9,7 @@ from mutation.device.exchanges import reply_fields, request_fields
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, only_legal, said_by, values_of
 from mutation.oracle.conversation import Conversation
+from mutation.oracle.unsaid import LEFT_OPEN, OF_MEANING
 
 
 def reason(table: Table, mutant: Mutant) -> str:
@@ -58,6 +59,8 @@ TURNS = "CLOCKWISE"
 
 def _unsaid(table: Table, mutant: Mutant) -> str:
     """What the edition does not say of an order's field, so that whatever is done is right."""
+    if mutant.kind in OF_MEANING and mutant.command in LEFT_OPEN:
+        return LEFT_OPEN[mutant.command]
     if not mutant.command or mutant.field in ("", *_replied(table, mutant.command)):
         return ""
     fields = {field.name: field for field in request_fields(table.command(mutant.command))}
@@ -96,10 +99,16 @@ def _field(table: Table, mutant: Mutant) -> Field | None:
 def _told(table: Table, name: str, field: Field) -> bool:
     """Whether anything but this reply says what the field's value is."""
     command = table.command(name)
-    if any(c.read_by is not None and c.read_by.query == name for c in table.commands):
+    setters = [c for c in table.commands if c.read_by is not None and c.read_by.query == name]
+    # A fixed state that is brought about tells one value, and nothing of the others.
+    if any(
+        all(isinstance(said, str) for _, said in c.read_by.fields) for c in setters if c.read_by
+    ):
+        return True
+    if setters and field.choices:
         return True
     return any(
-        other.name == field.name or (_units(field) and _units(other) == _units(field))
+        _units(field) and _units(other) == _units(field)
         for query in table.commands
         if query.answers and query.id != command.id
         for other in reply_fields(query)

@@ -179,9 +179,22 @@ def _complete(command: Command, given: dict[str, Any], result: dict[str, Any]) -
     # An acknowledgement says 1, done.
     usual = 1 if command.ack else 0
     return {
-        field.name: given[field.name] if field.echo else result.get(field.name, _near(field, usual))
+        field.name: given[field.name]
+        if field.echo
+        else _sayable(field, result.get(field.name, _near(field, usual)))
         for field in form.fields
     }
+
+
+def _sayable(field: Field, value: Any) -> Any:
+    """The value; where the wire has no room for it, as behind a long tool, the end of the range."""
+    if field.choices or not any(number.scaled for number in field.cases[0].numbers):
+        return value
+    parts = [
+        min(max(part, n.minimum * n.multiply / n.divide), n.maximum * n.multiply / n.divide)
+        for part, n in zip(value if field.many else (value,), field.cases[0].numbers)
+    ]
+    return tuple(parts) if field.many else parts[0]
 
 
 def _form(command: Command, result: dict[str, Any]) -> int:

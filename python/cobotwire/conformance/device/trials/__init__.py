@@ -10,6 +10,7 @@ from cobotwire.conformance.device.trials import (  # isort: skip  (the order of 
     coordinates,
     jogging,
     gripping,
+    queueing,
     agreement,
     calibrating,
     alike,
@@ -27,5 +28,6 @@ __all__ = [
     "malformed",
     "motion",
     "queries",
+    "queueing",
     "settings",
 ]

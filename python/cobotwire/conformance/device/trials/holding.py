@@ -13,7 +13,7 @@ from cobotwire.table import Command, Layout, Table
 
 def is_for_one(table: Table, command: Command) -> bool:
     """Whether a command switches a state of one part, and a query tells it of each part."""
-    return _single(table, command) is not None
+    return _single(table, command) is not None and len(_parts(command)) > 1
 
 
 @trial(EFFECT, NEIGHBOURS, SILENT, ACKNOWLEDGED, of=is_for_one)

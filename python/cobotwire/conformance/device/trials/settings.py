@@ -51,7 +51,7 @@ def set_and_read(case: Case) -> None:
             case.without(NEIGHBOURS)
         for spot in spots:
             if spot.restorable:
-                case.bench.undo[str(spot)] = partial(_set, case, spot, spot.old)
+                case.bench.undo[str(spot)] = partial(_restore, case, spot)
         for spot in spots:
             _try(case, spot, spots)
             case.bench.undo.pop(str(spot), None)
@@ -81,15 +81,23 @@ def _read(case: Case, setting: Readable, key: Values) -> Values | None:
     return None if fields is None else setting.told(fields)
 
 
-def _set(case: Case, spot: _Spot, wanted: Values) -> None:
+def _set(case: Case, spot: _Spot, wanted: Values) -> bool:
+    """Set; whether the reply, where one is due, says that it has failed."""
     values, text = spot.setting.request(spot.key, wanted)
-    order(case, spot.setting.command, values, text)
+    good = order(case, spot.setting.command, values, text).good
+    flags = [] if good is None or good.message is None else good.message.layout.fields
+    return any(f.kind == "flag" and not f.echo and not good.fields[f.name] for f in flags if good)
+
+
+def _restore(case: Case, spot: _Spot) -> None:
+    _set(case, spot, spot.old)
 
 
 def _try(case: Case, spot: _Spot, spots: list[_Spot]) -> None:
     for index, wanted in enumerate(spot.setting.tries(spot.key, spot.old)):
-        _set(case, spot, wanted)
+        failed = _set(case, spot, wanted)
         _expect(case, READ_BACK, spot, wanted)
+        case.expect(REPLIED, not failed, f"{spot} says that it failed, but {wanted} is read back")
         for other in spots if index == 0 else ():
             if other is not spot:
                 _expect(case, NEIGHBOURS, other, other.old, f"behind {spot}: ")
