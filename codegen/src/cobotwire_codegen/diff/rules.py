@@ -56,12 +56,10 @@ _WIRE = {
     "selector-changed": "what decides the type was {old}, is {new}: numbers are misread",
     "sign-rule-changed": "raw words stood for {old}, stand for {new}: some are misread",
     "text-changed": "the text was `{old}`, is `{new}`: it is misread",
-    "tries-changed": "a conformance run sent {old}, sends {new}",
     "type-layout-changed": "was {old} on the line, is {new}: the frame is misread or refused",
     "width-changed": "bytes were {old}, are {new}: the frame is refused",
 }
 _API = {
-    "agreement-changed": "agreed at rest with {old}, agrees with {new}: runs compare others",
     "alias-removed": "the method {old} went; its message is {new} and stays",
     "argument-now-required": "could be left out, must be given now",
     "argument-order-changed": "the arguments were ({old}), are ({new})",
@@ -81,6 +79,9 @@ _API = {
     "type-kind-changed": "was of the kind {old}, is {new}: callers give or get another one",
 }
 _BEHAVIOUR = {
+    "agreement-changed": "agreed at rest with {old}, agrees with {new}: runs compare others",
+    "read-back-changed": "was read back by {old}, is by {new}: a conformance run asks otherwise",
+    "tries-changed": "a conformance run sent {old}, sends {new}",
     "ack-changed": "an acknowledgement, which is not waited for: was {old}, is {new}",
     "choices-narrowed": "legal numbers were {old}, are {new}: some are refused now",
     "choices-widened": "legal numbers were {old}, are {new}: an old peer refuses some",
@@ -90,7 +91,6 @@ _BEHAVIOUR = {
     "range-moved": "the range was {old}, is {new}: values on either side are refused",
     "range-narrowed": "the range was {old}, is {new}: values between are refused now",
     "range-widened": "the range was {old}, is {new}: an old peer refuses values between",
-    "read-back-changed": "was read back by {old}, is by {new}: a conformance run asks otherwise",
     "role-changed": "the role was {old}, is {new}: waits and limits apply to other commands",
     "safety-changed": "was {old}, is {new}: retries and conformance runs treat it otherwise",
     "scale-changed": "a step was {old}, is {new}: the same bytes mean another value to an old peer",
