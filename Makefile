@@ -8,7 +8,7 @@ IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen bench plots table conform fuzz clean
+.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen bench plots table faults conform fuzz clean
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -53,6 +53,8 @@ bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost o
 	$(BIN)/python bench/imports.py
 	$(BIN)/python bench/streaming.py
 	$(BIN)/python bench/pipelining.py
+	$(BIN)/python bench/pymycobot_session.py
+	$(BIN)/python bench/stepped_client.py
 
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench
@@ -72,6 +74,9 @@ table: .venv/.tools .venv/.native ## what we and pymycobot make of bad lines, in
 
 conform: .venv/.tools .venv/.native ## break subjects on purpose and count what the testers find, into docs/conformance-mutants.md
 	$(BIN)/python bench/conform.py --page docs/conformance-mutants.md
+
+faults: .venv/.tools .venv/.native ## what we and pymycobot make of the fault scenarios, into docs/fault-scenarios.md
+	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py
 
 clean: ## forget the environment and what was built
 	rm -rf .venv target .cargo-tools rust/fuzz/target

@@ -9,14 +9,13 @@ its own and is ended after a time limit, so that to hang is a result too.
 
 from __future__ import annotations
 
-import multiprocessing
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NamedTuple
 
+import apart
 from bad_lines_page import BEGIN, END, Row, page
 from field_notes.case import Case
 from field_notes.cases import CASES
@@ -27,9 +26,7 @@ DOCUMENT = Path(__file__).parents[1] / "docs" / "bad-lines.md"
 CLIENTS = ("blocking", "asyncio", "pymycobot")
 AT_ONCE = 4
 LIMIT_SECONDS = 12.0
-# The processes are forked from one that has imported all three: importing is not what is timed.
-PROCESSES = multiprocessing.get_context("forkserver")
-PROCESSES.set_forkserver_preload(["field_notes.play", "field_notes.cases", "pymycobot"])
+PRELOADED = ["field_notes.play", "field_notes.cases", "pymycobot"]
 
 
 class Run(NamedTuple):
@@ -44,7 +41,7 @@ def main() -> None:
     """Play all cases that the command line names, or all; without names the page is written."""
     chosen = [CASES[name] for name in sys.argv[1:]] or list(CASES.values())
     runs = [Run(case, link, who) for case in chosen for link in case.links for who in CLIENTS]
-    _warm_up()
+    apart.warm_up(PRELOADED)
     with ThreadPoolExecutor(AT_ONCE) as pool:
         rows = list(pool.map(_measured, runs))
     results = {(run.case.name, run.link, run.who): row for run, row in zip(runs, rows)}
@@ -58,18 +55,12 @@ def main() -> None:
         print(f"{len(rows)} runs, written to {DOCUMENT}")
 
 
-def _warm_up() -> None:
-    """Start the process that the others are forked from, before anything is timed."""
-    first = PROCESSES.Process(target=time.sleep, args=(0,))
-    first.start()
-    first.join()
-
-
 def _measured(run: Run) -> Row:
     with COUNTING_PEERS[run.link](run.case) as peer:
-        ends = [_started(run, peer.url, client) for client in range(run.case.clients)]
+        clients = range(run.case.clients)
+        started = [apart.start(_play, run.case.name, run.who, peer.url, at) for at in clients]
         until = time.monotonic() + LIMIT_SECONDS
-        results = [_ended(process, end, until) for process, end in ends]
+        results = [one.result(until) for one in started]
         peer.settle()
         frames, garbled = list(peer.frames), peer.garbled
     ended = [result for result in results if result is not None]
@@ -78,30 +69,8 @@ def _measured(run: Run) -> Row:
     return Row(run.case, outcomes, seconds, frames, garbled, hung=len(ended) < len(results))
 
 
-Process = multiprocessing.context.ForkServerProcess
-
-
-def _started(run: Run, url: str, client: int) -> tuple[Process, Connection]:
-    ours, theirs = PROCESSES.Pipe(duplex=False)
-    process = PROCESSES.Process(target=_child, args=(theirs, run.case.name, run.who, url, client))
-    process.start()
-    theirs.close()
-    return process, ours
-
-
-def _child(end: Connection, name: str, who: str, url: str, client: int) -> None:
-    end.send(play(CASES[name], who, url, client))
-
-
-def _ended(process: Process, end: Connection, until: float) -> tuple[list[Outcome], float] | None:
-    """What the process tells; None if it does not come back in time."""
-    result = None
-    if end.poll(max(0.0, until - time.monotonic())):
-        result = end.recv()
-        process.join(1)
-    process.kill()
-    process.join()
-    return result
+def _play(name: str, who: str, url: str, client: int) -> tuple[list[Outcome], float]:
+    return play(CASES[name], who, url, client)
 
 
 if __name__ == "__main__":

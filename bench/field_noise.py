@@ -6,20 +6,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from cobotwire.sim.faults.noise import COMMAND_ERROR, PANIC, REBOOT_NULS, servo_packet
 from cobotwire.table import Table
 
 # The heads are those of ``legal_heads``; a table is too large to be asked for them each time.
 Maker = Callable[[Sequence[bytes], np.random.Generator], bytes]
 
-PANIC = (
-    b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n"
-    b"Core 1 register dump:\r\n"
-    + b"".join(
-        b"%-8s: 0x%08x  " % (name, 0x400D0000 + 37 * place)
-        for place, name in enumerate([b"PC", b"PS", b"A0", b"A1", b"EXCCAUSE", b"EXCVADDR"] * 14)
-    )
-    + b"\r\nBacktrace: 0x400d1f3c:0x3ffb1f20 0x400d2a81:0x3ffb1f40\r\n\r\nRebooting...\r\n"
-)
 INSTRUCTIONS = b"\x01\x02\x03\x04\x05\x82\x83\x00"
 ACK = b"\xfe\xfe\x03\x10\x01\xfa"
 
@@ -29,17 +21,17 @@ def servo(heads: Sequence[bytes], random: np.random.Generator) -> bytes:
     count = int(random.integers(0, 13))
     body = bytes([random.integers(0, 255), count + 2, random.choice(list(INSTRUCTIONS))])
     body += random.bytes(count)
-    return b"\xff\xff" + body + bytes([~sum(body) & 0xFF])
+    return servo_packet(body)
 
 
 def complaint(heads: Sequence[bytes], random: np.random.Generator) -> bytes:
     """What the firmware says of a broken request, again and again."""
-    return b"cmd_len error\r\n" * int(random.integers(1, 4))
+    return COMMAND_ERROR * int(random.integers(1, 4))
 
 
 def panic(heads: Sequence[bytes], random: np.random.Generator) -> bytes:
     """The dump of a panic, about 2.4 kB, and the NULs of the reboot behind it."""
-    return PANIC + bytes(277)
+    return PANIC + bytes(REBOOT_NULS)
 
 
 def text(heads: Sequence[bytes], random: np.random.Generator) -> bytes:

@@ -6,11 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import field
+from cobotwire.sim.faults import noise
 from diagnosing import ANGLES, FRAME, READ
 
 COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "decode"]
-FIELD = FRAME + READ + ANGLES + b"cmd_len error\r\n" + field.PANIC + bytes(277) + FRAME + b"\x78"
+FIELD = FRAME + READ + ANGLES + b"cmd_len error\r\n" + noise.PANIC + bytes(277) + FRAME + b"\x78"
 
 
 def run(*words: str, stdin: bytes = b"", cwd: Path | None = None) -> tuple[int, str, str]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import field
 from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.diagnose import Diagnoser, Item
+from cobotwire.sim.faults import noise
 
 READ = bytes.fromhex("ff ff 01 04 02 38 02 be")
 STATUS = bytes.fromhex("ff ff 01 04 00 ff 07 f4")
 SYNC_READ = bytes.fromhex("ff ff fe 0a 82 38 0f 01 02 03 04 05 06 19")
-SYNC_WRITE = field.servo_packet(bytes.fromhex("fe 0c 83 29 07 06 00 10 08 00 00 e8 03"))
+SYNC_WRITE = noise.servo_packet(bytes.fromhex("fe 0c 83 29 07 06 00 10 08 00 00 e8 03"))
 PING = bytes.fromhex("ff ff 07 02 01 f5")
 FRAME = bytes.fromhex("FE FE 03 12 01 FA")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 01 02 03 04 05 06 07 08 09 0A 0B FA")

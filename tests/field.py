@@ -6,12 +6,8 @@ from hypothesis import strategies as st
 
 import strategies
 from cobotwire.editions.mycobot import TABLE
+from cobotwire.sim.faults.noise import COMMAND_ERROR, PANIC, servo_packet
 from cobotwire.table import Table
-
-
-def servo_packet(body: bytes) -> bytes:
-    """A packet of the servo bus: ``body`` is ID, LEN, instruction or error, and parameters."""
-    return b"\xff\xff" + body + bytes([~sum(body) & 0xFF])
 
 
 def servo_packets() -> st.SearchStrategy[bytes]:
@@ -23,16 +19,6 @@ def servo_packets() -> st.SearchStrategy[bytes]:
         codes,
         st.binary(max_size=12),
     )
-
-
-PANIC = (
-    b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n\r\n"
-    b"Core  1 register dump:\r\n"
-    b"PC      : 0x400d15f4  PS      : 0x00060b30  A0      : 0x800d0b5c  A1      : 0x3ffb1f60\r\n"
-    b"EXCVADDR: 0x00000004  LBEG    : 0x4000c2e0  LEND    : 0x4000c2f6  LCOUNT  : 0x00000000\r\n"
-    b"\r\nBacktrace: 0x400d15f1:0x3ffb1f60 0x400d0b59:0x3ffb1f90 0x40088b9d:0x3ffb1fb0\r\n\r\n"
-    b"Rebooting...\r\n"
-)
 
 
 def spoilt_panics() -> st.SearchStrategy[bytes]:
@@ -58,7 +44,7 @@ def noise() -> st.SearchStrategy[bytes]:
     whole = st.one_of(
         servo_packets(),
         st.sampled_from(
-            [PANIC, b"cmd_len error\r\n", b"cmd_len error", b"ets Jul 29 2019 12:21:46\r\n\r\n"]
+            [PANIC, COMMAND_ERROR, b"cmd_len error", b"ets Jul 29 2019 12:21:46\r\n\r\n"]
         ),
         st.sampled_from([1, 3, 4, 63, 64, 277, 5000]).map(bytes),
         st.integers(1, 3000).map(lambda size: b"~" * size),

@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 from hypothesis import strategies as st
 
+from cobotwire.sim.faults import noise
 from cobotwire.table import Layout, Table
 
 ACK = b"\xfe\xfe\x03\x10\x01\xfa"
 TEXTS = [
-    b"cmd_len error\r\n",
+    noise.COMMAND_ERROR,
     b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n",
     b"Backtrace: 0x400d1f3c:0x3ffb1f20 0x400d2a81:0x3ffb1f40\r\n\r\nRebooting...\r\n",
 ]
@@ -32,8 +33,7 @@ def servo_packets(draw: st.DrawFn) -> bytes:
     parameters = draw(st.binary(max_size=12) | st.lists(st.sampled_from(b"\xfe\xfa\xff\x0e")))
     instruction = draw(st.sampled_from(b"\x01\x02\x03\x04\x05\x82\x83") | st.integers(0, 255))
     head = [draw(st.integers(0, 254)), len(parameters) + 2, instruction]
-    body = bytes(head) + bytes(parameters)
-    return b"\xff\xff" + body + bytes([~sum(body) & 0xFF])
+    return noise.servo_packet(bytes(head) + bytes(parameters))
 
 
 @st.composite
@@ -41,7 +41,7 @@ def servo_packets_ending_in_a_header_byte(draw: st.DrawFn) -> bytes:
     """A Feetech packet whose checksum is FE: with a frame behind it, FE FE FE LEN."""
     parameters = draw(st.binary(max_size=8))
     body = bytes([draw(st.integers(0, 254)), len(parameters) + 3, 3]) + parameters
-    return b"\xff\xff" + body + bytes([(0x01 - sum(body)) & 0xFF, 0xFE])
+    return noise.servo_packet(body + bytes([(0x01 - sum(body)) & 0xFF]))
 
 
 def false_headers(table: Table) -> st.SearchStrategy[bytes]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-import field
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.diagnose import CommandError, Finding, Garbage, Nuls, Panic, Text, summary, words
+from cobotwire.sim.faults import noise
 from diagnosing import FRAME, PING, READ, STATUS, diagnose, kinds, only
 
 
@@ -19,7 +19,7 @@ def test_cmd_len_error_again_and_again(codec: Codec) -> None:
 
 
 def test_a_panic_tells_its_cause_and_place(codec: Codec) -> None:
-    panic = only(codec, field.PANIC)
+    panic = only(codec, noise.PANIC)
     assert isinstance(panic, Panic)
     assert (panic.core, panic.cause, panic.rebooting) == (1, "LoadProhibited", True)
     assert (panic.pc, panic.address) == (0x400D15F4, 4)
@@ -43,7 +43,7 @@ def test_the_words_of_older_firmware(codec: Codec) -> None:
 @pytest.mark.parametrize("cut", [5, 30, 60, 200, 300])
 def test_a_panic_survives_a_frame_and_spoilt_bytes_in_its_middle(codec: Codec, cut: int) -> None:
     for inside in (FRAME, b"\xfe\xff\x80"):
-        stream = field.PANIC[:cut] + inside + field.PANIC[cut:]
+        stream = noise.PANIC[:cut] + inside + noise.PANIC[cut:]
         panics = [item for item in diagnose(codec, stream) if isinstance(item, Panic)]
         if inside != FRAME and cut < 21:
             assert not panics, "the words by which it is known are spoilt"
@@ -55,15 +55,15 @@ def test_a_panic_survives_a_frame_and_spoilt_bytes_in_its_middle(codec: Codec, c
 
 
 def test_two_panics_without_a_reboot_between_are_two(codec: Codec) -> None:
-    half = field.PANIC[:150]
-    items = diagnose(codec, half + field.PANIC)
-    assert [item.data for item in items] == [half, field.PANIC]
+    half = noise.PANIC[:150]
+    items = diagnose(codec, half + noise.PANIC)
+    assert [item.data for item in items] == [half, noise.PANIC]
     assert all(isinstance(item, Panic) for item in items)
 
 
 def test_a_crash_from_the_error_to_the_boot(codec: Codec) -> None:
     garbage = bytes.fromhex("78 80 78")
-    stream = FRAME + b"cmd_len error\r\n" * 2 + field.PANIC + bytes(277) + garbage + FRAME
+    stream = FRAME + b"cmd_len error\r\n" * 2 + noise.PANIC + bytes(277) + garbage + FRAME
     items = diagnose(codec, stream)
     assert kinds(items) == [Frame, CommandError, CommandError, Panic, Nuls, Garbage, Frame]
     said = summary([item for item in items if isinstance(item, Finding)])
@@ -103,6 +103,6 @@ def test_the_sentences_for_a_timeout(codec: Codec) -> None:
         "servo bus leak: 3 packets, "
         "e.g. read 2 bytes at register 0x38 (present position) of servo 1"
     )
-    findings = [i for i in diagnose(codec, field.PANIC) if isinstance(i, Finding)]
+    findings = [i for i in diagnose(codec, noise.PANIC) if isinstance(i, Finding)]
     assert summary(findings) == "the controller rebooted: panic LoadProhibited"
     assert summary([]) == ""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-import field
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.diagnose import ServoPacket, words
+from cobotwire.sim.faults import noise
 from diagnosing import (
     ANGLES,
     FRAME,
@@ -51,7 +51,7 @@ def test_a_read_that_is_repeated_is_no_reply(codec: Codec) -> None:
 
 
 def test_a_sync_read_and_the_replies_of_all_its_servos(codec: Codec) -> None:
-    replies = b"".join(field.servo_packet(bytes([id, 17, 0]) + bytes(15)) for id in range(1, 7))
+    replies = b"".join(noise.servo_packet(bytes([id, 17, 0]) + bytes(15)) for id in range(1, 7))
     first, *answers = diagnose(codec, SYNC_READ + replies)
     assert isinstance(first, ServoPacket)
     assert (first.instruction, first.servo, first.ambiguous) == ("sync read", 0xFE, False)
@@ -75,7 +75,7 @@ def test_a_ping(codec: Codec) -> None:
 
 
 def test_a_servo_that_reports_an_overload(codec: Codec) -> None:
-    packet = only(codec, field.servo_packet(b"\x03\x02\x20"))
+    packet = only(codec, noise.servo_packet(b"\x03\x02\x20"))
     assert isinstance(packet, ServoPacket)
     assert (packet.role, packet.error, packet.ambiguous) == ("status", 0x20, False)
     assert "overload" in words(packet)
@@ -83,7 +83,7 @@ def test_a_servo_that_reports_an_overload(codec: Codec) -> None:
 
 @pytest.mark.parametrize("frame", [FRAME, ANGLES])
 def test_a_checksum_of_fe_in_front_of_a_frame(codec: Codec, frame: bytes) -> None:
-    packet = field.servo_packet(bytes.fromhex("01 04 00 00 fc"))
+    packet = noise.servo_packet(bytes.fromhex("01 04 00 00 fc"))
     assert packet.endswith(b"\xfe")
     items = diagnose(codec, packet + frame)
     assert kinds(items) == [ServoPacket, Frame]

@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
+from cobotwire.sim.faults import noise
 from field_notes.case import ANGLES, DONE, GET_ANGLES, NO_ANSWER, Call, Case, Script
 
-
-def servo_packet(body: str) -> bytes:
-    """A Feetech packet with its checksum: the complement of the sum behind FF FF."""
-    data = bytes.fromhex(body)
-    return b"\xff\xff" + data + bytes([~sum(data) & 0xFF])
-
-
 LEAKS = {
-    "a servo read": bytes.fromhex("FF FF 01 04 02 38 02 BE"),
-    "a servo's reply": bytes.fromhex("FF FF 01 04 00 FF 07 F4"),
-    "a sync read": bytes.fromhex("FF FF FE 0A 82 38 0F 01 02 03 04 05 06 19"),
-    "a sync write": servo_packet("FE 0C 83 29 07 06 08 00 00 00 00 F4 01"),
-    "a servo ping": bytes.fromhex("FF FF 07 02 01 F5"),
+    "a servo read": noise.LEAKS["read"],
+    "a servo's reply": noise.LEAKS["status"],
+    "a sync read": noise.LEAKS["sync read"],
+    "a sync write": noise.LEAKS["sync write"],
+    "a servo ping": noise.LEAKS["ping"],
 }
-# ID 1, LEN 4, READ, register 0x38, 0xC2 bytes: their sum is 0x101, the checksum FE.
-CHECKSUM_FE = servo_packet("01 04 02 38 C2")
-PANIC = (
-    b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n"
-    + b"Core 1 register dump:\r\n"
-    + b"PC      : 0x400d1a2b  PS      : 0x00060830  A0      : 0x800d2c3d\r\n" * 34
-    + b"Backtrace:0x400d1a2b:0x3ffb1f60 0x400d2c3a:0x3ffb1f80\r\n\r\nRebooting...\r\n"
-)
-OTHER_BAUD = bytes.fromhex("78 80 78 F8 00 E6 1E 98 06 7E 80 FE 66 86 18 FF")
-TEXT = b"cmd_len error\r\n"
+CHECKSUM_FE = noise.LEAKS["checksum FE"]
+PANIC = noise.PANIC
+OTHER_BAUD = noise.at_other_rate(noise.BOOT, 4)[:16]
+TEXT = noise.COMMAND_ERROR
 
 
 def _echo(request: bytes, number: int) -> Script:

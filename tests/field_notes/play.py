@@ -80,7 +80,7 @@ def _in_turn(calls: tuple[Call, ...], case: Case, arm: Any, options: bool) -> li
     outcomes: list[Outcome] = []
     for _ in range(case.repeat):
         for call in calls:
-            outcome = _called(call, arm, options)
+            outcome = called(call, arm, options)
             if case.deaf and outcome.verdict == RIGHT:
                 continue
             outcomes.append(outcome)
@@ -103,7 +103,8 @@ def _in_threads(case: Case, arm: Any, options: bool) -> list[Outcome]:
     return outcomes
 
 
-def _called(call: Call, arm: Any, options: bool) -> Outcome:
+def called(call: Call, arm: Any, options: bool) -> Outcome:
+    """One call, and how it ended."""
     try:
         value = getattr(arm, call.method)(
             *call.arguments, **(call.their_options if options else {})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import FrameType
 
 import click
@@ -14,11 +14,11 @@ from cobotwire.sim.server import Server
 
 
 def serve(
-    server: Server, first_line: str | None = None, look: Callable[[], None] | None = None
+    server: Server, first_line: str | None = None, looks: Sequence[Callable[[], None]] = ()
 ) -> None:
     """Print the port, or the line that tells it, and serve it until Ctrl-C or SIGTERM.
 
-    ``look`` is called now and then, between two requests.
+    ``looks`` are called now and then, between two requests.
     """
 
     def stop(number: int, frame: FrameType | None) -> None:
@@ -34,7 +34,7 @@ def serve(
     if sys.stdout.isatty():
         click.echo(f"Try: cobotwire call get_angles --port {server.url}   (Ctrl-C ends)", err=True)
     try:
-        server.serve(look)
+        server.serve(looks)
     finally:
         signal.set_wakeup_fd(-1)
         server.close()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import sys
+from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 
@@ -14,6 +15,7 @@ from cobotwire.cli.faults import chosen, scenario_options, with_faults
 from cobotwire.cli.heard import SHOWN, Shown
 from cobotwire.cli.joints import JointTable
 from cobotwire.cli.serving import say, serve
+from cobotwire.cli.view import View
 from cobotwire.errors import UsageError
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim import PtyPort, RunningClock, Server, SimulatedArm, TcpPort
@@ -30,6 +32,7 @@ FASTEST = 1e6
 @click.option("--speed", type=float, default=1.0, help="The arm's time: 2 runs twice as fast.")
 @click.option("--quiet", is_flag=True, help="Print the port, but not what goes over the line.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object a line.")
+@click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf.")
 @scenario_options
 @click.pass_obj
 def sim(
@@ -41,12 +44,14 @@ def sim(
     as_json: bool,
     scenario: str | None,
     seed: int | None,
+    view: str | None,
 ) -> None:
     """Serve a simulated arm on a pseudo-terminal, or over TCP, until Ctrl-C.
 
     The first line is the port to open; then a line for everything that is heard and answered, and
     for every fault that is done; and on a terminal a table of the joints. Over TCP several clients
-    see the same arm; each line says whose it is.
+    see the same arm; each line says whose it is. --view draws the arm at the beginning, whenever it
+    has come to rest, and at the end.
     """
     if on_pty and tcp is not None:
         raise UsageError("--tcp", tcp, "one of --pty and --tcp")
@@ -60,10 +65,12 @@ def sim(
     lines = _Lines(arm, clock, faults, seed, None if quiet else shown)
     server = _server(lines, clock, tcp)
     with ExitStack() as stack:
-        look = None
+        looks: list[Callable[[], None]] = []
         if sys.stdout.isatty() and not (quiet or as_json):
-            look = stack.enter_context(JointTable(package, arm, clock)).look
-        serve(server, shown.serving(server.url), look)
+            looks.append(stack.enter_context(JointTable(package, arm, clock)).look)
+        if view is not None:
+            looks.append(stack.enter_context(View(package, arm, clock, view)).look)
+        serve(server, shown.serving(server.url), looks)
 
 
 def _server(lines: _Lines, clock: RunningClock, tcp: str | None) -> Server:

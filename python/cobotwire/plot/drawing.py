@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from math import ceil, log10
 from pathlib import Path
@@ -68,8 +69,11 @@ def save(figure: Figure, path: str) -> None:
     """
     suffix = Path(path).suffix.lower()
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    part = f"{path}.part"
     try:
-        figure.savefig(path, dpi=DOTS_AN_INCH, metadata=dated.get(suffix))
+        figure.savefig(part, format=suffix[1:], dpi=DOTS_AN_INCH, metadata=dated.get(suffix))
+        # In one step: whoever watches the file never sees half a picture.
+        os.replace(part, path)
     except OSError as error:
         raise UsageError("output", path, f"a file that can be written ({error})") from None
 

@@ -21,7 +21,7 @@ class Heard(NamedTuple):
     answer: int | None
 
 
-class _Exchange(NamedTuple):
+class Exchange(NamedTuple):
     """Something that was sent, and each chunk that was heard until the next, so much later."""
 
     request: bytes
@@ -55,7 +55,7 @@ class ReplayedArm:
             clock: gives the time in seconds.
             watch: called with every request.
         """
-        self._exchanges = _exchanges(packets)
+        self._exchanges = exchanges(packets)
         self._framer = codec.framer("request")
         self._speed = speed
         self._clock = clock
@@ -104,7 +104,7 @@ class ReplayedArm:
             answers = None if found is None else sum(len(data) for _, data in found.answers)
             self._watch(Heard(request, answers))
 
-    def _find(self, request: bytes) -> _Exchange | None:
+    def _find(self, request: bytes) -> Exchange | None:
         count = len(self._exchanges)
         for step in range(count):
             index = (self._at + step) % count
@@ -120,13 +120,13 @@ class ReplayedArm:
         return said
 
 
-def _exchanges(packets: Iterable[Packet]) -> list[_Exchange]:
+def exchanges(packets: Iterable[Packet]) -> list[Exchange]:
     """What was sent, with what was heard after it. What was heard before all is nobody's answer."""
-    exchanges: list[_Exchange] = []
+    exchanges: list[Exchange] = []
     asked_at = 0
     for time_ns, direction, data in sorted(_chunks(packets), key=lambda chunk: chunk[0]):
         if direction == "sent":
-            exchanges.append(_Exchange(data, []))
+            exchanges.append(Exchange(data, []))
             asked_at = time_ns
         elif direction == "heard" and exchanges:
             exchanges[-1].answers.append(((time_ns - asked_at) / 1e9, data))

@@ -7,7 +7,7 @@ import selectors
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Self
 
@@ -49,9 +49,9 @@ class Server(ABC):
         self._thread.join()
         self.close()
 
-    def serve(self, look: Callable[[], None] | None = None, every: float = 0.25) -> None:
-        """Answer until :meth:`stop` is called; ``look`` is called ``every`` so many seconds."""
-        look_at = None if look is None else time.monotonic()
+    def serve(self, looks: Sequence[Callable[[], None]] = (), every: float = 0.25) -> None:
+        """Answer until :meth:`stop` is called; ``looks`` are called ``every`` so many seconds."""
+        look_at = time.monotonic() if looks else None
         while True:
             for key, events in self._selector.select(self._wait(look_at)):
                 if key.fd == self._stop:
@@ -59,8 +59,9 @@ class Server(ABC):
                 self._ready(key.fd, events)
             for channel in tuple(self._channels.values()):
                 self._tell(channel)
-            if look is not None and look_at is not None and time.monotonic() >= look_at:
-                look()
+            if look_at is not None and time.monotonic() >= look_at:
+                for look in looks:
+                    look()
                 look_at = time.monotonic() + every
 
     def stop(self) -> None:

@@ -6,6 +6,7 @@
 The language of the files is in ``docs/simulation.md``.
 """
 
+from cobotwire.sim.faults.derived import derived
 from cobotwire.sim.faults.exchange import Done
 from cobotwire.sim.faults.fault import Fault
 from cobotwire.sim.faults.faulty import FaultyPeer
@@ -49,6 +50,7 @@ __all__ = [
     "WrongBaud",
     "WrongId",
     "WrongLength",
+    "derived",
     "find",
     "load",
     "loads",

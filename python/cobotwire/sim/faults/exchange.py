@@ -77,6 +77,23 @@ def recut(reply: Reply, data: bytes) -> Reply:
     return tuple(piece for piece in pieces if piece.data)
 
 
+def enlarged(reply: Reply, at: int, data: bytes) -> Reply:
+    """The reply with more bytes at an offset; every pause stays before the byte that it is before.
+
+    Those at its very end, or at its beginning, come without a pause.
+    """
+    pieces: list[Piece] = []
+    for piece in reply:
+        size = len(piece.data)
+        if 0 <= at <= size:
+            pieces.append(Piece(piece.pause, piece.data[:at] + data + piece.data[at:]))
+            at = -1
+        else:
+            pieces.append(piece)
+            at -= size
+    return tuple(pieces)
+
+
 def spread(reply: Reply, cuts: Sequence[int], pause: float) -> Reply:
     """The reply with a pause before each of these bytes; the pauses that it has stay."""
     pieces: list[Piece] = []

@@ -15,11 +15,11 @@ from cobotwire.sim.faults.rules import (
     RULE,
     SECONDS,
     SHARE,
+    Several,
     command,
     one_of,
     optional,
     ruled,
-    several,
     whole,
 )
 from cobotwire.table import FrameFormat
@@ -104,9 +104,9 @@ class Fault:
     # Whether there is something to do only where something is answered.
     wants_reply: ClassVar[bool] = True
 
-    commands: tuple[str | int, ...] = ruled(several(command), ())
+    commands: tuple[str | int, ...] = ruled(Several(command), ())
     only: Only = ruled(one_of(ONLY), "requests")
-    nth: tuple[int, ...] = ruled(several(COUNT), ())
+    nth: tuple[int, ...] = ruled(Several(COUNT), ())
     every: int = ruled(COUNT, 1)
     probability: float = ruled(SHARE, 1.0)
     from_seconds: float = ruled(SECONDS, 0.0)

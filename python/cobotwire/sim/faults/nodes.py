@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from cobotwire.errors import ScenarioError, UsageError
@@ -33,7 +34,7 @@ def parse(text: str, name: str) -> Node:
     """Read one YAML document; ``name`` stands for the file in messages.
 
     Raises:
-        ScenarioError: it is no YAML, or gives a key twice.
+        ScenarioError: it is no YAML, gives a key twice, or holds a tag.
         UsageError: the YAML library is not installed.
     """
     try:
@@ -42,40 +43,95 @@ def parse(text: str, name: str) -> Node:
     except ImportError:
         needed = "used where the extra is installed: pip install 'cobotwire[sim]'"
         raise UsageError("scenario file", name, needed) from None
+    yaml = YAML(typ="safe", pure=True)
     try:
-        # The round-trip reader keeps places, and makes no object that a tag names.
-        return _node(YAML(typ="rt").load(text), Place(name, 1, 1), 0)
+        # Nodes, and scalars one by one: no tag has anything made.
+        reading = _Reading(name, yaml.constructor.construct_object)
+        root = reading.node(yaml.compose(text), 0)
     except MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        place = Place(name, mark.line + 1, mark.column + 1) if mark else Place(name, 1, 1)
+        place = _after(Place(name, 1, 1), error.problem_mark or error.context_mark)
         raise ScenarioError([f"{place}: {_sentence(error.problem)}"]) from None
-    except (YAMLError, ValueError, RecursionError) as error:
-        raise ScenarioError([f"{Place(name, 1, 1)}: no YAML: {_sentence(str(error))}"]) from None
+    except (YAMLError, RecursionError) as error:
+        place = _place_in(text, name, getattr(error, "position", 0))
+        raise ScenarioError([f"{place}: no YAML: {_sentence(str(error))}"]) from None
+    if reading.problems:
+        problems = sorted(reading.problems)
+        raise ScenarioError([f"{place}: {message}" for place, message in problems])
+    return root
 
 
 # A scenario is a mapping with a list of mappings that hold lists; an alias may name what it is in.
 _DEEPEST = 5
+_TAG = "tag:yaml.org,2002:"
+_PLAIN = ("str", "int", "float", "bool", "null")
 
 
-def _node(value: Any, place: Place, depth: int) -> Node:
-    marks: Any = getattr(value, "lc", None)
-    if isinstance(value, dict) and depth < _DEEPEST:
-        keys, entries = {}, {}
-        for key, inner in value.items():
-            own = marks is not None and key in (marks.data or {})
-            keys[str(key)] = _at(place, marks.key(key)) if own else place
-            entries[str(key)] = _node(
-                inner, _at(place, marks.value(key)) if own else place, depth + 1
-            )
+class _Reading:
+    """Makes nodes of the library's; ``scalar`` makes the value of one of its scalars."""
+
+    def __init__(self, name: str, scalar: Callable[[Any], Any]) -> None:
+        self.problems: set[tuple[Place, str]] = set()
+        self._top = Place(name, 1, 1)
+        self._scalar = scalar
+        self._made: dict[tuple[int, int], Node] = {}
+
+    def node(self, found: Any, depth: int) -> Node:
+        """A node, and all that is in it."""
+        if found is None:
+            return Node(self._top, None, {})
+        # Once, however many aliases name it: a small file can name one thing a billion times.
+        made = self._made.get((id(found), depth))
+        if made is None:
+            made = self._made[id(found), depth] = self._make(found, depth)
+        return made
+
+    def _make(self, found: Any, depth: int) -> Node:
+        place = _after(self._top, found.start_mark)
+        kind = str(found.tag).removeprefix(_TAG)
+        if kind == "map" and found.id == "mapping" and depth < _DEEPEST:
+            return self._mapping(found, place, depth)
+        if kind == "seq" and found.id == "sequence" and depth < _DEEPEST:
+            return Node(place, [self.node(item, depth + 1) for item in found.value], {})
+        if kind in _PLAIN and found.id == "scalar":
+            return Node(place, self._value(found, place), {})
+        what = (
+            "this is nested too deeply"
+            if depth >= _DEEPEST
+            else f"the tag {found.tag} is not taken"
+        )
+        self.problems.add((place, what))
+        return Node(place, None, {})
+
+    def _mapping(self, found: Any, place: Place, depth: int) -> Node:
+        entries: dict[str, Node] = {}
+        keys: dict[str, Place] = {}
+        for key, inner in found.value:
+            at = _after(self._top, key.start_mark)
+            if key.id != "scalar":
+                self.problems.add((at, "a key is a plain word"))
+            elif key.value in entries:
+                first = keys[key.value].line
+                self.problems.add((at, f"the key {key.value} stands already in line {first}"))
+            else:
+                keys[key.value] = at
+                entries[key.value] = self.node(inner, depth + 1)
         return Node(place, entries, keys)
-    if isinstance(value, list) and depth < _DEEPEST:
-        items = [_node(item, _at(place, marks.item(n)), depth + 1) for n, item in enumerate(value)]
-        return Node(place, items, {})
-    return Node(place, value, {})
+
+    def _value(self, found: Any, place: Place) -> Any:
+        try:
+            return self._scalar(found)
+        except (ValueError, KeyError):
+            self.problems.add((place, "this is not what its tag says, or has too many digits"))
+            return None
 
 
-def _at(place: Place, mark: tuple[int, int]) -> Place:
-    return Place(place.file, mark[0] + 1, mark[1] + 1)
+def _after(top: Place, mark: Any) -> Place:
+    return top if mark is None else Place(top.file, mark.line + 1, mark.column + 1)
+
+
+def _place_in(text: str, name: str, position: int) -> Place:
+    lines = text[:position].split("\n")
+    return Place(name, len(lines), len(lines[-1]) + 1)
 
 
 def _sentence(text: str | None) -> str:

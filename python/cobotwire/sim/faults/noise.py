@@ -51,7 +51,7 @@ def _register_dump(lines: int) -> str:
 PANIC: Final = (
     "Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n\r\n"
     "Core  1 register dump:\r\n"
-    + _register_dump(26)
+    + _register_dump(25)
     + "\r\nBacktrace: 0x400d15f1:0x3ffb1f60 0x400d0b59:0x3ffb1f90 0x40088b9d:0x3ffb1fb0\r\n\r\n"
     "Rebooting...\r\n"
 ).encode("ascii")

@@ -12,7 +12,7 @@ from cobotwire.sim.faults.chooser import unknown_command
 from cobotwire.sim.faults.fault import Fault
 from cobotwire.sim.faults.kinds import KINDS
 from cobotwire.sim.faults.nodes import Node, Place, parse
-from cobotwire.sim.faults.rules import RULE, Rule, nearest, number, whole
+from cobotwire.sim.faults.rules import RULE, Rule, Several, nearest, number, whole
 from cobotwire.sim.faults.scenario import Scenario
 from cobotwire.table import Table
 
@@ -171,9 +171,9 @@ def _values(
 def _misfit(node: Node, rule: Rule) -> Node:
     """Where exactly a value does not fit: an item of a list, or the whole."""
     items: list[Node] = node.value if isinstance(node.value, list) else []
-    for item in items:
+    for item in items if isinstance(rule, Several) else []:
         try:
-            rule([_plain(item)])
+            rule(_plain(item))
         except ValueError:
             return item
     return node
@@ -192,6 +192,8 @@ def _shown(node: Node) -> str:
         return "a list"
     if node.value is None:
         return "nothing"
+    if isinstance(node.value, int) and abs(node.value) >= 10**SHOWN:
+        return f"a number of more than {SHOWN} digits"
     text = str(node.value)
     return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
 

@@ -6,7 +6,6 @@ file says is checked by it before, so that the file's place can be told.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from dataclasses import field
 from difflib import get_close_matches
@@ -30,7 +29,7 @@ def number(lowest: float, highest: float) -> Rule:
     def rule(value: Any) -> float:
         # A truth value is a number to Python, not to a reader of scenarios.
         fits = isinstance(value, int | float) and not isinstance(value, bool)
-        if not fits or not math.isfinite(value) or not lowest <= value <= highest:
+        if not fits or not lowest <= value <= highest:
             raise ValueError(f"a number from {lowest:g} to {highest:g}")
         return float(value)
 
@@ -65,13 +64,16 @@ def one_of(words: Iterable[str]) -> Rule:
     return rule
 
 
-def several(rule: Rule) -> Rule:
+class Several:
     """One value, or a list of them; kept as a tuple."""
 
-    def each(value: Any) -> tuple[Any, ...]:
-        return tuple(rule(item) for item in (value if isinstance(value, list | tuple) else [value]))
+    def __init__(self, one: Rule) -> None:
+        self.one = one
 
-    return each
+    def __call__(self, value: Any) -> tuple[Any, ...]:
+        """Each value by the rule for one."""
+        values = value if isinstance(value, list | tuple) else [value]
+        return tuple(self.one(item) for item in values)
 
 
 def command(value: Any) -> str | int:

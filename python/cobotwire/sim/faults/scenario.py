@@ -39,6 +39,9 @@ class Scenario:
         seed: another one, other draws.
         replay: a recording that answers instead of the peer that is wrapped.
         speed: 2 halves the recording's delays.
+
+    Raises:
+        UsageError: the speed is not above 0.
     """
 
     name: str
@@ -47,6 +50,10 @@ class Scenario:
     seed: int = 0
     replay: Path | None = None
     speed: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.speed < float("inf"):
+            raise UsageError("scenario.speed", self.speed, "a number above 0")
 
     def wrap(
         self,

@@ -6,17 +6,17 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Literal
 
-from cobotwire.sim.faults.exchange import Piece, Reply, joined
+from cobotwire.sim.faults.exchange import Piece, Reply, enlarged, joined
 from cobotwire.sim.faults.fault import ONLY, Damage, Fault, Moment, Only
 from cobotwire.sim.faults.noise import COMMAND_ERROR, LEAKS
 from cobotwire.sim.faults.registry import kind
 from cobotwire.sim.faults.rules import (
     SECONDS,
+    Several,
     one_of,
     optional,
     pairs_of_hex,
     ruled,
-    several,
     whole,
 )
 
@@ -44,13 +44,24 @@ class Addition(Damage):
 
     def spoil(self, data: bytes, moment: Moment) -> bytes:
         """Put them in their place; what is too short to hold them inside has them behind."""
+        cut, added = self._addition(len(data), moment)
+        return data[:cut] + added + data[cut:]
+
+    def say(self, reply: Reply, moment: Moment) -> Reply:
+        """The same, and the pauses stay where they were."""
+        if self.of == "request":
+            return reply
+        return enlarged(reply, *self._addition(len(joined(reply)), moment))
+
+    def _addition(self, size: int, moment: Moment) -> tuple[int, bytes]:
+        """Where, in so many bytes, and what."""
         added = b"".join(self.drawn(moment) for _ in range(self.times))
-        cut = {"in front": 0, "behind": len(data)}.get(self.where, self.after_bytes or 0)
-        if self.where == "inside" and not cut and len(data) > 1:
-            cut = moment.random.randrange(1, len(data))
+        cut = {"in front": 0, "behind": size}.get(self.where, self.after_bytes or 0)
+        if self.where == "inside" and not cut and size > 1:
+            cut = moment.random.randrange(1, size)
         shown = added.hex(" ").upper() if len(added) <= 32 else f"{len(added)} bytes"
         moment.did(f"{shown} {self.where} of the {self.of}")
-        return data[:cut] + added + data[cut:]
+        return min(cut, size), added
 
 
 @kind("inserted")
@@ -75,10 +86,10 @@ class ServoLeak(Addition):
     """Packets of the servo bus come through.
 
     Attributes:
-        packets: which; of several, one at random each time.
+        packets: which; of Several, one at random each time.
     """
 
-    packets: tuple[str, ...] = ruled(several(one_of(LEAKS)), tuple(LEAKS))
+    packets: tuple[str, ...] = ruled(Several(one_of(LEAKS)), tuple(LEAKS))
 
     def drawn(self, moment: Moment) -> bytes:
         """One of the packets."""

@@ -1,0 +1,149 @@
+"""What our client and pymycobot make of the fault scenarios; writes docs/fault-scenarios.md.
+
+    make faults
+
+Each shipped scenario is put in front of an arm that always answers the same, on a real pty; each
+client plays the same session of 18 calls against it, in a process of its own that is ended after a
+time limit. With names on the command line those rows are printed, and nothing is written.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import apart
+from cobotwire import codec as codecs
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.sim import PtyPort
+from cobotwire.sim.faults import find, shipped
+from fault_session import CAREFUL, SESSION, SteadyArm, TimedOutcome, play_session
+from field_notes.case import DONE, Call
+from field_notes.play import RIGHT, WRONG, Outcome
+
+DOCUMENT = Path(__file__).parents[1] / "docs" / "fault-scenarios.md"
+BEGIN, END = "<!-- begin: make faults -->", "<!-- end: make faults -->"
+CLIENTS = {
+    "blocking": "cobotwire",
+    CAREFUL: "cobotwire, `ack_within=0.5`",
+    "pymycobot": "pymycobot 4.0.7",
+}
+AT_ONCE = 4
+LIMIT_SECONDS = 60.0
+KINDS = ("right", "honest error", "-1 or None", WRONG, "exception", "not ended")
+# Beside the scenarios: how it is without any.
+NONE = "(none)"
+
+
+class Run(NamedTuple):
+    """What one client did under one scenario.
+
+    Attributes:
+        kinds: how many calls ended in which way.
+        seconds: those of each call that ended.
+        again: how many orders came to the arm more often than they were called.
+    """
+
+    kinds: Counter[str]
+    seconds: list[float]
+    again: int
+
+
+def main() -> None:
+    """Play the scenarios that are named, or all."""
+    names = sys.argv[1:] or [NONE, *shipped()]
+    apart.warm_up(["fault_session", "pymycobot"])
+    wanted = [(name, who) for name in names for who in CLIENTS]
+    started = time.monotonic()
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        runs = dict(zip(wanted, pool.map(lambda one: _measured(*one), wanted)))
+    text = _page(names, runs)
+    if sys.argv[1:]:
+        print(text)
+        return
+    before, _, rest = DOCUMENT.read_text().partition(BEGIN)
+    DOCUMENT.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.partition(END)[2]}")
+    print(f"{len(runs)} runs in {time.monotonic() - started:.0f} s, written to {DOCUMENT}")
+
+
+def _measured(name: str, who: str) -> Run:
+    arm = SteadyArm()
+    codec = codecs.load(TABLE)
+    peer = arm if name == NONE else find(name, TABLE).wrap(arm, codec)
+    with PtyPort(peer) as port:
+        started = apart.start(play_session, who, port.url)
+        timed = started.result(time.monotonic() + LIMIT_SECONDS)
+        # What was written at last is heard by then.
+        time.sleep(0.3)
+    return _judged(timed, arm.frames)
+
+
+def _judged(timed: list[TimedOutcome] | None, frames: list[bytes]) -> Run:
+    if timed is None:
+        return Run(Counter({"not ended": len(SESSION)}), [], 0)
+    kinds = Counter(_kind(call, one.outcome, frames) for call, one in zip(SESSION, timed))
+    orders = [call.sends for call in SESSION if call.right == DONE]
+    again = sum(frames.count(order) > orders.count(order) for order in orders)
+    return Run(kinds, [one.seconds for one in timed], again)
+
+
+def _kind(call: Call, outcome: Outcome, frames: list[bytes]) -> str:
+    """An order that came back as if it were done, but did not come to the arm, is wrong."""
+    if outcome.verdict == RIGHT and call.right == DONE:
+        if outcome.detail == "-1":
+            return "-1 or None"
+        return RIGHT if call.sends in frames else WRONG
+    if outcome.verdict in (RIGHT, WRONG):
+        return outcome.verdict
+    if outcome.verdict in ("-1", "None"):
+        return "-1 or None"
+    return "honest error" if outcome.meant else "exception"
+
+
+def _page(names: list[str], runs: dict[tuple[str, str], Run]) -> str:
+    head = ["scenario", "what goes wrong", *CLIENTS.values()]
+    lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
+    for name in names:
+        about = "Nothing." if name == NONE else find(name, TABLE).about
+        cells = [_cell(runs[name, who]) for who in CLIENTS]
+        lines.append(f"| {name} | {about} | {' | '.join(cells)} |")
+    return _sums(runs) + "\n\n" + "\n".join(lines)
+
+
+def _sums(runs: dict[tuple[str, str], Run]) -> str:
+    lines = [f"| calls that ended | {' | '.join(CLIENTS.values())} |", "|---|---|---|---|"]
+    for kind in KINDS:
+        sums = [
+            sum(run.kinds[kind] for (_, by), run in runs.items() if by == who) for who in CLIENTS
+        ]
+        lines.append(f"| {kind} | {' | '.join(map(str, sums))} |")
+    again = [sum(run.again for (_, by), run in runs.items() if by == who) for who in CLIENTS]
+    lines.append(f"| (orders that came to the arm twice or more) | {' | '.join(map(str, again))} |")
+    return "\n".join(lines)
+
+
+def _cell(run: Run) -> str:
+    """Such as ``16 right, 2 -1 or None; 12 ms a call, 1.5 s at most``."""
+    told = [f"{run.kinds[kind]} {_loud(kind)}" for kind in KINDS if run.kinds[kind]]
+    if run.again:
+        told.append(f"**{run.again} orders sent again**")
+    if not run.seconds:
+        return ", ".join(told)
+    mean, longest = sum(run.seconds) / len(run.seconds), max(run.seconds)
+    return f"{', '.join(told)}; {_time(mean)} a call, {_time(longest)} at most"
+
+
+def _loud(kind: str) -> str:
+    return f"**{kind}**" if kind in (WRONG, "exception", "not ended") else kind
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds * 1e3:.0f} ms" if seconds < 0.1 else f"{seconds:.2f} s"
+
+
+if __name__ == "__main__":
+    main()
