@@ -34,7 +34,17 @@ MAY_IMPORT: dict[str, set[str]] = {
         *("errors", "table", "codec", "diagnose", "session", "transport", "driver"),
     },
     "conformance": {
-        *("errors", "table", "codec", "session", "transport", "diagnose", "sim"),
+        *(
+            "errors",
+            "table",
+            "codec",
+            "session",
+            "transport",
+            "diagnose",
+            "sim",
+            "editions",
+            "editions",
+        ),
     },
     "demo": {"codec", "driver", "editions", "sim"},
     "testing": {"errors", "table", "codec", "driver", "editions", "sim"},
@@ -48,11 +58,12 @@ ONE_IMPORTER = {
     "serial": ["transport/serial/"],
     "click": ["cli/"],
     "rich": ["cli/"],
-    "pytest": ["testing/plugin.py"],
+    "pytest": ["testing/plugin.py", "conformance/pytest_plugin.py"],
     "matplotlib": ["plot/drawing.py", "plot/pose.py"],
     "numpy": ["codec/columns.py"],
     "scipy": ["sim/kinematics/refine.py"],
     "pyarrow": ["codec/arrow.py"],
+    "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
     "ruamel": ["sim/faults/nodes.py"],
 }
 

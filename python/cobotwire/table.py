@@ -26,6 +26,7 @@ Role = Literal[
     "joints",
     "coordinates",
     "powered",
+    "version",
 ]
 FieldKind = Literal["number", "flag", "enum"]
 Check = Literal["footer", "crc16-modbus", "sum"]
@@ -126,13 +127,29 @@ class TextRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class ReadBack:
+    """How what a command has set is read: the ``query``, and what its reply then says.
+
+    ``fields`` pairs a field of the reply with the argument whose value it repeats, or with the
+    whole number that it then has; none: the fields of the same name. Arguments that the query
+    shares by name choose what is read.
+    """
+
+    query: str
+    fields: tuple[tuple[str, str | int], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Command:
     """One call: its id, how it is asked and how it is answered.
 
     ``request`` and ``reply`` hold the forms of the message, told apart by their size on the wire;
     the first is the full one. No ``reply`` and no ``text`` means that nothing answers. With ``ack``
     the reply is an acknowledgement that may come, late or never, and is not waited for. ``role`` is
-    what hand-written code knows the command by.
+    what hand-written code knows the command by. ``read_by`` tells how its effect is read.
+    ``tries`` are the numbers by argument that a conformance run may send, for the first form that
+    has these arguments; none: every legal one. ``agrees_with`` names queries that tell the same
+    while the arm rests.
     """
 
     id: int
@@ -149,6 +166,9 @@ class Command:
     ack: bool = False
     request_text: TextRequest | None = None
     role: Role = ""
+    read_by: ReadBack | None = None
+    tries: tuple[tuple[tuple[str, tuple[int, ...]], ...], ...] = ()
+    agrees_with: tuple[str, ...] = ()
 
     @property
     def answers(self) -> bool:

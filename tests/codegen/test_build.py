@@ -31,6 +31,15 @@ def test_a_package_its_reference_and_its_c_are_written_and_stay_fresh(folder: Pa
     assert (again.returncode, again.stdout) == (0, "fresh\n")
 
 
+def test_a_dissector_is_written_beside_what_else_is_there(folder: Path) -> None:
+    (folder / "plugins").mkdir()
+    (folder / "plugins" / "other.lua").write_text("-- of somebody else\n")
+    words = ("build", "lamp.yaml", "--out", "lamp", "--wireshark", "plugins")
+    assert run(folder, *words).returncode == 0
+    assert sorted(path.name for path in (folder / "plugins").iterdir()) == ["lamp.lua", "other.lua"]
+    assert run(folder, *words, "--check").returncode == 0
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -38,6 +47,7 @@ def test_a_package_its_reference_and_its_c_are_written_and_stay_fresh(folder: Pa
         (("--out", "o", "--docs", "o/docs"), "must be folders apart"),
         (("--out", "o/inner", "--docs", "o"), "must be folders apart"),
         (("--out", "o", "--docs", "d", "--c", "d"), "--docs and --c must be folders apart"),
+        (("--out", "o", "--wireshark", "o/w"), "must be folders apart"),
         (("--out", "my-pkg"), "my-pkg cannot be a package's name"),
         (("--out", "class"), "class cannot be a package's name"),
         (("--out", "cobotwire"), "cobotwire cannot be a package's name"),

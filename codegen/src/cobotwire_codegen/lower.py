@@ -158,6 +158,13 @@ def _command(family: str, command: Command) -> dict[str, Any]:
             "suffix": command.request_text.suffix,
         },
         "role": command.role,
+        "read_by": command.read_by
+        and {
+            "query": command.read_by.query,
+            "fields": [list(pair) for pair in command.read_by.fields],
+        },
+        "tries": [[[name, list(numbers)] for name, numbers in tried] for tried in command.tries],
+        "agrees_with": list(command.agrees_with),
     }
 
 

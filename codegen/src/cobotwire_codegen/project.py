@@ -15,6 +15,7 @@ from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.vectors import render_shared_vectors
+from cobotwire_codegen.targets.wireshark import render_wireshark
 
 
 def editions(root: Path) -> list[Edition]:
@@ -58,6 +59,7 @@ def targets(root: Path, found: list[Edition]) -> list[Target]:
     made.append(Target(root / "targets" / "vectors", render_shared_vectors(found)))
     made.append(Target(root / "targets" / "construct", render_construct(found)))
     made.append(Target(root / "docs" / "_static" / "decoder" / "tables", render_decoder(found)))
+    made.append(Target(root / "targets" / "wireshark", render_wireshark(found)))
     return made
 
 

@@ -9,6 +9,7 @@ import click
 import cobotwire
 from cobotwire.cli.call import call
 from cobotwire.cli.commands import commands
+from cobotwire.cli.conform import conform
 from cobotwire.cli.decode import decode
 from cobotwire.cli.demo import demo
 from cobotwire.cli.doctor import doctor
@@ -56,5 +57,5 @@ def app(ctx: click.Context, edition: str) -> None:
     ctx.obj = edition
 
 
-for verb in (demo, ports_, doctor, monitor, call, decode, sim, replay, plot, commands):
+for verb in (demo, ports_, doctor, monitor, call, decode, sim, replay, plot, conform, commands):
     app.add_command(verb)

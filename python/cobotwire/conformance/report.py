@@ -65,6 +65,7 @@ class Report:
     finished: bool = False
     results: list[Result] = field(default_factory=list)
     reply_seconds: dict[str, list[float]] = field(default_factory=dict)
+    deadline_seconds: dict[str, float] = field(default_factory=dict)
 
     @property
     def conforms(self) -> bool:

@@ -57,6 +57,8 @@ def scan(edition: Edition, line: bytes, known: set[tuple[int, int]]) -> Iterator
 def _frame_at(edition: Edition, line: bytes, start: int) -> Seen | None:
     """The frame that stands at a place, or None."""
     frame = edition.frame
+    if not line.startswith(frame.header, start):
+        return None
     at = start + len(frame.header)
     if frame.addresses:
         legal = {member.value for member in frame.addresses}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cobotwire_codegen.build.fields import build_field, build_forms
 from cobotwire_codegen.build.parts import FamilyParts, Parts
+from cobotwire_codegen.build.read_back import build_read_back, build_tries
 from cobotwire_codegen.build.text import build_text
 from cobotwire_codegen.build.types import Types, disputes
 from cobotwire_codegen.errors import Place, Problem
@@ -84,6 +85,9 @@ def _command(
         shares_id=tuple(reader.names("shares_id")),
         text=text,
         request_text=build_text(reader, "request_text"),
+        read_by=build_read_back(reader),
+        tries=build_tries(reader),
+        agrees_with=tuple(reader.names("agrees_with")),
         notes=reader.texts("notes"),
         disputed=disputes(reader),
         changes=tuple(parts.changes.get(name, ())),

@@ -35,6 +35,14 @@ def _asks_a_flag(command: Command) -> bool:
     return command.requests == ((),) and _told_by_flag(command.replies)
 
 
+def _asks_number(command: Command) -> bool:
+    return (
+        command.requests == ((),)
+        and bool(command.replies)
+        and all(len(form) == 1 and not _parts(form[0]) for form in command.replies)
+    )
+
+
 def _asks_row(parts: int) -> Callable[[Command], bool]:
     def asks(command: Command) -> bool:
         rows = all(len(form) == 1 and _parts(form[0]) == parts for form in command.replies)
@@ -63,6 +71,7 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
         ),
         "moving": ("it takes no arguments and answers yes or no", _asks_a_flag),
         "powered": ("it takes no arguments and answers yes or no", _asks_a_flag),
+        "version": ("it takes no arguments and answers one number", _asks_number),
         "joints": ("it takes no arguments and answers a number a joint", _asks_row(edition.joints)),
         "coordinates": ("it takes no arguments and answers six coordinates", _asks_row(6)),
         "stop": ("it takes no arguments", lambda command: command.requests == ((),)),

@@ -23,9 +23,17 @@ from cobotwire_codegen.cli.shared import (
 from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.render import render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
+from cobotwire_codegen.targets.wireshark import render_wireshark
 
 # What is made in the folder of each option.
-RENDERERS = {"--out": render_python, "--docs": render_reference, "--c": render_c}
+RENDERERS = {
+    "--out": render_python,
+    "--docs": render_reference,
+    "--c": render_c,
+    "--wireshark": lambda edition, own: render_wireshark([edition], own),
+}
+# Wireshark's folder for plugins has others beside ours.
+SHARED = ("--wireshark",)
 
 
 @click.command()
@@ -35,6 +43,11 @@ RENDERERS = {"--out": render_python, "--docs": render_reference, "--c": render_c
 )
 @click.option("--docs", type=click.Path(file_okay=False), help="A folder for the reference, too.")
 @click.option("--c", type=click.Path(file_okay=False), help="A folder for C code, too.")
+@click.option(
+    "--wireshark",
+    type=click.Path(file_okay=False),
+    help="A folder for a Wireshark dissector, too; it may hold other files.",
+)
 @click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
@@ -47,6 +60,7 @@ def build(
     out: str,
     docs: str | None,
     c: str | None,
+    wireshark: str | None,
     templates: str | None,
     check_only: bool,
     form: str,
@@ -54,10 +68,10 @@ def build(
     """Generate a typed Python package from the edition FILE.
 
     The package works with the installed cobotwire: its codecs, driver, simulator and command line
-    (`cobotwire --edition PACKAGE`). The folders must hold nothing else.
+    (`cobotwire --edition PACKAGE`). The folders of package and reference must hold nothing else.
     """
     path = edition_path(file)
-    given = {"--out": out, "--docs": docs, "--c": c}
+    given = {"--out": out, "--docs": docs, "--c": c, "--wireshark": wireshark}
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
     with problems_told(form):
@@ -67,7 +81,8 @@ def build(
     check_names(own)
     with template_errors_told(own):
         wanted = [
-            Target(folder, RENDERERS[option](edition, own)) for option, folder in folders.items()
+            Target(folder, RENDERERS[option](edition, own), alone=option not in SHARED)
+            for option, folder in folders.items()
         ]
     if check_only:
         sys.exit(show_stale(wanted))
@@ -88,5 +103,4 @@ def _check_folders(folders: dict[str, Path]) -> None:
     for first, second in combinations(folders, 2):
         one, other = folders[first].resolve(), folders[second].resolve()
         if one == other or one in other.parents or other in one.parents:
-            message = f"{first} and {second} must be folders apart: each holds nothing else"
-            raise click.UsageError(message)
+            raise click.UsageError(f"{first} and {second} must be folders apart")

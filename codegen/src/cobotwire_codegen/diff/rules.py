@@ -79,6 +79,9 @@ _API = {
     "type-kind-changed": "was of the kind {old}, is {new}: callers give or get another one",
 }
 _BEHAVIOUR = {
+    "agreement-changed": "agreed at rest with {old}, agrees with {new}: runs compare others",
+    "read-back-changed": "was read back by {old}, is by {new}: a conformance run asks otherwise",
+    "tries-changed": "a conformance run sent {old}, sends {new}",
     "ack-changed": "an acknowledgement, which is not waited for: was {old}, is {new}",
     "choices-narrowed": "legal numbers were {old}, are {new}: some are refused now",
     "choices-widened": "legal numbers were {old}, are {new}: an old peer refuses some",

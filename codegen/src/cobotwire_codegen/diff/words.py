@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 
-from cobotwire_codegen.model import Form, Member, Quantity, Text, Wire
+from cobotwire_codegen.model import Command, Form, Member, Quantity, Text, Wire
 from cobotwire_codegen.render.words import decimal, lines
 
 LONGEST = 60
@@ -16,10 +16,12 @@ __all__ = [
     "lines",
     "member",
     "names",
+    "read_back",
     "short",
     "sign",
     "span",
     "template",
+    "tries",
     "yes",
 ]
 
@@ -75,6 +77,23 @@ def form(found: Form) -> str:
     return names(
         field.name if field.const is None else f"{field.name} = {field.const}" for field in found
     )
+
+
+def read_back(command: Command) -> str:
+    """The query that reads a command's effect."""
+    back = command.read_by
+    if back is None:
+        return "nothing"
+    told = names(f"{name} = {said}" for name, said in back.fields)
+    return f"{back.query} ({told})" if told else back.query
+
+
+def tries(command: Command) -> str:
+    """What a conformance run may send."""
+    entries = (
+        names(f"{name} {list(numbers)}" for name, numbers in entry) for entry in command.tries
+    )
+    return "; ".join(entries) or "any legal number"
 
 
 def template(text: Text | None) -> str:

@@ -3,7 +3,15 @@
 Everything knows its place, so that a rule that fails can say where.
 """
 
-from cobotwire_codegen.model.commands import Command, Family, Field, Form, Text
+from cobotwire_codegen.model.commands import (
+    Command,
+    Family,
+    Field,
+    Form,
+    ReadBack,
+    Text,
+    Tries,
+)
 from cobotwire_codegen.model.edition import Edition, Erratum, Frame, Vector
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Type, Value, Wire
@@ -42,7 +50,9 @@ __all__ = [
     "Lines",
     "Member",
     "Quantity",
+    "ReadBack",
     "Text",
+    "Tries",
     "Type",
     "Value",
     "Vector",

@@ -31,6 +31,8 @@ class Field:
 
 
 Form = tuple[Field, ...]
+# Numbers to send by argument, for the first form that has these arguments.
+Tries = tuple[tuple[str, tuple[int, ...]], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +48,19 @@ class Text:
 
 
 @dataclass(frozen=True, slots=True)
+class ReadBack:
+    """How what a command has set is read: the query, and what its reply then says.
+
+    ``fields`` pairs a field of the reply with the argument that it repeats, or with the whole
+    number that it then has; none: the fields of the same name.
+    """
+
+    place: Place
+    query: str
+    fields: tuple[tuple[str, str | int], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Command:
     """One call.
 
@@ -53,7 +68,9 @@ class Command:
     the arm, which tells whether a target is reached.
     ``requests`` and ``replies`` hold the forms of the messages, the full one first. With ``alias``
     the call is another one's message under a name of its own; ``shares_id`` names the calls that
-    have the same id with other data.
+    have the same id with other data. ``tries`` are the numbers that a conformance run may
+    send, where not every legal one is harmless; ``agrees_with`` are queries that tell the same at
+    rest.
     """
 
     place: Place
@@ -72,6 +89,9 @@ class Command:
     shares_id: tuple[str, ...]
     text: Text | None
     request_text: Text | None
+    read_by: ReadBack | None
+    tries: tuple[Tries, ...]
+    agrees_with: tuple[str, ...]
     notes: tuple[str, ...]
     disputed: tuple[Dispute, ...]
     changes: tuple[Change, ...]

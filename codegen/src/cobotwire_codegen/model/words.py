@@ -15,6 +15,7 @@ ROLES = (
     "joints",
     "coordinates",
     "powered",
+    "version",
 )
 UNITS = (
     "degree",

@@ -41,7 +41,7 @@ def render_python(edition: Edition, templates: Path | None = None) -> Files:
     }
     # So that type checkers believe the package's annotations where it is installed.
     files[PurePosixPath("py.typed")] = ""
-    for part in ("__init__", "types"):
+    for part in ("__init__", "places", "types"):
         template = jinja.get_template(f"python/table/{part}.py.j2")
         files[PurePosixPath(f"table/{part}.py")] = template.render(common)
     for family in edition.families:
@@ -115,7 +115,7 @@ def environment(templates: Path | None = None) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701  (the output is Python, Markdown and JSON, never HTML)
+        autoescape=False,  # noqa: S701  (the output is Python, Markdown, JSON and Lua, never HTML)
     )
     jinja.globals.update(
         api=python_api,

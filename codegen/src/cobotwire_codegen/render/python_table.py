@@ -17,6 +17,12 @@ def addresses(edition: Edition) -> tuple[int, ...]:
     return tuple(member.value for member in edition.frame.addresses)
 
 
+def place(command: Command) -> str:
+    """Where a command stands in the spec; behind it, the changes that a delta made."""
+    spots = (command.place, *(change.place for change in command.changes))
+    return " ".join(f"{spot.file}:{spot.line}" for spot in spots)
+
+
 def type_expression(type: Type) -> tuple[Call, ...]:
     """A type's numbers, for the table of types."""
     return tuple(
@@ -45,8 +51,22 @@ def command_expression(family: Family, command: Command, named: dict[Type, str])
         "ack": command.ack,
         "request_text": _text_request(command.request_text),
         "role": command.role,
+        "read_by": command.read_by
+        and Call("ReadBack", command.read_by.query, command.read_by.fields),
+        "tries": command.tries,
+        "agrees_with": command.agrees_with,
     }
-    needed = ("reply", "text", "notes", "ack", "request_text", "role")
+    needed = (
+        "reply",
+        "text",
+        "notes",
+        "ack",
+        "request_text",
+        "role",
+        "read_by",
+        "tries",
+        "agrees_with",
+    )
     return Call("Command", **{k: v for k, v in keywords.items() if k not in needed or v})
 
 
@@ -96,4 +116,6 @@ def names_used(family: Family, named: dict[Type, str]) -> list[str]:
         names.add("TextReply")
     if any(command.request_text for command in family.commands):
         names.add("TextRequest")
+    if any(command.read_by for command in family.commands):
+        names.add("ReadBack")
     return sorted(names)

@@ -12,6 +12,7 @@ from cobotwire_codegen.author.schema.leaves import (
     Schema,
     by_key,
     closed,
+    either,
     hexed,
     listed,
     name,
@@ -137,12 +138,26 @@ def command() -> Schema:
         "role": one_of(
             ROLES, "What hand-written code knows it by: targets, what tells of them, stop."
         ),
+        "read_by": read_by(),
+        "agrees_with": words("Queries that tell the same while the arm rests."),
+        "tries": listed(
+            named(listed(whole("A number."), "What may be sent.", 1), "Numbers by argument."),
+            "What a conformance run may send, where not every legal number is harmless.",
+        ),
         "shares_id": words("Calls with the same id and other data."),
         "deadline_ms": whole("How long an answer is awaited. Left out: as the link says.", 1),
         "notes": listed({"type": "string"}, "Sentences for the reference."),
         "disputed": ref("disputed"),
     }
     return {**closed("One call.", required, optional), "allOf": _REFUSED_TWICE}
+
+
+def read_by() -> Schema:
+    """The query that tells what the command has set."""
+    said = named({"type": ["string", "integer"]}, "A reply's field: the argument or the number.")
+    query = {"type": "object", "additionalProperties": said, "minProperties": 1, "maxProperties": 1}
+    doc = "The query that tells what it has set; with the fields, where their names differ."
+    return {**either("object", query, {"type": "string"}), "description": doc}
 
 
 def _messages(key: str, doc: str) -> dict[str, Schema]:

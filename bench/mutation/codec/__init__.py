@@ -1,0 +1,1 @@
+"""Codecs that are broken in one place each, for the runner to find."""

@@ -1,0 +1,1 @@
+"""Client libraries before the referee: sessions, and who plays them."""

@@ -1,0 +1,69 @@
+"""What reads a setting back is a query of the edition that tells it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire_codegen.errors import Problem, nearest
+from cobotwire_codegen.model import Command, Edition, ReadBack
+
+
+def read_back_fits(edition: Edition) -> Iterator[Problem]:
+    """The query is there, its reply has the fields, and the command the arguments."""
+    known = {command.name: command for command in edition.commands}
+    for command in edition.commands:
+        back = command.read_by
+        if back is None:
+            continue
+        query = known.get(back.query)
+        if query is None or query.safety != "query":
+            hint = nearest(back.query, (c.name for c in edition.commands if c.safety == "query"))
+            message = f"{command.name} is read by {back.query}, which is no query here{hint}"
+            yield Problem(back.place, "bad-read-back", message)
+        else:
+            yield from _fields(command, back, query)
+
+
+def _fields(command: Command, back: ReadBack, query: Command) -> Iterator[Problem]:
+    told = {field.name for form in query.replies for field in form}
+    told |= {name for name, _ in query.text.fields} if query.text else set()
+    given = {field.name for form in command.requests for field in form}
+    given |= {name for name, _ in command.request_text.fields} if command.request_text else set()
+    for name, said in back.fields or ((name, name) for name in sorted(told & given)):
+        if name not in told:
+            message = f"the reply of {query.name} has no field {name}{nearest(name, told)}"
+            yield Problem(back.place, "bad-read-back", message)
+        if isinstance(said, str) and said not in given:
+            message = f"{command.name} has no argument {said}{nearest(said, given)}"
+            yield Problem(back.place, "bad-read-back", message)
+    if not back.fields and not told & given:
+        message = f"{command.name} and {query.name} have no field of the same name"
+        yield Problem(back.place, "bad-read-back", message)
+
+
+def tries_fit(edition: Edition) -> Iterator[Problem]:
+    """What may be tried are arguments of one form of the request."""
+    for command in edition.commands:
+        forms = [{field.name for field in form} for form in command.requests]
+        for tried in command.tries:
+            names = {name for name, _ in tried}
+            if not any(names <= form for form in forms):
+                message = (
+                    f"no request of {command.name} has the arguments {', '.join(sorted(names))}"
+                )
+                yield Problem(command.place, "bad-tries", message)
+
+
+def agreement_fits(edition: Edition) -> Iterator[Problem]:
+    """Only queries agree, and with queries."""
+    queries = {command.name for command in edition.commands if command.safety == "query"}
+    for command in edition.commands:
+        for name in command.agrees_with:
+            if command.name not in queries or name not in queries:
+                wrong = command.name if command.name not in queries else name
+                hint = nearest(wrong, queries)
+                message = f"{command.name} agrees with {name}; {wrong} is no query here{hint}"
+                yield Problem(command.place, "bad-agreement", message)
+
+
+RULES = (read_back_fits, tries_fit, agreement_fits)

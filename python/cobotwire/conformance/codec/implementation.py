@@ -1,0 +1,186 @@
+"""The codec under test: something that answers questions, in this process or another one."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import selectors
+import subprocess
+import tempfile
+import time
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Any, Protocol, Self
+
+from cobotwire.conformance.codec.trials import Json
+from cobotwire.errors import CobotwireError, LinkError
+
+# A line that is longer than this is no answer; nothing asked here needs a hundredth of it.
+LONGEST_LINE = 1 << 20
+
+
+class NoAnswer(CobotwireError):
+    """The implementation crashed, is silent, or does not speak the protocol.
+
+    Attributes:
+        kind: ``crashed``, ``silent`` or ``babbling``.
+    """
+
+    def __init__(self, kind: str, detail: str) -> None:
+        self.kind = kind
+        super().__init__(f"{kind}: {detail}")
+
+
+class Implementation(Protocol):
+    """A codec that is asked in the words of the line protocol."""
+
+    def ask(self, question: Json) -> Json:
+        """The answer to a question.
+
+        Raises:
+            NoAnswer: there is none. The next question finds it started anew.
+        """
+        ...
+
+
+class Program:
+    """A command that speaks the protocol on its standard input and output.
+
+    It is started with the first question, and again after it has crashed or hung.
+    """
+
+    def __init__(self, command: Sequence[str], *, timeout: float = 10.0) -> None:
+        """Name the command; ``timeout`` is seconds for each answer."""
+        self._command = list(command)
+        self._timeout = timeout
+        self._process: subprocess.Popen[bytes] | None = None
+        self._said = b""
+        self._count = 0
+        self._greeting: Json | None = None
+        # Its complaints go to a file: a pipe that nobody reads would stop it when it is full.
+        self._complaints = tempfile.TemporaryFile()  # noqa: SIM115  (closed by __exit__)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.stop()
+        self._complaints.close()
+
+    def ask(self, question: Json) -> Json:
+        """The answer to a question; see :meth:`Implementation.ask`.
+
+        Raises:
+            LinkError: the command cannot be started at all.
+            NoAnswer: as above.
+        """
+        if question["do"] == "hello":
+            self._greeting = question
+        elif self._process is None and self._greeting is not None:
+            # A new process knows nothing: it is greeted as the first one was.
+            self.ask(self._greeting)
+        process = self._process or self._start()
+        self._count += 1
+        line = json.dumps({"id": self._count, **question}, separators=(",", ":")) + "\n"
+        try:
+            self._write(process, line.encode())
+            answer = self._parse(self._line(process))
+        except NoAnswer:
+            self.stop()
+            raise
+        return answer
+
+    def stop(self) -> None:
+        """End the command; the next question starts it again."""
+        process, self._process, self._said = self._process, None, b""
+        if process is None:
+            return
+        for stream in (process.stdin, process.stdout):
+            if stream is not None:
+                # What it did not take any more need not reach it.
+                stream.close() if stream is process.stdout else _close_quietly(stream)
+        try:
+            process.wait(0.5)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        try:
+            process = subprocess.Popen(  # noqa: S603  (running the caller's command is the point)
+                self._command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._complaints,
+                bufsize=0,
+            )
+        except OSError as error:
+            raise LinkError(" ".join(self._command), error.strerror or str(error)) from error
+        assert process.stdin is not None
+        assert process.stdout is not None
+        for stream in (process.stdin, process.stdout):
+            os.set_blocking(stream.fileno(), False)
+        self._process = process
+        return process
+
+    def _write(self, process: subprocess.Popen[bytes], data: bytes) -> None:
+        assert process.stdin is not None
+        deadline = time.monotonic() + self._timeout
+        while data:
+            self._wait_for(process.stdin, selectors.EVENT_WRITE, deadline)
+            try:
+                data = data[os.write(process.stdin.fileno(), data) :]
+            except BrokenPipeError:
+                raise NoAnswer("crashed", self._last_words(process)) from None
+            except BlockingIOError:
+                continue
+
+    def _line(self, process: subprocess.Popen[bytes]) -> bytes:
+        assert process.stdout is not None
+        deadline = time.monotonic() + self._timeout
+        while b"\n" not in self._said:
+            self._wait_for(process.stdout, selectors.EVENT_READ, deadline)
+            chunk = process.stdout.read(65536)
+            if chunk == b"":
+                raise NoAnswer("crashed", self._last_words(process))
+            self._said += chunk or b""
+            if len(self._said) > LONGEST_LINE:
+                raise NoAnswer("babbling", f"a line of more than {LONGEST_LINE} bytes")
+        line, _, self._said = self._said.partition(b"\n")
+        return line
+
+    def _wait_for(self, stream: Any, event: int, deadline: float) -> None:
+        with selectors.DefaultSelector() as selector:
+            selector.register(stream, event)
+            if not selector.select(max(0.0, deadline - time.monotonic())):
+                raise NoAnswer("silent", f"no answer within {self._timeout:g} s")
+
+    def _parse(self, line: bytes) -> Json:
+        try:
+            answer = json.loads(line)
+        except ValueError:
+            raise NoAnswer("babbling", f"{line[:120]!r} is no JSON") from None
+        if not isinstance(answer, dict) or answer.get("id") != self._count:
+            raise NoAnswer("babbling", f"{line[:120]!r} is no answer to question {self._count}")
+        return answer
+
+    def _last_words(self, process: subprocess.Popen[bytes]) -> str:
+        try:
+            code = process.wait(1.0)
+        except subprocess.TimeoutExpired:
+            return "it closed its output, and goes on running"
+        self._complaints.seek(0)
+        words = self._complaints.read().decode(errors="replace").strip().splitlines()
+        last = f"; its last words: {words[-1][:200]}" if words else ""
+        return f"it ended with code {code}{last}"
+
+
+def _close_quietly(stream: Any) -> None:
+    with contextlib.suppress(BrokenPipeError):
+        stream.close()

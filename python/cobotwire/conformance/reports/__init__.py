@@ -1,0 +1,8 @@
+"""A report in the forms that people and programs read, and two reports side by side."""
+
+from cobotwire.conformance.reports.as_html import to_html
+from cobotwire.conformance.reports.as_json import from_json, to_json
+from cobotwire.conformance.reports.as_junit import to_junit
+from cobotwire.conformance.reports.compare import Change, Comparison, compare
+
+__all__ = ["Change", "Comparison", "compare", "from_json", "to_html", "to_json", "to_junit"]

@@ -1,0 +1,80 @@
+"""Reply times as a picture: a row a query, on a scale of tenths, ones, tens of milliseconds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from statistics import quantiles
+from xml.etree.ElementTree import Element
+
+from cobotwire.conformance.report import Report
+from cobotwire.conformance.reports.element import element
+
+ROW, LEFT, WIDTH, TOP = 20, 210, 620, 24
+# Below this nothing is told apart; a simulated arm in memory answers in no time at all.
+LEAST_MS = 0.01
+TICKS_MS = (0.01, 0.1, 1, 10, 100, 1000, 10_000)
+
+
+def times_plot(report: Report) -> Element:
+    """From the fastest to the slowest, the middle nine tenths, the median, and the deadline."""
+    rows = [(name, sorted(times)) for name, times in report.reply_seconds.items() if times]
+    most = max(max(times) for _, times in rows)
+    scale = _Scale(1000 * max(most, *report.deadline_seconds.values(), 0.0))
+    height = TOP + ROW * len(rows) + 8
+    parts = [*scale.grid(height)]
+    for index, (name, times) in enumerate(rows):
+        deadline = report.deadline_seconds.get(name)
+        parts += _row(scale, TOP + ROW * index + ROW / 2, name, times, deadline)
+    width = LEFT + WIDTH + 90
+    box = f"0 0 {width} {height}"
+    label = "reply times by command"
+    return element("svg", *parts, role="img", aria_label=label, viewBox=box, width=width)
+
+
+class _Scale:
+    """Milliseconds to places, by their logarithm."""
+
+    def __init__(self, most_ms: float) -> None:
+        self._last = next((tick for tick in TICKS_MS if tick >= most_ms), TICKS_MS[-1])
+
+    def x(self, seconds: float) -> float:
+        share = math.log10(max(1000 * seconds, LEAST_MS) / LEAST_MS)
+        whole = math.log10(self._last / LEAST_MS) or 1.0
+        return round(LEFT + WIDTH * min(share / whole, 1.0), 1)
+
+    def grid(self, height: int) -> Iterator[Element]:
+        for tick in (tick for tick in TICKS_MS if tick <= self._last):
+            x = self.x(tick / 1000)
+            yield element("line", class_="grid", x1=x, x2=x, y1=TOP - 4, y2=height)
+            yield element("text", f"{tick:g} ms", x=x, y=TOP - 9, text_anchor="middle")
+
+
+def _row(
+    scale: _Scale, y: float, name: str, times: Sequence[float], deadline: float | None
+) -> Iterator[Element]:
+    low, middle, high = _spread(times)
+    x1, x2 = scale.x(times[0]), scale.x(times[-1])
+    title = element("title", f"{name}: {len(times)} replies, {_ms(times[0])} to {_ms(times[-1])}")
+    yield element("text", name, title, x=LEFT - 10, y=y + 4, text_anchor="end")
+    yield element("line", class_="range", x1=x1, x2=x2, y1=y, y2=y)
+    start, width = scale.x(low), max(scale.x(high) - scale.x(low), 1.0)
+    yield element("rect", class_="box", x=start, y=y - 6, width=round(width, 1), height=12)
+    at = scale.x(middle)
+    yield element("line", class_="median", x1=at, x2=at, y1=y - 7, y2=y + 7)
+    yield element("text", _ms(middle), x=LEFT + WIDTH + 12, y=y + 4)
+    if deadline is not None:
+        at = scale.x(deadline)
+        yield element("line", class_="deadline", x1=at, x2=at, y1=y - 7, y2=y + 7)
+
+
+def _spread(times: Sequence[float]) -> tuple[float, float, float]:
+    """The 5th, 50th and 95th of a hundred."""
+    if len(times) == 1:
+        return times[0], times[0], times[0]
+    cuts = quantiles(times, n=20, method="inclusive")
+    return cuts[0], cuts[9], cuts[18]
+
+
+def _ms(seconds: float) -> str:
+    return f"{1000 * seconds:.2f} ms"

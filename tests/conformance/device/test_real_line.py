@@ -1,0 +1,142 @@
+"""The tester over a real pseudo-terminal: the verb, Ctrl-C, the pytest plugin, the recipe."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+import vectors
+from cobotwire import editions
+from cobotwire.conformance import Verdict
+from cobotwire.conformance.device import Line, Tester
+from cobotwire.conformance.reports import from_json, to_json
+from cobotwire.sim import PtyServer, SimulatedArm
+from cobotwire.transport import open_link
+
+TABLE = editions.load("mycobot280").TABLE
+VERB = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
+WORDS = [*VERB, "--edition", "mycobot280", "conform", "device"]
+PLUGIN = ["-p", "cobotwire.conformance.pytest_plugin"]
+INSTALLED = any(point.name == "cobotwire_conform" for point in entry_points(group="pytest11"))
+
+
+def test_a_run_of_queries_takes_less_than_five_seconds() -> None:
+    with PtyServer(SimulatedArm(TABLE)) as server:
+        link = open_link(server.url, TABLE.baudrate)
+        began = time.monotonic()
+        report = Tester(Line(link), TABLE).run()
+        seconds = time.monotonic() - began
+        link.close()
+    assert report.conforms, [r for r in report.results if r.verdict is Verdict.FAIL]
+    assert seconds < 5
+    assert len(report.reply_seconds["get_angles"]) >= 3
+
+
+def test_ctrl_c_stops_the_arm_sets_back_and_leaves_a_report(tmp_path: Path) -> None:
+    arm = SimulatedArm(TABLE)
+    file = tmp_path / "report.json"
+    options = ["--allow", "motion,power,persistent-write", "--max-speed", "1"]
+    options += ["--workspace", "-60:60", "--json", str(file)]
+    limits = list(arm.state.minimum), list(arm.state.maximum)
+    with PtyServer(arm) as server:
+        run = subprocess.Popen([*WORDS, server.url, *options], stderr=subprocess.PIPE, text=True)
+        until = time.monotonic() + 60
+        while not arm.state.angles.moving(time.monotonic()) and time.monotonic() < until:
+            time.sleep(0.05)
+        assert arm.state.angles.moving(time.monotonic())
+        run.send_signal(signal.SIGINT)
+        _, told = run.communicate(timeout=60)
+        assert not arm.state.angles.moving(time.monotonic())
+    assert "stopped" in told
+    report = from_json(file.read_text())
+    assert not report.finished
+    assert report.results
+    assert run.returncode == 2
+    assert (arm.state.minimum, arm.state.maximum) == limits
+
+
+def _run(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(words, capture_output=True, text=True, check=False, cwd=vectors.ROOT)
+
+
+def test_exit_codes() -> None:
+    assert _run(*WORDS, "--simulated").returncode == 0
+    assert _run(*WORDS, "/dev/no-such-port").returncode == 2
+    refused = _run(*WORDS, "--simulated", "--allow", "motion")
+    assert refused.returncode == 2
+    assert "max_speed" in refused.stderr
+    # The document's edition asks what today's firmware does not know.
+    other = [*VERB, "--edition", "mycobot", "conform", "device"]
+    with PtyServer(SimulatedArm(TABLE)) as server:
+        assert _run(*other, server.url).returncode == 1
+
+
+def test_a_report_goes_through_json_unharmed() -> None:
+    with PtyServer(SimulatedArm(TABLE)) as server:
+        link = open_link(server.url, TABLE.baudrate)
+        tester = Tester(Line(link), TABLE)
+        tester.report.results += tester.results(next(tester.steps()))
+        link.close()
+    again = from_json(to_json(tester.report))
+    assert to_json(again) == to_json(tester.report)
+    assert again.results[0].verdict is Verdict.PASS
+
+
+def test_the_pytest_plugin_makes_a_test_of_each_rule_and_command(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    with PtyServer(SimulatedArm(TABLE)) as server:
+        done = _pytest(tmp_path, server.url, "--collect-only", "-q")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "get_angles::reply-once" in done.stdout
+    # pytest's own count is of what it found in files; these tests are in none.
+    assert sum("::" in line for line in done.stdout.splitlines()) > 200
+
+
+def test_the_plugin_fails_where_the_device_does(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    mycobot = editions.load("mycobot").TABLE
+    with PtyServer(SimulatedArm(mycobot)) as server:
+        done = _pytest(tmp_path, server.url, "--maxfail", "2")
+    assert done.returncode == 1
+    assert "expected a reply within 500 ms" in done.stdout
+
+
+def _pytest(folder: Path, url: str, *words: str) -> subprocess.CompletedProcess[str]:
+    plugin = [] if INSTALLED else PLUGIN
+    options = ["--conform-device", url, "--conform-edition", "mycobot280", *words]
+    command = [sys.executable, "-m", "pytest", *plugin, *options, "."]
+    environment = {**os.environ, "PYTEST_ADDOPTS": ""}
+    return subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=folder, env=environment
+    )
+
+
+@pytest.mark.parametrize("number", range(2))
+def test_the_commands_of_the_recipe_work(number: int, tmp_path: Path) -> None:
+    page = (vectors.ROOT / "docs" / "conformance.md").read_text()
+    recipe = page.split("```yaml", 1)[1].split("```", 1)[0]
+    commands = [line.split("run: ", 1)[1] for line in recipe.splitlines() if "run: " in line]
+    ours = [command for command in commands if not command.startswith("pip ")]
+    assert len(ours) == 2
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    with PtyServer(SimulatedArm(TABLE)) as server:
+        environment = {**os.environ, "PATH": path, "DEVICE": server.url}
+        words = ours[number]
+        if not INSTALLED:
+            words = words.replace("pytest ", "pytest -p cobotwire.conformance.pytest_plugin ")
+        done = subprocess.run(
+            ["bash", "-ec", words],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -1,0 +1,121 @@
+"""What tshark shows of a capture with our dissectors, as records."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from cobotwire_codegen.targets.wireshark.fields import OWN
+from vectors import ROOT
+
+DISSECTORS = ROOT / "targets" / "wireshark"
+ABSENT = "tshark is not installed (Debian: apt install tshark)"
+needs_tshark = pytest.mark.skipif(shutil.which("tshark") is None, reason=ABSENT)
+
+
+@dataclass
+class Leaf:
+    """A value in the tree: its filter name, its value, what a person reads, its bytes."""
+
+    filter: str
+    value: str
+    label: str
+    data: bytes
+
+
+@dataclass
+class Item:
+    """A frame, a span of noise (``kind`` is its reason), or what is incomplete."""
+
+    kind: str
+    data: bytes
+    label: str
+    own: dict[str, str]
+    leaves: list[Leaf] = field(default_factory=list)
+    experts: list[str] = field(default_factory=list)
+
+
+def tshark(capture: Path, *words: str, scripts: list[Path] | None = None) -> str:
+    """What tshark prints; a mistake in a script of ours fails the test."""
+    used = sorted(DISSECTORS.glob("*.lua")) if scripts is None else scripts
+    loaded = [word for script in used for word in ("-X", f"lua_script:{script}")]
+    result = subprocess.run(
+        ["tshark", "-n", *loaded, "-r", str(capture), *words],
+        capture_output=True,
+        text=True,
+        check=False,
+        # Nobody's own plugins and preferences.
+        env={**os.environ, "WIRESHARK_CONFIG_DIR": str(capture.parent)},
+    )
+    said = result.stdout + result.stderr
+    assert "Lua" not in result.stderr, result.stderr
+    assert "Lua Error" not in said
+    assert "Dissector bug" not in said
+    assert result.returncode == 0 or "cut short" in result.stderr, result.stderr
+    return result.stdout
+
+
+def dissected(
+    capture: Path, edition: str, *words: str, scripts: list[Path] | None = None
+) -> list[list[Item]]:
+    """The items of each packet."""
+    out = tshark(capture, "-T", "pdml", "-J", edition, *words, scripts=scripts)
+    return [
+        [item for proto in packet if proto.get("name") == edition for item in _items(proto)]
+        for packet in ET.fromstring(out).iter("packet")
+    ]
+
+
+def joined(packets: list[list[Item]]) -> list[tuple[str, bytes]]:
+    """The events of one direction of a line; noise of one reason is one, also over packets.
+
+    What waits counts where it waits at the end.
+    """
+    found: list[tuple[str, bytes]] = []
+    for number, packet in enumerate(packets, 1):
+        for item in packet:
+            if item.kind == "incomplete" and number < len(packets):
+                continue
+            if found and found[-1][0] == item.kind != "frame":
+                found[-1] = item.kind, found[-1][1] + item.data
+            else:
+                found.append((item.kind, item.data))
+    return found
+
+
+def _items(proto: ET.Element) -> Iterator[Item]:
+    edition = proto.get("name", "")
+    kinds = {f"{edition}.frame.bytes": "frame", f"{edition}.incomplete": "incomplete"}
+    for element in proto:
+        name = element.get("name", "")
+        if name in kinds or name == f"{edition}.noise":
+            item = Item(kinds.get(name, ""), _data(element), element.get("showname", ""), {})
+            _fill(item, element, edition)
+            item.kind = item.kind or item.own["noise.reason"]
+            yield item
+
+
+def _fill(item: Item, parent: ET.Element, edition: str) -> None:
+    for element in parent:
+        name = element.get("name", "")
+        part = name.removeprefix(f"{edition}.")
+        if name == "_ws.expert":
+            item.experts += [e.get("name", "").removeprefix(f"{edition}.") for e in element[:1]]
+            continue
+        if part in OWN:
+            item.own[part] = element.get("show", "")
+        elif not any(e.get("name", "").startswith(f"{name}.") for e in element):
+            words = element.get("show", ""), element.get("showname", "")
+            item.leaves.append(Leaf(part, *words, _data(element)))
+        _fill(item, element, edition)
+
+
+def _data(element: ET.Element) -> bytes:
+    return bytes.fromhex(element.get("value", ""))

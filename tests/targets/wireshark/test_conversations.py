@@ -1,0 +1,204 @@
+"""Requests and their replies, on captures of our own simulated arm and on lines made up for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire import editions
+from cobotwire.capture import Recording, read
+from cobotwire.codec.interface import Listening
+from cobotwire.sim import PtyServer, SimulatedArm
+from cobotwire.transport.opening import open_link
+from cobotwire.transport.tapped import TappedLink
+from strategies import codec_of
+from targets.wireshark.captures import Chunk, serial, tcp
+from targets.wireshark.dissecting import DISSECTORS, Item, dissected, needs_tshark, tshark
+
+pytestmark = needs_tshark
+TWICE = ("-2", "-R", "frame")
+MS = 1_000_000
+
+
+def line(edition: str, *said: tuple[int, Listening, str, tuple[object, ...]]) -> list[Chunk]:
+    """A line's frames: when (ms), which way, and what."""
+    codec = codec_of(edition, "reference")
+    return [
+        Chunk(0, way, codec.encode(name, way, values), at * MS)
+        for at, way, name, values in said
+        if way != "both"
+    ]
+
+
+def exchanges(chunks: list[Chunk], edition: str, path: Path) -> list[dict[str, str]]:
+    """Of each packet's only item: what it says of its exchange, and what an expert says."""
+    path.write_bytes(serial(chunks, edition))
+    return [exchange(items[0]) for items in dissected(path, edition, *TWICE)]
+
+
+def exchange(item: Item) -> dict[str, str]:
+    ends = ("request_in", "response_in")
+    found: dict[str, str] = {key: item.own[key] for key in ends if key in item.own}
+    if "response_time" in item.own:
+        found["ms"] = f"{float(item.own['response_time']) * 1000:g}"
+    return found | ({"expert": ",".join(item.experts)} if item.experts else {})
+
+
+def ends(shown: list[list[Item]], key: str) -> list[tuple[int, Item]]:
+    """The items that name their other end, each with the number of its packet."""
+    return [(n, item) for n, items in enumerate(shown, 1) for item in items if key in item.own]
+
+
+@pytest.mark.parametrize("cut", ["frames", "chunks"])
+@pytest.mark.parametrize("edition", ["mycobot", "mycobot280"])
+def test_a_recording_of_the_simulated_arm(edition: str, cut: str, tmp_path: Path) -> None:
+    package: Any = editions.load(edition)
+    path = tmp_path / "arm.pcapng"
+    codec = codecs.load(package.TABLE)
+    with PtyServer(SimulatedArm(package.TABLE)) as server:
+        with Recording(path, codec if cut == "frames" else None, url=server.url) as recording:
+            link = TappedLink(open_link(server.url, 115200), recording.record)
+            with package.CLIENT(link) as arm:
+                arm.power_on()
+                arm.send_angles([1, 2, 3, 4, 5, 6], speed=50)
+                for _ in range(3):
+                    arm.get_angles()
+                    arm.is_power_on()
+                arm.get_ssid_pwd()
+    packets = list(read(path))
+    # Chunks name no edition; where only one is installed, there is no doubt.
+    only = [DISSECTORS / f"{edition}.lua"]
+    shown = dissected(path, edition, *TWICE, scripts=only if cut == "chunks" else None)
+    items = [item for found in shown for item in found]
+    assert [item.kind for item in items if item.kind not in ("frame", "incomplete")] == [
+        "no-header"
+    ]
+    account = {leaf.filter: leaf.value for leaf in items[-1].leaves}
+    assert set(account) == {"text.ssid", "text.password"}
+    asked, answered = ends(shown, "response_in"), ends(shown, "request_in")
+    assert len(asked) == len(answered) >= 7
+    for (question, asks), (reply, answers) in zip(asked, answered):
+        assert (asks.own["response_in"], answers.own["request_in"]) == (str(reply), str(question))
+        took = packets[reply - 1].time_ns - packets[question - 1].time_ns
+        assert answers.own["response_time"] == f"{took / 1e9:.9f}"
+    assert not [item.experts for item in items if item.experts]
+
+
+def test_a_reply_names_its_request_and_a_question_that_nobody_answers_is_told(
+    tmp_path: Path,
+) -> None:
+    chunks = line(
+        "mycobot",
+        (0, "request", "get_angles", ()),
+        (8, "reply", "get_angles", ((0,) * 6,)),
+        (20, "request", "get_angles", ()),
+        (30, "reply", "is_power_on", (True,)),
+    )
+    assert exchanges(chunks, "mycobot", tmp_path / "line") == [
+        {"response_in": "2"},
+        {"request_in": "1", "ms": "8"},
+        {"expert": "unanswered"},
+        {},
+    ]
+
+
+def test_a_question_that_was_lost_makes_no_later_one_answered_late(tmp_path: Path) -> None:
+    question, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
+    times = [(0, question), (100, question), (108, reply)]
+    times += [(200, question), (208, reply), (300, question), (308, reply)]
+    chunks = line("mycobot", *((at, *what) for at, what in times))  # type: ignore[arg-type]
+    shown = exchanges(chunks, "mycobot", tmp_path / "line")
+    # Which of the first two was answered nobody can tell; from there on all is clear again.
+    assert [found["ms"] for found in shown if "ms" in found] == ["108", "8", "8"]
+    assert shown[1] == {"expert": "unanswered"}
+
+
+def test_questions_at_once_are_answered_in_turn(tmp_path: Path) -> None:
+    question, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
+    times = [(0, question), (1, question), (8, reply), (9, reply)]
+    chunks = line("mycobot", *((at, *what) for at, what in times))  # type: ignore[arg-type]
+    shown = exchanges(chunks, "mycobot", tmp_path / "line")
+    assert [found["ms"] for found in shown if "ms" in found] == ["8", "8"]
+    # Two in one segment, their answers in another one.
+    both = [
+        Chunk(0, "request", chunks[0].data * 2, 0),
+        Chunk(0, "reply", chunks[2].data * 2, 5 * MS),
+    ]
+    path = tmp_path / "segments"
+    path.write_bytes(tcp(both))
+    asked, answered = dissected(path, "mycobot280", *TWICE)
+    assert [exchange(item) for item in asked] == [{"response_in": "2"}] * 2
+    assert [exchange(item) for item in answered] == [{"request_in": "1", "ms": "5"}] * 2
+
+
+def test_an_answer_too_late_or_to_other_arguments_is_nobodys(tmp_path: Path) -> None:
+    chunks = line(
+        "mycobot",
+        (0, "request", "get_joint_min_angle", (1,)),
+        (1, "request", "get_joint_min_angle", (2,)),
+        (9, "reply", "get_joint_min_angle", (2, -100.0)),
+        (1500, "reply", "get_joint_min_angle", (1, -90.0)),
+    )
+    assert exchanges(chunks, "mycobot", tmp_path / "line") == [
+        {"expert": "unanswered"},
+        {"response_in": "3"},
+        {"request_in": "2", "ms": "8"},
+        {},
+    ]
+
+
+def test_text_over_tcp_in_pieces_is_read_as_a_whole(tmp_path: Path) -> None:
+    codec = codec_of("mycobot280", "reference")
+    chunks = [
+        Chunk(0, "request", codec.encode("get_ssid_pwd", "request", ()), 0),
+        Chunk(0, "reply", b"ssid: my ho", 10 * MS),
+        Chunk(0, "reply", b"me net passw", 40 * MS),
+        Chunk(0, "reply", b"ord: two words\r\n", 60 * MS),
+        Chunk(0, "request", codec.encode("set_ssid_pwd", "request", ()), 2000 * MS),
+        Chunk(0, "request", b"'name'(word)", 2020 * MS),
+    ]
+    path = tmp_path / "text"
+    path.write_bytes(tcp(chunks))
+    shown = dissected(path, "mycobot280", *TWICE)
+    assert shown[0][0].own["response_in"] == "2"
+    assert exchange(shown[1][0]) == {"request_in": "1", "ms": "10"}
+    texts = [{leaf.filter: leaf.value for leaf in items[0].leaves} for items in shown]
+    assert texts == [
+        {},
+        {},
+        {},
+        {"text.ssid": "my home net", "text.password": "two words"},
+        {},
+        {"text.account": "name", "text.password": "word"},
+    ]
+    assert shown[3][0].experts == []
+
+
+def test_each_line_is_read_by_the_edition_that_its_recording_names(tmp_path: Path) -> None:
+    path = tmp_path / "line"
+    frame = codec_of("mycobot", "reference").encode("get_angles", "request", ())
+    for edition in ("mycobot", "mycobot280"):
+        path.write_bytes(serial([Chunk(0, "request", frame)], edition))
+        assert [len(items) for items in dissected(path, edition)] == [1]
+    # A dissector alone reads what another one should have read, and says so.
+    only = [DISSECTORS / "mycobot.lua"]
+    words = ("-T", "fields", "-e", "_ws.expert.message")
+    assert "read as mycobot" in tshark(path, *words, scripts=only)
+
+
+def test_which_edition_reads_tcp_is_the_users_choice(tmp_path: Path) -> None:
+    path = tmp_path / "segments"
+    frame = codec_of("mycobot", "reference").encode("get_angles", "request", ())
+    path.write_bytes(tcp([Chunk(0, "request", frame)]))
+    assert len(dissected(path, "mycobot280")[0]) == 1
+    assert len(dissected(path, "mycobot", "-d", "tcp.port==9000,mycobot")[0]) == 1
+    assert len(dissected(path, "mycobot", "-o", "mycobot280.port:0")[0]) == 1
+    assert dissected(path, "mycobot280", "-o", "mycobot280.port:0") == [[]]
+    other = path.read_bytes().replace((9000).to_bytes(2, "big"), (9111).to_bytes(2, "big"))
+    path.write_bytes(other)
+    assert dissected(path, "mycobot280") == [[]]
+    (item,) = dissected(path, "mycobot280", "-o", "mycobot280.port:9111")[0]
+    assert item.own["frame.direction"] == "request"

@@ -1,0 +1,83 @@
+"""Every field of every vector, as Wireshark itself shows it, is what the Python codec says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import vectors
+from cobotwire_codegen import lower
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.emit import Target, write
+from cobotwire_codegen.render.vectors_json import plain
+from cobotwire_codegen.targets.wireshark import render_wireshark
+from strategies import TABLES, codec_of
+from targets.wireshark.captures import Chunk, serial
+from targets.wireshark.comparison import compare, compared, lines_of
+from targets.wireshark.dissecting import dissected, needs_tshark, tshark
+from wrong_models import WRONG, with_wrong_angles
+
+pytestmark = needs_tshark
+EDITIONS = sorted(TABLES)
+FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
+
+
+@pytest.mark.parametrize("edition", EDITIONS)
+def test_every_field_of_every_vector_is_what_the_codec_says(edition: str) -> None:
+    found = compare(edition)
+    assert found.differences == []
+    assert found.vectors > 1000
+    assert found.fields > 700
+
+
+@pytest.mark.parametrize("fault", sorted(WRONG))
+def test_a_model_that_is_wrong_is_noticed(fault: str, tmp_path: Path) -> None:
+    wrong = with_wrong_angles(vectors.edition(), WRONG[fault])
+    write(Target(tmp_path, render_wireshark([wrong])))
+    lines = [line for line in lines_of("mycobot") if "angles re" in line.name]
+    found = compared(lines, codec_of("mycobot", "reference"), [tmp_path / "mycobot.lua"])
+    assert found.differences
+    # What is wrong is told, and nothing else.
+    assert {text.split(" reply")[0] for text in found.differences} == {"messages: get_angles"}
+
+
+@pytest.mark.parametrize("name", ["mercury", "mybuddy"])
+def test_other_frame_formats_are_read_as_well(name: str, tmp_path: Path) -> None:
+    edition = build_edition(FAMILIES / f"{name}.yaml", FAMILIES)
+    write(Target(tmp_path / "lua", render_wireshark([edition])))
+    script = tmp_path / "lua" / f"{name}.lua"
+    chunks = []
+    for number, vector in enumerate(edition.vectors):
+        assert vector.frame is not None
+        spoilt = vector.frame[:-1] + bytes([vector.frame[-1] ^ 1])
+        chunks.append(Chunk(2 * number, vector.direction, vector.frame))
+        chunks.append(Chunk(2 * number + 1, vector.direction, spoilt))
+    path = tmp_path / "frames.pcapng"
+    path.write_bytes(serial(chunks, name))
+    shown = dissected(path, name, scripts=[script])
+    for vector, packet, broken in zip(edition.vectors, shown[::2], shown[1::2], strict=True):
+        (item,) = packet
+        assert item.own["frame.command"] == vector.command
+        wanted = [plain(edition, vector, field, value) for field, value in vector.values]
+        flat = [
+            part for value in wanted for part in (value if isinstance(value, list) else [value])
+        ]
+        assert [float(leaf.value) for leaf in item.leaves] == [float(value) for value in flat]
+        assert broken[0].kind == "bad-check"
+        assert ("frame.address" in item.own) == bool(lower.table(edition)["frame"]["addresses"])
+
+
+def test_filters_find_values_by_name_and_word(tmp_path: Path) -> None:
+    def found(query: str) -> list[str]:
+        return tshark(path, "-Y", query, "-T", "fields", "-e", "frame.number").split()
+
+    codec = codec_of("mycobot280", "reference")
+    sent = [("send_angle", (1, 90.5, 20)), ("send_angle", (2, -90.5, 20)), ("get_angles", ())]
+    path = tmp_path / "line.pcapng"
+    chunks = [Chunk(0, "request", codec.encode(name, "request", values)) for name, values in sent]
+    path.write_bytes(serial([*chunks, Chunk(0, "reply", b"Guru Meditation")], "mycobot280"))
+    assert found("mycobot280.angle > 90") == ["1"]
+    assert found("mycobot280.angle < 0 && mycobot280.joint == 2") == ["2"]
+    assert found('mycobot280.frame.command == "get_angles"') == ["3"]
+    assert found('mycobot280.noise.no_header && mycobot280.noise.text contains "Guru"') == ["4"]
