@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -96,7 +95,8 @@ def test_the_pytest_plugin_makes_a_test_of_each_rule_and_command(tmp_path: Path)
         done = _pytest(tmp_path, server.url, "--collect-only", "-q")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "get_angles::reply-once" in done.stdout
-    assert int(re.findall(r"(\d+) tests collected", done.stdout)[0]) > 200
+    # pytest's own count is of what it found in files; these tests are in none.
+    assert sum("::" in line for line in done.stdout.splitlines()) > 200
 
 
 def test_the_plugin_says_that_there_is_no_device(tmp_path: Path) -> None:
