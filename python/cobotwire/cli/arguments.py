@@ -12,18 +12,21 @@ _YES = {"true": True, "yes": True, "on": True, "1": True}
 _NO = {"false": False, "no": False, "off": False, "0": False}
 
 
-def parse(command: Command, words: Sequence[str]) -> list[Any]:
+def parse(command: Command, words: Sequence[str], texts: Sequence[str] = ()) -> list[Any]:
     """Values in the order of the fields; words stand in that order or as ``name=value``.
+
+    ``texts`` names what follows the frame as plain text: such a word is taken as it is.
 
     Raises:
         UsageError: too many words, a missing one, an unknown name, or a word that is no value.
     """
     fields = command.request[0].fields
-    names = [field.name for field in fields]
+    names = [*(field.name for field in fields), *texts]
     given: dict[str, str] = {}
     for word in words:
         name, equals, value = word.partition("=")
-        if not equals:
+        # A password may have the sign in it.
+        if not equals or (texts and name not in names):
             free = [name for name in names if name not in given]
             if not free:
                 raise UsageError("argument", word, f"{len(names)} value(s): {_wanted(names)}")
@@ -31,10 +34,11 @@ def parse(command: Command, words: Sequence[str]) -> list[Any]:
         if name not in names or name in given:
             raise UsageError("argument", word, f"each once: {_wanted(names)}")
         given[name] = value
-    for field in fields:
-        if field.name not in given:
-            raise UsageError(field.name, None, f"a value; {command.name} takes {_wanted(names)}")
-    return [value_of(field, given[field.name]) for field in fields]
+    for name in names:
+        if name not in given:
+            raise UsageError(name, None, f"a value; {command.name} takes {_wanted(names)}")
+    values = [value_of(field, given[field.name]) for field in fields]
+    return [*values, *(given[name] for name in texts)]
 
 
 def _wanted(names: Sequence[str]) -> str:

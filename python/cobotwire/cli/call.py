@@ -43,7 +43,8 @@ def call(
     """  # noqa: D301  (\b is the control character by which click keeps the lines)
     package = editions.load(edition)
     command = package.TABLE.command(name)
-    arguments = parse(command, values)
+    texts = command.request_text.fields if command.request_text else ()
+    arguments = parse(command, values, texts)
     with linked(port, package.TABLE, baudrate, record) as link:
         result = getattr(package.CLIENT(link, timeout=timeout), name)(*arguments)
     if as_json:
