@@ -135,6 +135,12 @@ def test_a_frame_over_packets_names_where_it_begins_and_goes_on(tmp_path: Path) 
     assert began.split() == ["1", "1"]
 
 
+def test_what_stands_in_one_packet_begins_in_no_other(tmp_path: Path) -> None:
+    path = tmp_path / "line.pcapng"
+    path.write_bytes(serial([Chunk(0, "reply", piece) for piece in (FRAME, ON, ON)], "mycobot"))
+    assert tshark(path, "-Y", "mycobot.began_in || mycobot.continued_in") == ""
+
+
 def test_silence_refutes_what_waits_on_a_serial_line_and_not_over_tcp(tmp_path: Path) -> None:
     path = tmp_path / "line"
     chunks = [Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", ON, SILENCE_NS)]
