@@ -8,7 +8,7 @@ IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen targets docs bench plots table fuzz clean faults
+.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen targets docs bench plots table fuzz clean faults conform
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -80,6 +80,9 @@ fuzz: .venv/.tools .venv/.native $(CARGO_FUZZ) ## search for faults, FUZZ_SECOND
 
 table: .venv/.tools .venv/.native ## what we and pymycobot make of bad lines, into docs/bad-lines.md
 	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
+
+conform: .venv/.tools .venv/.native ## break subjects on purpose and count what the testers find, into docs/conformance-mutants.md
+	$(BIN)/python bench/conform.py --page docs/conformance-mutants.md
 
 faults: .venv/.tools .venv/.native ## what we and pymycobot make of the fault scenarios, into docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py

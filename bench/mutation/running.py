@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from functools import lru_cache
+from functools import cache
 from random import Random
 from typing import NamedTuple
 
@@ -72,7 +72,7 @@ def _some(cases: list[Case], most: int, random: Random) -> list[Case]:
     return random.sample(cases, min(most, len(cases)))
 
 
-@lru_cache(maxsize=None)
+@cache
 def _suite(place: int) -> Suite:
     return SUITES[place]()
 

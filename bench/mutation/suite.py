@@ -17,11 +17,13 @@ class Outcome(NamedTuple):
     """What became of a mutant: the rule that found it, or why nobody could find it.
 
     ``killed_by`` is empty where it survived; ``reason`` is empty where nothing excuses that.
+    ``crash`` tells how the tester itself broke on it, which nothing excuses.
     """
 
     case: Case
     killed_by: str
     reason: str = ""
+    crash: str = ""
 
 
 class Trial(NamedTuple):

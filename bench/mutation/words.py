@@ -26,7 +26,7 @@ def lines(verdicts: Verdicts) -> Iterator[str]:
         yield f"  {kind:<24}{some:>5} / {all_of_them:<5}{none or '':>5}"
     for outcome in survivors(verdicts):
         yield f"  survived  {outcome.case.id}"
-        yield f"            {outcome.reason or 'SOMEBODY COULD TELL: a fault of the tester'}"
+        yield f"            {_why(outcome)}"
     passed = [trial for trial in verdicts.trials if trial.passed]
     yield f"  right subject accepted in {len(passed)} of {len(verdicts.trials)} runs"
     for trial in verdicts.trials:
@@ -38,6 +38,12 @@ def survivors(verdicts: Verdicts) -> list[Outcome]:
     """What was not found; first what should have been."""
     left = [outcome for outcome in verdicts.outcomes if not outcome.killed_by]
     return sorted(left, key=lambda outcome: bool(outcome.reason))
+
+
+def _why(outcome: Outcome) -> str:
+    if outcome.crash:
+        return f"**the tester broke: {outcome.crash}**"
+    return outcome.reason or "**somebody could tell: a fault of the tester**"
 
 
 def page(all_verdicts: Sequence[Verdicts], seconds: float) -> str:
@@ -52,15 +58,16 @@ def _section(verdicts: Verdicts) -> Iterator[str]:
     killed, excused, count = total(verdicts.outcomes)
     runs = verdicts.trials
     yield f"## {verdicts.name}\n"
-    yield f"{killed} of {count} mutants killed; {excused} of the others nobody could tell. The right"
-    yield f"subject was accepted in {sum(t.passed for t in runs)} of {len(runs)} runs: {_runs(verdicts)}.\n"
+    accepted = sum(trial.passed for trial in runs)
+    yield f"{killed} of {count} mutants killed; {excused} of the others nobody could tell. The"
+    yield f"right subject was accepted in {accepted} of {len(runs)} runs: {_runs(verdicts)}.\n"
     yield "| kind of fault | killed | nobody could tell | of |\n|---|--:|--:|--:|"
     for kind, outcomes in by_kind(verdicts.outcomes):
         some, none, all_of_them = total(outcomes)
         yield f"| {kind} | {some} | {none} | {all_of_them} |"
     yield "\n| survivor | why |\n|---|---|"
     for outcome in survivors(verdicts):
-        yield f"| {outcome.case.id} | {outcome.reason or '**none: a fault of the tester**'} |"
+        yield f"| {outcome.case.id} | {_why(outcome)} |"
     yield ""
 
 

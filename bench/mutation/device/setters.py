@@ -103,8 +103,8 @@ def _misreadings(field: Field, parts: set[str]) -> Iterator[tuple[str, str, Chan
     elif field.choices:
         yield "stored wrong", "as the next legal value", _next
     else:
-        yield "stored wrong", "a tenth of it", lambda _, cell: cell.whole // 10
-        yield "stored wrong", "half of it", lambda _, cell: cell.whole // 2
+        yield "stored wrong", "a tenth of it", lambda _, cell: -(-cell.whole // 10)
+        yield "stored wrong", "half of it", lambda _, cell: -(-cell.whole // 2)
         if any(number.minimum < 0 for number in numbers):
             yield "stored wrong", "without its sign", lambda _, cell: abs(cell.whole)
 

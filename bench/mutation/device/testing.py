@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from cobotwire.conformance.device import EVERYTHING, Leave, Line, Tester
 from cobotwire.conformance.report import Result, Verdict
@@ -17,16 +18,28 @@ WORKSPACE = (-60.0, 60.0)
 FASTEST = 100
 
 
-def complaints(table: Table, peer: Peer, clock: SteppedClock) -> Iterator[str]:
-    """What the tester finds wrong, as it finds it: command, rule and reason."""
-    for result in results(table, peer, clock):
+class Complaint(NamedTuple):
+    """A rule that the tester finds broken, of one command or of the whole line, and why."""
+
+    command: str
+    rule: str
+    reason: str
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in self if part)
+
+
+def complaints(
+    table: Table, peer: Peer, clock: SteppedClock, only: str = ""
+) -> Iterator[Complaint]:
+    """What the tester finds wrong, as it finds it; ``only`` leaves out all other commands."""
+    for result in results(table, peer, clock, only):
         if result.verdict in BAD:
-            place = f"{result.command}: " if result.command else ""
-            yield f"{place}{result.rule}: {result.reason}"
+            yield Complaint(result.command, result.rule, result.reason)
 
 
-def results(table: Table, peer: Peer, clock: SteppedClock) -> Iterator[Result]:
-    """The results of a whole run, step by step."""
+def results(table: Table, peer: Peer, clock: SteppedClock, only: str = "") -> Iterator[Result]:
+    """The results of a whole run, step by step, or of the steps of one command."""
     leave = Leave.of(
         EVERYTHING,
         joints=table.joints,
@@ -35,4 +48,5 @@ def results(table: Table, peer: Peer, clock: SteppedClock) -> Iterator[Result]:
     )
     tester = Tester(Line(MemoryLink(peer, clock), clock), table, leave=leave)
     for step in tester.steps():
-        yield from tester.results(step)
+        if not only or (step.command is not None and step.command.name == only):
+            yield from tester.results(step)

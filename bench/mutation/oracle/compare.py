@@ -31,22 +31,38 @@ class Difference:
 
 
 def conversations(table: Table, command: str, rounds: int = ROUNDS) -> Iterator[Conversation]:
-    """The conversations that are had for a mutant of a command; the same ones each time.
-
-    Each is about some commands only, drawn anew: an order that stops the arm for good would hide
-    from all conversations what moving shows, if every one of them had it.
-    """
+    """The conversations that are had for a mutant of a command; the same ones each time."""
+    known = (table.edition, command)
+    if known not in _had:
+        # Mutants of a command follow each other: its conversations are kept until the next one's.
+        _had.clear()
+        _had[known] = []
+    kept = _had[known]
     for seed in range(rounds):
-        random = Random(f"{table.edition} {command} {seed}")  # noqa: S311  (repeatable draws)
-        some = random.sample(table.commands, len(table.commands) // SHARE)
-        about = []
-        if command:
-            broken = table.command(command)
-            family = [c for c in table.commands if c.family == broken.family]
-            about = [broken] * 4 + random.sample(family, min(4, len(family)))
-        conversation = Conversation(table, random, [*some, *about], about)
-        conversation.have(STEPS)
-        yield conversation
+        if seed == len(kept):
+            kept.append(_conversation(table, command, seed))
+        yield kept[seed]
+
+
+_had: dict[tuple[str, str], list[Conversation]] = {}
+
+
+def _conversation(table: Table, command: str, seed: int) -> Conversation:
+    """A conversation about some commands only, drawn anew for each.
+
+    An order that stops the arm for good would hide from all conversations what moving shows, if
+    every one of them had it.
+    """
+    random = Random(f"{table.edition} {command} {seed}")  # noqa: S311  (repeatable draws)
+    some = random.sample(table.commands, len(table.commands) // SHARE)
+    about = []
+    if command:
+        broken = table.command(command)
+        family = [c for c in table.commands if c.family == broken.family]
+        about = [broken] * 4 + random.sample(family, min(4, len(family)))
+    conversation = Conversation(table, random, [*some, *about], about)
+    conversation.have(STEPS)
+    return conversation
 
 
 def first_difference(table: Table, mutant: Mutant, rounds: int = ROUNDS) -> Difference | None:

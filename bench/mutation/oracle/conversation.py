@@ -11,6 +11,7 @@ from cobotwire.codec.interface import Frame
 from cobotwire.errors import ProtocolError
 from cobotwire.sim.arm import SimulatedArm
 from cobotwire.sim.clock import SteppedClock
+from cobotwire.sim.memory import TICK_SECONDS
 from cobotwire.sim.peer import Peer
 from cobotwire.table import Command, Table
 from mutation.device.cells import framed, take_apart
@@ -119,7 +120,8 @@ def _go_on(peer: Peer, clock: SteppedClock, steps: Iterable[Step], heard: list[H
 
 def _wait(peer: Peer, clock: SteppedClock, until: float, heard: list[Heard]) -> None:
     while (wait := peer.wait) is not None and clock() + wait <= until:
-        clock.sleep(wait)
+        # Where a wait is a rounding error, time goes on all the same.
+        clock.sleep(max(wait, TICK_SECONDS))
         _note(heard, clock(), peer.flush())
     clock.sleep(until - clock())
 

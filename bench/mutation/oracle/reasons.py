@@ -5,32 +5,40 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cobotwire.table import Field, Table
-from mutation.device.exchanges import reply_fields
+from mutation.device.exchanges import reply_fields, request_fields
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, only_legal, said_by, values_of
 from mutation.oracle.conversation import Conversation
+from mutation.oracle.unsaid import LEFT_OPEN, OF_MEANING
 
 
 def reason(table: Table, mutant: Mutant) -> str:
     """Plays long conversations with the mutant, and looks at what its edition says."""
-    had = list(conversations(table, mutant.command))
-    wrong = [said_by(mutant, conversation) for conversation in had]
-    requests = sum(len(conversation.steps) for conversation in had)
-    if all(conversation.heard == said for conversation, said in zip(had, wrong)):
-        return _alike(table, mutant, had, requests)
+    unsaid = _unsaid(table, mutant)
+    if unsaid:
+        return unsaid
     field = _field(table, mutant)
-    if field is None or field.echo or _told(table, mutant.command, field):
-        return ""
-    if not all(only_legal(table, said) for said in wrong):
-        return ""
+    known = field is None or field.echo or _told(table, mutant.command, field)
+    had, differs = [], False
+    for conversation in conversations(table, mutant.command):
+        said = said_by(mutant, conversation)
+        had.append(conversation)
+        if said != conversation.heard:
+            differs = True
+            if known or not only_legal(table, said):
+                return ""
+    if not differs:
+        return _alike(table, mutant, had)
+    assert field is not None
     return (
         f"nobody knows the true value: every wrong one is legal, no command sets "
         f"`{field.name}` and no other reply repeats it"
     )
 
 
-def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation], requests: int) -> str:
+def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
     """What shows that it is the same: the values that were there to be sent wrong."""
+    requests = sum(len(conversation.steps) for conversation in had)
     same = f"not one byte differs in {len(had)} conversations of {requests} writes in all"
     field = _field(table, mutant)
     if field is None:
@@ -42,6 +50,33 @@ def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation], requests: 
         for value in (told if isinstance(told, tuple) else (told,))
     }
     return f"{same}: `{field.name}` was {_range(seen)}, which is sent alike"
+
+
+# What the edition leaves open, by what a request's field is measured in or called.
+SHARE = "percent"
+TURNS = "CLOCKWISE"
+
+
+def _unsaid(table: Table, mutant: Mutant) -> str:
+    """What the edition does not say of an order's field, so that whatever is done is right."""
+    if mutant.kind in OF_MEANING and mutant.command in LEFT_OPEN:
+        return LEFT_OPEN[mutant.command]
+    if not mutant.command or mutant.field in ("", *_replied(table, mutant.command)):
+        return ""
+    fields = {field.name: field for field in request_fields(table.command(mutant.command))}
+    field = fields[mutant.field]
+    if field.cases[0].numbers[0].unit == SHARE and field.name == "speed":
+        return (
+            "the edition gives a speed as a share of the fastest, and no line says how fast that is"
+        )
+    if TURNS in field.labels:
+        return "the edition does not say whether the angle of a joint that turns clockwise grows"
+    return ""
+
+
+def _replied(table: Table, name: str) -> list[str]:
+    command = table.command(name)
+    return [field.name for field in reply_fields(command)] if command.answers else []
 
 
 def _range(values: set[int | float]) -> str:
@@ -64,10 +99,16 @@ def _field(table: Table, mutant: Mutant) -> Field | None:
 def _told(table: Table, name: str, field: Field) -> bool:
     """Whether anything but this reply says what the field's value is."""
     command = table.command(name)
-    if any(c.read_by is not None and c.read_by.query == name for c in table.commands):
+    setters = [c for c in table.commands if c.read_by is not None and c.read_by.query == name]
+    # A fixed state that is brought about tells one value, and nothing of the others.
+    if any(
+        all(isinstance(said, str) for _, said in c.read_by.fields) for c in setters if c.read_by
+    ):
+        return True
+    if setters and field.choices:
         return True
     return any(
-        other.name == field.name or (_units(field) and _units(other) == _units(field))
+        _units(field) and _units(other) == _units(field)
         for query in table.commands
         if query.answers and query.id != command.id
         for other in reply_fields(query)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import vectors
@@ -32,6 +32,8 @@ from targets.c.peer import CPeer
 
 pytestmark = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
 DIRECTIONS: st.SearchStrategy[Direction] = st.sampled_from(["request", "reply"])
+# Each test runs for each edition; fuzz.py beside this goes on for longer.
+QUICK = settings(max_examples=40)
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
 
 
@@ -51,6 +53,7 @@ def peer(edition: str) -> Iterator[CPeer]:
         yield started
 
 
+@QUICK
 @given(data=st.data())
 def test_a_legal_message_is_built_and_read_alike(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -93,6 +96,7 @@ def _any_values(draw: st.DrawFn, form: Form) -> tuple[Any, ...]:
     )
 
 
+@QUICK
 @given(data=st.data())
 def test_any_value_is_built_or_refused_alike(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -115,6 +119,7 @@ def test_half_a_step_goes_to_the_even_one(
     assert peer.encode_values(number, beside.flat(number, values)) == beside.encoded(form, values)
 
 
+@QUICK
 @given(data=st.data())
 def test_any_bytes_are_read_or_refused_alike(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -159,6 +164,7 @@ def test_what_several_calls_could_mean_is_read_or_refused_as_the_first(
                 assert beside.read_in_c(peer.read(way, frame)) == beside.read(way, frame)
 
 
+@QUICK
 @given(data=st.data())
 def test_a_frame_is_refused_as_the_message_that_is_asked_for(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -171,6 +177,7 @@ def test_a_frame_is_refused_as_the_message_that_is_asked_for(
     assert found == beside.read(form.direction, frame, form.command.name)
 
 
+@QUICK
 @given(data=st.data())
 def test_a_stream_is_framed_alike_however_it_is_cut(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject

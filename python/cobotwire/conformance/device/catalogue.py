@@ -76,7 +76,7 @@ CUT = Rule("cut-request", "A request that breaks off is given up when the line i
 OUT_OF_RANGE = Rule("out-of-range", "A request with a value that is not allowed is not obeyed.")
 UNKNOWN_ID = Rule("unknown-id", "A request with an id that the edition lacks is not answered.")
 NOISE_BEFORE = Rule("noise-before", "A request behind noise is answered.")
-TOGETHER = Rule("two-in-one-write", "Two requests in one write are answered, in their order.")
+TOGETHER = Rule("two-in-one-write", "Requests in one write are all answered, in their order.")
 PIECES = Rule("request-in-pieces", "A request in pieces with pauses is answered as a whole one.")
 RECOVERS = Rule("recovers", "After what is no legal request, the next good one is answered.")
 

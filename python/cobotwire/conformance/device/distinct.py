@@ -10,6 +10,8 @@ from typing import Any
 from cobotwire.table import Field, Number
 
 Pair = tuple[Number, Number]
+# The variant that is one step from zero.
+BEYOND = 4
 # Shares of the way from zero to an end: no two parts of a row are alike, nor each other's double.
 SHARES = tuple(Fraction(share, 100) for share in (61, 37, 23, 83, 47, 13))
 
@@ -22,7 +24,8 @@ def choices_of(field: Field) -> list[Any]:
 def spread(rows: Sequence[Sequence[Pair]], present: Sequence[Sequence[Any]]) -> list[list[Any]]:
     """Some sets of values for fields whose parts are sent and told by pairs of numbers.
 
-    A single value keeps to its present sign: a joint's lower limit is not set above its upper one.
+    A single value keeps to its present sign, but for one step beyond zero: a joint's lower limit is
+    not set above its upper one, and a joint at zero stays at its limits.
     """
     parts = sum(len(row) for row in rows)
     keep = parts == 1 and present[0][0] != 0
@@ -46,6 +49,8 @@ def _value(pair: Pair, variant: int, place: int, keep: float | None) -> Any:
     step = max(_step(number) for number in pair)
     low = max(Fraction(number.minimum) * _step(number) for number in pair)
     high = min(Fraction(number.maximum) * _step(number) for number in pair)
+    if keep is not None and low < 0 < high and variant == BEYOND:
+        return _physical(pair[0], step if keep < 0 else -step)
     if keep is not None and low < 0 < high:
         low, high = (low, -step) if keep < 0 else (step, high)
     share = SHARES[(place + variant) % len(SHARES)]
@@ -56,8 +61,11 @@ def _value(pair: Pair, variant: int, place: int, keep: float | None) -> Any:
         between = low + share * (high - low)
     chosen = (between, between, high, low, low + step if low >= 0 else -step)[variant]
     count = min(max(round(chosen / step), ceil(low / step)), floor(high / step))
-    value = count * step
-    return int(value) if not pair[0].scaled else float(value)
+    return _physical(pair[0], count * step)
+
+
+def _physical(number: Number, value: Fraction) -> Any:
+    return float(value) if number.scaled else int(value)
 
 
 def _step(number: Number) -> Fraction:

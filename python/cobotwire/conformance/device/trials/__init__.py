@@ -5,9 +5,29 @@ from cobotwire.conformance.device.trials import (  # isort: skip  (the order of 
     malformed,
     settings,
     effects,
+    holding,
     motion,
+    coordinates,
+    jogging,
+    gripping,
+    queueing,
     agreement,
+    calibrating,
     alike,
 )
 
-__all__ = ["agreement", "alike", "effects", "malformed", "motion", "queries", "settings"]
+__all__ = [
+    "agreement",
+    "alike",
+    "calibrating",
+    "coordinates",
+    "effects",
+    "gripping",
+    "holding",
+    "jogging",
+    "malformed",
+    "motion",
+    "queries",
+    "queueing",
+    "settings",
+]

@@ -7,8 +7,9 @@ from typing import Any
 
 from cobotwire.conformance.device.catalogue import AGREES
 from cobotwire.conformance.device.ending import Unsupported
-from cobotwire.conformance.device.mover import TICK_DEGREES, Mover
+from cobotwire.conformance.device.mover import POSES, TICK_DEGREES, Mover
 from cobotwire.conformance.device.trial import Case, trial
+from cobotwire.conformance.device.values import units
 from cobotwire.table import Command, Table
 
 # The servo position that is a joint's zero.
@@ -79,3 +80,41 @@ def _matching(mine: Reading, theirs: Reading) -> Reading:
 
 def _row(value: Any) -> tuple[Any, ...]:
     return tuple(value) if isinstance(value, tuple | list) else (value,)
+
+
+# How far apart what the arm calculates and what it tells may lie. The end follows joints that stand
+# on ticks; near a stretched pose a tick of the end is some degrees of a joint.
+CALCULATED = {"degree": 3.0, "millimetre": 2.5}
+
+
+def calculates(table: Table, command: Command) -> bool:
+    """Whether a query turns rows of what the arm tells of itself into such a row."""
+    shown = {
+        units(c.reply[0].fields[0].cases[0].numbers)
+        for c in table.commands
+        if c.role in ("joints", "coordinates")
+    }
+    rows = [*command.request[0].fields, *(command.reply[0].fields if command.reply else ())]
+    rowwise = all(f.many and units(f.cases[0].numbers) in shown for f in rows)
+    return command.safety == "query" and bool(command.request[0].fields) and rowwise
+
+
+@trial(AGREES, of=calculates)
+def calculation(case: Case) -> None:
+    """Ask about where the arm is: the answer is where the arm is."""
+    mover = Mover(case) if case.bench.leave.workspace else None
+    for which in range(len(POSES)) if mover else (0,):
+        if mover:
+            mover.go(mover.pose(which))
+        known = case.bench.known()
+        given = [field.cases[0].numbers for field in case.command.request[0].fields]
+        if any(units(numbers) not in known for numbers in given):
+            raise Unsupported("nothing tells where the arm is")
+        mine = reading(case, case.command, [known[units(numbers)] for numbers in given])
+        told = known[tuple(unit for _, unit, _ in mine)]
+        wrong = [
+            f"{name} is {value} {unit}, but the arm stands at {stands}"
+            for (name, unit, value), stands in zip(mine, told)
+            if abs(value - stands) > CALCULATED[unit]
+        ]
+        case.expect(AGREES, not wrong, f"{case.command.name}: {'; '.join(wrong)}")

@@ -82,6 +82,7 @@ def is_blind(table: Table, command: Command) -> bool:
         and not command.role
         and not switches(table, command)
         and not readable(table, command)
+        and not (command.read_by is not None and command.safety == "persistent write")
     )
 
 

@@ -153,14 +153,17 @@ def pieces(case: Case, request: Request) -> None:
 
 
 def together(case: Case, request: Request) -> None:
-    """Two requests in one write."""
+    """Two requests in one write, and three."""
     bench = case.bench
-    hearing = bench.note(bench.asker.exchange(request, request.frame * 2, "two requests"))
-    if len(hearing.replies) == 1:
-        bench.asker.quiet(hearing, bench.line.now, request.command.deadline_ms / 1000)
-    legal = [reply for reply in hearing.replies if hearing.fitting(reply)]
-    both = len(legal) == len(hearing.replies) == 2 and not hearing.strays
-    case.expect(TOGETHER, both, f"two requests: expected two replies; came {hearing.came}")
+    for count in (2, 3):
+        frames = request.frame * count
+        hearing = bench.note(bench.asker.exchange(request, frames, f"{count} requests"))
+        if len(hearing.replies) < count:
+            bench.asker.quiet(hearing, bench.line.now, request.command.deadline_ms / 1000)
+        legal = [reply for reply in hearing.replies if hearing.fitting(reply)]
+        all_of_them = len(legal) == len(hearing.replies) == count and not hearing.strays
+        reason = f"{count} requests: expected {count} replies; came {hearing.came}"
+        case.expect(TOGETHER, all_of_them, reason)
 
 
 @trial(UNKNOWN_ID, RECOVERS, of=None, leave=("malformed",))

@@ -22,14 +22,25 @@ def order(
     hearing = case.bench.ask(command, values, text)
     call = in_words(hearing.request, case.bench.asker.codec)
     if command.answers:
-        legal = len(hearing.replies) == 1 and hearing.good is not None and not hearing.strays
-        case.expect(REPLIED, legal, f"{call}: expected one legal reply; came {hearing.came}")
+        _replied(case, hearing, call)
     elif command.ack:
         _acknowledged(case, hearing, call)
     else:
         silent = not hearing.replies and not hearing.strays
         case.expect(SILENT, silent, f"{call}: expected silence; came {hearing.came}")
     return hearing
+
+
+def _replied(case: Case, hearing: Hearing, call: str) -> None:
+    """One legal reply in time, and none behind it."""
+    bench, deadline = case.bench, hearing.request.command.deadline_ms
+    bench.asker.quiet(hearing, bench.line.now, bench.waits.silence)
+    legal = len(hearing.replies) == 1 and hearing.good is not None and not hearing.strays
+    case.expect(REPLIED, legal, f"{call}: expected one legal reply; came {hearing.came}")
+    if hearing.replies:
+        took = 1000 * hearing.replies[0].seconds
+        reason = f"{call}: expected the reply within {deadline} ms; it took {took:.0f} ms"
+        case.expect(REPLIED, took <= deadline, reason)
 
 
 def _acknowledged(case: Case, hearing: Hearing, call: str) -> None:

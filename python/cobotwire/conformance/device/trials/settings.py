@@ -34,6 +34,8 @@ class _Spot:
     setting: Readable
     key: Values
     old: Values
+    # Whether the command can set again what was there.
+    restorable: bool = True
 
     def __str__(self) -> str:
         said = ", ".join(f"{name}={value}" for name, value in self.key.items())
@@ -48,10 +50,11 @@ def set_and_read(case: Case) -> None:
         if len(spots) == 1:
             case.without(NEIGHBOURS)
         for spot in spots:
-            case.bench.undo[str(spot)] = partial(_set, case, spot, spot.old)
+            if spot.restorable:
+                case.bench.undo[str(spot)] = partial(_restore, case, spot)
         for spot in spots:
             _try(case, spot, spots)
-            del case.bench.undo[str(spot)]
+            case.bench.undo.pop(str(spot), None)
 
 
 def _spot(case: Case, setting: Readable, key: Values) -> _Spot:
@@ -67,7 +70,9 @@ def _spot(case: Case, setting: Readable, key: Values) -> _Spot:
     try:
         case.bench.asker.request(setting.command, values, text)
     except UsageError as error:
-        raise Unsupported(f"what is there could not be set again: {error}") from None
+        if "irreversible" not in case.bench.leave.classes:
+            raise Unsupported(f"what is there could not be set again: {error}") from None
+        return _Spot(setting, key, old, restorable=False)
     return _Spot(setting, key, old)
 
 
@@ -76,20 +81,29 @@ def _read(case: Case, setting: Readable, key: Values) -> Values | None:
     return None if fields is None else setting.told(fields)
 
 
-def _set(case: Case, spot: _Spot, wanted: Values) -> None:
+def _set(case: Case, spot: _Spot, wanted: Values) -> bool:
+    """Set; whether the reply, where one is due, says that it has failed."""
     values, text = spot.setting.request(spot.key, wanted)
-    order(case, spot.setting.command, values, text)
+    good = order(case, spot.setting.command, values, text).good
+    flags = [] if good is None or good.message is None else good.message.layout.fields
+    return any(f.kind == "flag" and not f.echo and not good.fields[f.name] for f in flags if good)
+
+
+def _restore(case: Case, spot: _Spot) -> None:
+    _set(case, spot, spot.old)
 
 
 def _try(case: Case, spot: _Spot, spots: list[_Spot]) -> None:
     for index, wanted in enumerate(spot.setting.tries(spot.key, spot.old)):
-        _set(case, spot, wanted)
+        failed = _set(case, spot, wanted)
         _expect(case, READ_BACK, spot, wanted)
+        case.expect(REPLIED, not failed, f"{spot} says that it failed, but {wanted} is read back")
         for other in spots if index == 0 else ():
             if other is not spot:
                 _expect(case, NEIGHBOURS, other, other.old, f"behind {spot}: ")
-    _set(case, spot, spot.old)
-    _expect(case, RESTORED, spot, spot.old)
+    if spot.restorable:
+        _set(case, spot, spot.old)
+        _expect(case, RESTORED, spot, spot.old)
 
 
 def _expect(case: Case, rule: Rule, spot: _Spot, wanted: Values, when: str = "") -> None:

@@ -483,6 +483,7 @@ COMMANDS = (
             "The document does not say whether the zero outlives a power cycle; it is treated as if it did.",
             "Every angle of the joint is counted from this zero; a wrong one sends the arm elsewhere.",
         ),
+        read_by=ReadBack("get_encoder", (("encoder", 2048),)),
     ),
     Command(
         id=0x55,

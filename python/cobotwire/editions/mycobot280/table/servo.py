@@ -673,6 +673,7 @@ COMMANDS = (
             "Every angle of the joint is counted from this zero; a wrong one sends the arm elsewhere.",
         ),
         ack=True,
+        read_by=ReadBack("get_encoder", (("encoder", 2048),)),
     ),
     Command(
         id=0x55,
