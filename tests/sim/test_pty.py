@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import select
-import subprocess
-import sys
 import threading
 import time
 
@@ -69,23 +67,3 @@ def test_serving_ends_while_nothing_is_heard() -> None:
     thread.join(5.0)
     assert not thread.is_alive()
     server.close()
-
-
-UP_FOR_A_WHILE = """
-import sys, time
-from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim import PtyServer, SimulatedArm
-with PtyServer(SimulatedArm(TABLE)):
-    end = time.monotonic() + 20
-    while "scipy.optimize" not in sys.modules and time.monotonic() < end:
-        time.sleep(0.05)
-    print("scipy.optimize" in sys.modules)
-"""
-
-
-def test_an_arm_that_was_up_for_a_while_has_imported_what_slow_answers_need() -> None:
-    """Or the first solve_inv_kinematics came later than its deadline."""
-    done = subprocess.run(
-        [sys.executable, "-c", UP_FOR_A_WHILE], capture_output=True, text=True, check=True
-    )
-    assert (done.stdout, done.stderr) == ("True\n", "")

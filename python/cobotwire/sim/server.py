@@ -13,13 +13,10 @@ from typing import Self
 
 from cobotwire.sim.channel import Channel, End
 from cobotwire.sim.clock import RunningClock
-from cobotwire.sim.kinematics import prepare
 from cobotwire.sim.line import Line
 from cobotwire.sim.peer import Peer
 
 READ, WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
-# What serves for longer gets ready for answers that would else come late.
-PREPARED_SECONDS = 0.5
 
 
 class Server(ABC):
@@ -37,8 +34,6 @@ class Server(ABC):
         os.set_blocking(self.stopper, False)
         self._selector.register(self._stop, READ)
         self._thread = threading.Thread(target=self.serve, name="cobotwire-sim", daemon=True)
-        self._prepare = threading.Timer(PREPARED_SECONDS, prepare)
-        self._prepare.daemon = True
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -56,7 +51,6 @@ class Server(ABC):
 
     def serve(self, looks: Sequence[Callable[[], None]] = (), every: float = 0.25) -> None:
         """Answer until :meth:`stop` is called; ``looks`` are called ``every`` so many seconds."""
-        self._prepare.start()
         look_at = time.monotonic() if looks else None
         while True:
             for key, events in self._selector.select(self._wait(look_at)):
@@ -76,7 +70,6 @@ class Server(ABC):
 
     def close(self) -> None:
         """Give everything back; whoever is connected hears that the arm is gone."""
-        self._prepare.cancel()
         for channel in tuple(self._channels.values()):
             self._drop(channel)
         self._selector.close()
