@@ -17,6 +17,8 @@ extensions = [
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build"]
 nitpicky = False
+# What names no language is what a program printed, or commands.
+highlight_language = "none"
 
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence", "deflist"]
