@@ -99,6 +99,14 @@ def test_the_pytest_plugin_makes_a_test_of_each_rule_and_command(tmp_path: Path)
     assert sum("::" in line for line in done.stdout.splitlines()) > 200
 
 
+def test_the_plugin_says_that_there_is_no_device(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    done = _pytest(tmp_path, str(tmp_path / "ttyNONE"))
+    assert done.returncode == pytest.ExitCode.USAGE_ERROR
+    assert "INTERNALERROR" not in done.stdout + done.stderr
+    assert "ttyNONE: cannot be opened" in done.stderr
+
+
 def test_the_plugin_fails_where_the_device_does(tmp_path: Path) -> None:
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     mycobot = editions.load("mycobot").TABLE

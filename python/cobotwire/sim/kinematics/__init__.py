@@ -2,7 +2,7 @@
 
 from cobotwire.sim.kinematics.forward import coords_of, flange
 from cobotwire.sim.kinematics.geometry import MYCOBOT_280, Geometry, Link, geometry_of
-from cobotwire.sim.kinematics.inverse import nearest, solutions
+from cobotwire.sim.kinematics.inverse import nearest, prepare, solutions
 from cobotwire.sim.kinematics.pose import Pose
 from cobotwire.sim.kinematics.ticks import DEGREES_A_TICK
 
@@ -16,5 +16,6 @@ __all__ = [
     "flange",
     "geometry_of",
     "nearest",
+    "prepare",
     "solutions",
 ]

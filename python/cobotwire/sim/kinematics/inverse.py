@@ -8,8 +8,10 @@ wire can say, or the arm is stretched out - SciPy looks for the nearest angles t
 
 from __future__ import annotations
 
+import importlib
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import islice
 
 from cobotwire.sim.kinematics.forward import flange
@@ -35,6 +37,15 @@ WRIST_TRIES = 30
 # So many guesses are worked on before a target counts as out of reach.
 GUESSES = 8
 ROUNDING = 1e-6
+
+
+def prepare() -> None:
+    """Import SciPy where it is installed: it takes longer than some answers may.
+
+    Else the first target on the edge of the reach waits for it.
+    """
+    with suppress(ImportError):
+        importlib.import_module("cobotwire.sim.kinematics.refine")
 
 
 def nearest(
