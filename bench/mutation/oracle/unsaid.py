@@ -16,6 +16,8 @@ LEFT_OPEN = {
     "clear_queue": "no source says what becomes of the motion that is under way, and only waiting "
     "targets are thrown away, of which no query tells",
     "joint_brake": "the edition says that a motor is braked, and no query tells of brakes",
+    "clear_error_information": "an error comes of a motion that cannot be done, and such a target "
+    "lies outside every workspace that a tester has leave for",
     "jog_rpy": "the edition does not say about which coordinate roll, pitch and yaw turn, nor "
     "which way is forward",
     "set_four_pieces_zero": "no query tells of the four-piece motor, so nobody knows whether its "
