@@ -58,7 +58,7 @@ ONE_IMPORTER = {
     "serial": ["transport/serial/"],
     "click": ["cli/"],
     "rich": ["cli/"],
-    "pytest": ["testing/plugin.py", "conformance/pytest_plugin.py"],
+    "pytest": ["testing/plugin.py", "conformance/pytest_"],
     "matplotlib": ["plot/drawing.py", "plot/pose.py"],
     "numpy": ["codec/columns.py"],
     "scipy": ["sim/kinematics/refine.py"],

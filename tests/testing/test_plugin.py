@@ -123,14 +123,21 @@ def test_a_wrong_mark_is_told(tmp_path: Path) -> None:
         assert said in printed
 
 
-def test_a_run_that_does_not_use_it_imports_its_one_module_alone(tmp_path: Path) -> None:
+def test_a_run_that_uses_neither_plugin_imports_next_to_nothing(tmp_path: Path) -> None:
     test = """
 import sys
 
 def test_it():
     loaded = set(sys.modules)
     ours = sorted(name for name in loaded if name.startswith("cobotwire"))
-    assert ours == ["cobotwire", "cobotwire.testing", "cobotwire.testing.plugin"]
+    assert ours == [
+        "cobotwire",
+        "cobotwire.conformance",
+        "cobotwire.conformance.pytest_plugin",
+        "cobotwire.conformance.report",
+        "cobotwire.testing",
+        "cobotwire.testing.plugin",
+    ]
     assert not {"serial", "ruamel", "matplotlib", "numpy"} & loaded
 """
     assert "1 passed" in (said := run(tmp_path, test)), said
