@@ -20,6 +20,7 @@ from cobotwire.errors import UsageError
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim import PtyPort, RunningClock, Server, SimulatedArm, TcpPort
 from cobotwire.sim.faults import Done, Scenario
+from cobotwire.sim.kinematics import get_ready
 from cobotwire.sim.peer import Peer
 from cobotwire.sim.tcp import address
 
@@ -59,6 +60,7 @@ def sim(
     if not 0 < speed <= FASTEST:
         raise UsageError("speed", speed, f"above 0, up to {FASTEST:g}")
     package = editions.load(edition)
+    get_ready()
     shown = SHOWN["json" if as_json else "words"]
     clock = RunningClock(speed)
     remark = None if quiet else lambda note: say(shown.note(note))

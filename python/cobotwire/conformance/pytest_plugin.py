@@ -13,6 +13,7 @@ from cobotwire import editions
 from cobotwire.conformance.device import Leave, Line, Step, Tester, words, workspace_of
 from cobotwire.conformance.places import places_of
 from cobotwire.conformance.report import Result, Verdict
+from cobotwire.errors import CobotwireError
 from cobotwire.transport import open_link
 
 HELP = "Conformance of a device (cobotwire)"
@@ -33,7 +34,10 @@ def pytest_collection_modifyitems(
 ) -> None:
     """Add the tests of the device behind the others."""
     if config.getoption("--conform-device"):
-        device = _Device(config)
+        try:
+            device = _Device(config)
+        except CobotwireError as error:
+            raise pytest.UsageError(str(error)) from error
         config.add_cleanup(device.close)
         items.extend(device.items(session))
 

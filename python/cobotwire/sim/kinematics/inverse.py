@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from importlib import import_module
 from itertools import islice
 
 from cobotwire.sim.kinematics.forward import flange
@@ -35,6 +37,12 @@ WRIST_TRIES = 30
 # So many guesses are worked on before a target counts as out of reach.
 GUESSES = 8
 ROUNDING = 1e-6
+
+
+def get_ready() -> None:
+    """Import SciPy now, if it is there: half a second that no answer in real time can wait for."""
+    with suppress(ImportError):
+        import_module("cobotwire.sim.kinematics.refine")
 
 
 def nearest(
