@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import count
 
 import pytest
@@ -53,10 +52,10 @@ def _run(*cuts: int) -> tuple[SimulatedArm, CutShort, Tester]:
 
 
 @pytest.fixture(scope="module")
-def whole() -> Iterator[int]:
+def whole() -> int:
     _, link, tester = _run()
     assert tester.report.finished
-    yield link.written
+    return link.written
 
 
 def _is_as_before(arm: SimulatedArm, link: CutShort) -> None:

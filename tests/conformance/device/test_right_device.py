@@ -32,9 +32,9 @@ def test_the_simulated_arm_conforms_with_everything_allowed(edition: str) -> Non
     assert report.conforms
 
 
-@pytest.mark.parametrize("edition", EDITIONS)
-@pytest.mark.parametrize("seed", range(20))
-def test_it_conforms_under_light_noise_twenty_times_of_twenty(edition: str, seed: int) -> None:
+# `make conform` runs twenty of twenty for each edition.
+@pytest.mark.parametrize(("edition", "seed"), [(EDITIONS[seed % 2], seed) for seed in range(6)])
+def test_it_conforms_under_light_noise_each_time(edition: str, seed: int) -> None:
     random = Random(seed)
 
     def leak() -> bytes:
