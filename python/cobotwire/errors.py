@@ -11,7 +11,21 @@ from typing import Any
 
 
 class CobotwireError(Exception):
-    """The root of every error that cobotwire raises on purpose."""
+    """The root of every error that cobotwire raises on purpose.
+
+    It can be pickled, so that it comes whole out of another process.
+    """
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (type(self), self.args), self.__dict__
+
+
+def _again(kind: type[CobotwireError], args: tuple[Any, ...]) -> CobotwireError:
+    """An error with its text; the attributes are set by whoever unpickles it."""
+    error = kind.__new__(kind)
+    # Not the branch's own, which takes the data that the text was made of.
+    Exception.__init__(error, *args)
+    return error
 
 
 class UsageError(CobotwireError, ValueError):

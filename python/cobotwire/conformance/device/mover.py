@@ -12,12 +12,13 @@ from cobotwire.table import Command
 
 Pose = tuple[float, ...]
 # Shares of each joint's range in the workspace: no joint stands as another one, nor at zero. From
-# the last two, where joints 2 and 3 are bent the same way, the end can go a little way anywhere.
+# the last three, where the arm is bent, the end can go a little way nearly anywhere.
 POSES = (
     (0.71, 0.37, 0.62, 0.29, 0.83, 0.17),
     (0.33, 0.68, 0.41, 0.77, 0.21, 0.58),
     (0.58, 0.22, 0.12, 0.57, 0.62, 0.44),
     (0.44, 0.30, 0.05, 0.78, 0.36, 0.66),
+    (0.58, 0.06, 0.72, 0.94, 0.83, 0.52),
 )
 # A joint stands on an encoder tick, 360/4096 degrees, and its angle is cut to hundredths.
 TICK_DEGREES = 360 / 4096

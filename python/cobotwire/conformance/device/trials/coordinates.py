@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from cobotwire.conformance.device.catalogue import ACKNOWLEDGED, ARRIVES, SILENT
-from cobotwire.conformance.device.mover import Mover
 from cobotwire.conformance.device.trial import Case, trial
-from cobotwire.conformance.device.trials.jogging import try_near
+from cobotwire.conformance.device.trials.jogging import nearby
 from cobotwire.table import Command, Table
 
 
@@ -17,8 +16,4 @@ def is_for_an_axis(table: Table, command: Command) -> bool:
 @trial(ARRIVES, SILENT, ACKNOWLEDGED, of=is_for_an_axis)
 def to_coordinate(case: Case) -> None:
     """A little way along or about each axis; the other coordinates stay."""
-    mover = Mover(case)
-    axis = case.command.request[0].fields[0]
-    for chosen in axis.choices:
-        for sign in (1, -1):
-            try_near(case, mover, axis, chosen, sign, absolute=True)
+    nearby(case, case.command.request[0].fields[0], absolute=True)

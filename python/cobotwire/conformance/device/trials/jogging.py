@@ -51,19 +51,29 @@ def is_jog(table: Table, command: Command) -> bool:
 @trial(ARRIVES, SILENT, ACKNOWLEDGED, of=is_step)
 def step(case: Case) -> None:
     """A step of each part, up and down."""
-    mover, (part, _) = Mover(case), _parts(case)
-    for chosen in _choices(part):
-        for sign in (1, -1):
-            try_near(case, mover, part, chosen, sign, absolute=False)
+    nearby(case, _parts(case)[0], absolute=False)
 
 
-def try_near(
-    case: Case, mover: Mover, part: Field, chosen: int, sign: int, *, absolute: bool
-) -> None:
-    """Send a part a little way off, from pose to pose, until it goes.
+def nearby(case: Case, part: Field, *, absolute: bool) -> None:
+    """Send each part a little way up and down.
 
-    An arm may refuse what it cannot reach. So it may stay; but where it goes, it goes there.
+    An arm may refuse what it cannot reach: a way that it goes from none of the poses is taken for
+    one. An arm that goes no way at all is not.
     """
+    mover = Mover(case)
+    stays = [
+        _stays(case, mover, part, chosen, sign, absolute=absolute)
+        for chosen in _choices(part)
+        for sign in (1, -1)
+    ]
+    found = f"{case.command.name}: from {len(POSES)} poses the arm went no way at all"
+    case.expect(ARRIVES, not all(stays), found)
+
+
+def _stays(
+    case: Case, mover: Mover, part: Field, chosen: int, sign: int, *, absolute: bool
+) -> bool:
+    """Send a part one way, from pose to pose, until it goes, and see where; True: it never does."""
     for which in range(len(POSES)):
         mover.go(mover.pose(which))
         before, numbers = where(case, part)
@@ -73,28 +83,29 @@ def try_near(
         order(case, case.command, (chosen, target if absolute else distance, mover.speed))
         mover.wait()
         after, _ = where(case, part)
-        wrong = _off(numbers, [*before[:at], target, *before[at + 1 :]], after)
-        if not wrong:
-            case.expect(ARRIVES, True, "")
-            return
         if _off(numbers, before, after):
-            break
-    call = f"{case.command.name}({part.name}={chosen}), {distance} {numbers[at].unit} from there"
-    case.expect(ARRIVES, False, f"{call}: {'; '.join(wrong)}")
+            wrong = _off(numbers, [*before[:at], target, *before[at + 1 :]], after)
+            call = f"{case.command.name}({part.name}={chosen}), {distance} {numbers[at].unit}"
+            case.expect(ARRIVES, not wrong, f"{call} from there: {'; '.join(wrong)}")
+            return False
+    return True
 
 
 @trial(ARRIVES, STOPS, SILENT, ACKNOWLEDGED, of=is_jog)
 def jog(case: Case) -> None:
-    """Each part in both directions, and a stop."""
+    """Each part in both directions, and a stop; as with steps, some ways may be out of reach."""
     mover, (part, way) = Mover(case), _parts(case)
-    for chosen in _choices(part):
-        for direction in way.choices:
-            _jog(case, mover, part, chosen, direction)
+    goes = [
+        _jog(case, mover, part, chosen, direction)
+        for chosen in _choices(part)
+        for direction in way.choices
+    ]
+    found = f"{case.command.name}: from {len(POSES)} poses the arm went no way at all"
+    case.expect(ARRIVES, any(goes), found)
 
 
-def _jog(case: Case, mover: Mover, part: Field, chosen: int, direction: int) -> None:
-    """Move one part in one direction, from pose to pose, until it goes."""
-    call = f"{case.command.name}({part.name}={chosen}, {direction})"
+def _jog(case: Case, mover: Mover, part: Field, chosen: int, direction: int) -> bool:
+    """Move one part in one direction, from pose to pose, until it goes; whether it ever does."""
     for which in range(len(POSES)):
         mover.go(mover.pose(which))
         before, numbers = where(case, part)
@@ -102,10 +113,14 @@ def _jog(case: Case, mover: Mover, part: Field, chosen: int, direction: int) -> 
         mover.rest(4 * UNDER_WAY)
         after = _stopped(case, mover, part)
         moved = [now - then for now, then in zip(after, before)]
-        if any(abs(way) > STRAYS[number.unit] for way, number in zip(moved, numbers)):
-            break
-    wrong = _not_so(part, chosen, case.command.request[0].fields[1], direction, numbers, moved)
-    case.expect(ARRIVES, not wrong, f"{call}: expected {wrong}; it moved by {_short(moved)}")
+        if any(abs(by) > STRAYS[number.unit] for by, number in zip(moved, numbers)):
+            way = case.command.request[0].fields[1]
+            wrong = _not_so(part, chosen, way, direction, numbers, moved)
+            call = f"{case.command.name}({part.name}={chosen}, {direction})"
+            found = f"{call}: expected {wrong}; it moved by {_short(moved)}"
+            case.expect(ARRIVES, not wrong, found)
+            return True
+    return False
 
 
 def _stopped(case: Case, mover: Mover, part: Field) -> Sequence[float]:

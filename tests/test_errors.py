@@ -1,0 +1,44 @@
+"""Errors as data: they come whole out of another process."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import pytest
+
+from cobotwire.errors import (
+    CaptureError,
+    CobotwireError,
+    LinkError,
+    MotionTimeout,
+    ProtocolError,
+    ReplyTimeout,
+    ScenarioError,
+    UsageError,
+)
+
+ERRORS = [
+    UsageError("angles[2]", 400, "-160..160 degree"),
+    ProtocolError("bad-value", 4, b"\xfe\xfe", "is_power_on: powered holds 7"),
+    LinkError("/dev/ttyACM0", "it is gone", 3),
+    ReplyTimeout("get_angles", 0.5, ("noise",), 3, "get_angles()"),
+    MotionTimeout((1.0, 2.0), 3.0, True),
+    CaptureError("a.pcapng", 12, "it is cut off"),
+    ScenarioError(["a.yaml:1:2: there is no fault losst", "a.yaml:2:1: nothing"]),
+]
+
+
+@pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
+@pytest.mark.parametrize("way", [lambda e: pickle.loads(pickle.dumps(e)), copy.copy])
+def test_an_error_is_the_same_afterwards(error: CobotwireError, way: object) -> None:
+    assert callable(way)
+    again = way(error)
+    assert type(again) is type(error)
+    assert str(again) == str(error)
+    assert vars(again) == vars(error)
+
+
+def test_every_branch_is_tried() -> None:
+    branches = set(CobotwireError.__subclasses__())
+    assert branches == {type(error) for error in ERRORS}
