@@ -13,11 +13,12 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "sphinx.ext.viewcode",
 ]
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build"]
 nitpicky = False
+# What names no language is what a program printed, or commands.
+highlight_language = "none"
 
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence", "deflist"]

@@ -78,6 +78,16 @@ def test_a_call_prints_its_answer(server: PtyServer) -> None:
     assert json.loads(as_json.stdout) == {"command": "get_reference_frame", "result": "BASE"}
 
 
+def test_a_call_takes_the_text_that_follows_its_frame(server: PtyServer) -> None:
+    port = ("--port", server.url)
+    call = ("--edition", "mycobot280", "call", "set_ssid_pwd")
+    missing = run(*call, "home", *port)
+    assert (missing.returncode, "Traceback" in missing.stderr) == (2, False)
+    assert "set_ssid_pwd takes account, password" in missing.stderr
+    done = run(*call, "home", "password=a=b", *port)
+    assert done.returncode == 0, done.stderr
+
+
 def test_a_call_takes_lists_names_and_negative_numbers(server: PtyServer) -> None:
     url = ("--port", server.url)
     assert run("call", "power_on", *url).returncode == 0

@@ -245,3 +245,16 @@ def test_faults_are_done_on_every_line_and_told(tmp_path: Path) -> None:
         (2, "heard"),
         (2, "fault"),
     ]
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="needs /proc, as Linux has it")
+def test_an_arm_that_is_up_for_a_while_has_imported_what_slow_answers_need(
+    sim: subprocess.Popen[str],
+) -> None:
+    """Or its first solve_inv_kinematics comes later than its deadline."""
+    assert sim.stdout is not None
+    assert sim.stdout.readline()
+    maps, end = Path(f"/proc/{sim.pid}/maps"), time.monotonic() + 30
+    while "/scipy/" not in maps.read_text() and time.monotonic() < end:
+        time.sleep(0.05)
+    assert "/scipy/" in maps.read_text()

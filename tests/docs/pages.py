@@ -47,7 +47,11 @@ def run(page: Path, folder: Path, port: str) -> Iterator[Ran]:
                 file.write(text.replace(PORT, port))
         elif block["kind"] == "console":
             for command, right in _commands(text):
-                yield Ran(command, right, _printed(command.replace(PORT, port), folder))
+                yield Ran(
+                    command,
+                    right.replace(PORT, port),
+                    _printed(command.replace(PORT, port), folder),
+                )
 
 
 def _commands(text: str) -> Iterator[tuple[str, str]]:

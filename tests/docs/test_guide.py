@@ -9,6 +9,7 @@ import pytest
 
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.sim import PtyServer, SimulatedArm
+from cobotwire.sim.kinematics import prepare
 from docs.pages import run
 from vectors import ROOT
 
@@ -18,6 +19,7 @@ PAGES = [ROOT / "docs" / "start.md", *sorted((ROOT / "docs" / "guide").glob("*.m
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_the_page_does_what_it_says(page: Path, tmp_path: Path) -> None:
     shutil.copytree(ROOT / "spec", tmp_path / "spec")
+    prepare()
     with PtyServer(SimulatedArm(TABLE)) as server:
         ran = list(run(page, tmp_path, server.url))
     assert ran, "a page of the guide runs something"

@@ -19,6 +19,9 @@ from vectors import ROOT
 # What a browser loads by itself, and by which attribute.
 LOADED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
 
+# As `make docs`, but without collecting garbage, which is a fifth of the time.
+BUILD = "import gc, sys; gc.disable(); from sphinx.cmd.build import main; sys.exit(main())"
+
 
 class Page(HTMLParser):
     """What a page links to, what it loads, and what can be linked to in it."""
@@ -44,7 +47,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site, built with a proxy that leads nowhere: nothing can be fetched."""
     folder = tmp_path_factory.mktemp("site")
     nowhere = {f"{way}_proxy": "http://127.0.0.1:9" for way in ("http", "https")}
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"]
+    command = [sys.executable, "-c", BUILD, "-q", "-W", "--keep-going", "-b", "html"]
     done = subprocess.run(
         [*command, str(ROOT / "docs"), str(folder)],
         capture_output=True,

@@ -8,7 +8,18 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cobotwire.sim.faults import KINDS, Corrupted, Done, Fault, Late, Merged, Slow, Split, Stalled
+from cobotwire.sim.faults import (
+    KINDS,
+    Corrupted,
+    Done,
+    Echo,
+    Fault,
+    Late,
+    Merged,
+    Slow,
+    Split,
+    Stalled,
+)
 from cobotwire.sim.faults.noise import LEAKS
 from faulty_talk import GET_ANGLES, IS_POWERED, POWER_ON, talk
 
@@ -121,10 +132,16 @@ def test_what_is_not_told_was_not_done(
         assert played == talk([], requests)
 
 
+def _shows_the_cut(fault: Fault) -> bool:
+    """What is no request has no end to wait for: a line that echoes it does so as it comes."""
+    return isinstance(fault, Echo) and fault.only == "malformed input"
+
+
 @given(st.lists(faults(), max_size=3), REQUESTS, SEEDS, st.integers(1, 4))
 def test_how_the_requests_were_cut_does_not_show(
     chosen: list[Fault], requests: list[bytes | float], seed: int, size: int
 ) -> None:
+    chosen = [fault for fault in chosen if not _shows_the_cut(fault)]
     whole = talk(chosen, requests, seed=seed)
     cut = talk(chosen, requests, seed=seed, size=size)
     assert (cut.heard, cut.said) == (whole.heard, whole.said)

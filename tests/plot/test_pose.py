@@ -70,17 +70,17 @@ def test_sim_keeps_the_picture_up_to_date(tmp_path: Path) -> None:
         assert process.stdout is not None
         url = process.stdout.readline().strip()
         assert "J1 0.0°" in path.read_text()
-        with MyCobot280(url) as arm:
+        with MyCobot280(url, timeout=30) as arm:
             arm.power_on()
             arm.move_angles([45, 0, 0, 0, 0, 0], 100)
-            until = time.monotonic() + 10
+            until = time.monotonic() + 60
             while time.monotonic() < until and not _says(path, "J1 45.0°"):
                 time.sleep(0.05)
             assert _says(path, "J1 45.0°")
             arm.send_angles([0] * 6, 100)
             time.sleep(0.3)  # it is on its way
         os.kill(process.pid, signal.SIGTERM)
-        assert process.wait(timeout=10) == 0
+        assert process.wait(timeout=60) == 0
         assert not _says(path, "J1 45.0°")
     finally:
         process.kill()

@@ -25,7 +25,7 @@ def run(folder: Path, test: str, *words: str) -> str:
         cwd=folder,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
     return result.stdout + result.stderr
@@ -46,7 +46,7 @@ def test_the_url_is_for_any_library_on_each_kind_of_port(tmp_path: Path) -> None
 import pytest, serial, time
 
 def ask(url):
-    with serial.serial_for_url(url, 115200, timeout=5) as port:
+    with serial.serial_for_url(url, 115200, timeout=60) as port:
         port.write(bytes.fromhex("FE FE 02 12 FA"))
         assert port.read(6) == bytes.fromhex("FE FE 03 12 00 FA")
 

@@ -2,24 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cobotwire.errors import UsageError
-from cobotwire.table import Command, Field
+from cobotwire.table import Command, Field, Layout
 
 _YES = {"true": True, "yes": True, "on": True, "1": True}
 _NO = {"false": False, "no": False, "off": False, "0": False}
 
 
-def parse(command: Command, words: Sequence[str]) -> list[Any]:
-    """Values in the order of the fields; words stand in that order or as ``name=value``.
+def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
+    """Values by name, in the fields' order; words stand in that order or as ``name=value``.
+
+    What a shorter form of the request leaves out may be left out; what is always the same is not
+    given. The text behind a request is given as it is.
 
     Raises:
         UsageError: too many words, a missing one, an unknown name, or a word that is no value.
     """
-    fields = command.request[0].fields
-    names = [field.name for field in fields]
+    text = command.request_text.fields if command.request_text else ()
+    names = [*(field.name for field in _asked(command.request[0])), *text]
+    given = _named(names, words)
+    for form in command.request:
+        asked = _asked(form)
+        if {*(field.name for field in asked), *text} == set(given):
+            values = {field.name: value_of(field, given[field.name]) for field in asked}
+            return values | {name: given[name] for name in text}
+    missing = next(name for name in names if name not in given)
+    raise UsageError(missing, None, f"a value; {command.name} takes {_wanted(names)}")
+
+
+def framed(command: Command, given: Mapping[str, Any]) -> tuple[Any, ...]:
+    """The values of the request's frame, what is always the same included."""
+    form = next(f for f in command.request if all(x.name in given for x in _asked(f)))
+    return tuple(given.get(field.name, field.choices and field.choices[0]) for field in form.fields)
+
+
+def _asked(form: Layout) -> list[Field]:
+    """The fields that a caller gives; a list of one number leaves nothing to say."""
+    return [field for field in form.fields if len(field.choices) != 1 or field.labels]
+
+
+def _named(names: Sequence[str], words: Sequence[str]) -> dict[str, str]:
+    """The words by the names of the fields that they are for."""
     given: dict[str, str] = {}
     for word in words:
         name, equals, value = word.partition("=")
@@ -31,10 +57,7 @@ def parse(command: Command, words: Sequence[str]) -> list[Any]:
         if name not in names or name in given:
             raise UsageError("argument", word, f"each once: {_wanted(names)}")
         given[name] = value
-    for field in fields:
-        if field.name not in given:
-            raise UsageError(field.name, None, f"a value; {command.name} takes {_wanted(names)}")
-    return [value_of(field, given[field.name]) for field in fields]
+    return given
 
 
 def _wanted(names: Sequence[str]) -> str:

@@ -45,7 +45,7 @@ def call(
     command = package.TABLE.command(name)
     arguments = parse(command, values)
     with linked(port, package.TABLE, baudrate, record) as link:
-        result = getattr(package.CLIENT(link, timeout=timeout), name)(*arguments)
+        result = getattr(package.CLIENT(link, timeout=timeout), name)(**arguments)
     if as_json:
         click.echo(json.dumps({"command": name, "result": plain(result)}))
     elif result is not None:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import shlex
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from urllib.parse import urlsplit
 
 import click
 
 from cobotwire import editions
-from cobotwire.cli.arguments import parse
+from cobotwire.cli.arguments import framed, parse
 from cobotwire.cli.conforming import ReportFiles, conclude, could_not_run, report_options
 from cobotwire.cli.serving import serve
 from cobotwire.conformance.client import MISDEEDS, Manners, Referee, Told
@@ -139,12 +138,6 @@ def read_script(table: Table, path: str) -> Iterator[Told]:
 
 
 def _told(table: Table, words: list[str], place: str) -> Told:
-    """The first form of the request that takes the words."""
+    """A call as it is written; the text behind a request is not compared."""
     command = table.command(words[0])
-    refusal: UsageError | None = None
-    for form in command.request:
-        try:
-            return Told(command, tuple(parse(replace(command, request=(form,)), words[1:])), place)
-        except UsageError as error:
-            refusal = refusal or error
-    raise refusal or UsageError("command", words[0], "one with a request")
+    return Told(command, framed(command, parse(command, words[1:])), place)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import sys
+import threading
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
@@ -20,11 +21,13 @@ from cobotwire.errors import UsageError
 from cobotwire.session.device import DeviceEvent
 from cobotwire.sim import PtyPort, RunningClock, Server, SimulatedArm, TcpPort
 from cobotwire.sim.faults import Done, Scenario
-from cobotwire.sim.kinematics import get_ready
+from cobotwire.sim.kinematics import prepare
 from cobotwire.sim.peer import Peer
 from cobotwire.sim.tcp import address
 
 FASTEST = 1e6
+# Whoever serves for longer gets ready for answers that would else come late.
+PREPARED_SECONDS = 0.5
 
 
 @click.command()
@@ -60,7 +63,6 @@ def sim(
     if not 0 < speed <= FASTEST:
         raise UsageError("speed", speed, f"above 0, up to {FASTEST:g}")
     package = editions.load(edition)
-    get_ready()
     shown = SHOWN["json" if as_json else "words"]
     clock = RunningClock(speed)
     remark = None if quiet else lambda note: say(shown.note(note))
@@ -74,6 +76,10 @@ def sim(
             looks.append(stack.enter_context(JointTable(package, arm, clock)).look)
         if view is not None:
             looks.append(stack.enter_context(View(package, arm, clock, view)).look)
+        ready = threading.Timer(PREPARED_SECONDS, prepare)
+        ready.daemon = True
+        ready.start()
+        stack.callback(ready.cancel)
         serve(server, shown.serving(server.url), looks)
 
 

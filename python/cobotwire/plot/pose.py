@@ -1,4 +1,4 @@
-"""The arm as a stick figure, from its kinematics: seen from the side, from above, and in space."""
+"""The arm as a stick figure, from its kinematics: seen from the side and from above."""
 
 from __future__ import annotations
 

@@ -12,10 +12,11 @@ from cobotwire import codec as codecs
 from cobotwire.errors import UsageError
 from cobotwire.session import Asked, DeviceSession, Told
 from cobotwire.session.device import DeviceEvent
+from cobotwire.sim.answers import complete, sayable
 from cobotwire.sim.behaviour import BEHAVIOUR
 from cobotwire.sim.kinematics import Geometry, geometry_of
 from cobotwire.sim.state import ArmState
-from cobotwire.table import Command, Field, Number, Table
+from cobotwire.table import Command, Table
 
 # A joint's limit lies inside half a turn; what is wider is only what the wire can say.
 HALF_TURN = 180.0
@@ -29,7 +30,7 @@ NOTES_KEPT = 1000
 
 
 class Note(NamedTuple):
-    """What no answer tells: that an order is ignored, or refused, and why.
+    """What no answer tells: that an order is ignored, is refused or has to wait, and why.
 
     ``time`` is by the arm's clock, ``command`` the order's name.
     """
@@ -75,8 +76,8 @@ class SimulatedArm:
         self._geometry = geometry or geometry_of(table)
         self._codec = codecs.load(table, codec)
         # In a list that all lines of this arm share, so that each sees when it is replaced.
-        self._states = [ArmState(table.joints, self._geometry)]
-        self.restart()
+        self._states = [self._fresh()]
+        self._session = DeviceSession(self._codec)
 
     @property
     def state(self) -> ArmState:
@@ -98,11 +99,23 @@ class SimulatedArm:
         return line
 
     def restart(self) -> None:
-        """Lose all state, as when power goes and comes back."""
-        self.state = ArmState(self.table.joints, self._geometry)
-        for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
-            self.state.minimum[joint], self.state.maximum[joint] = lowest, highest
+        """Lose all state, as when power goes and comes back.
+
+        What the arm is made of keeps its place: joints and gripper stand where they stood. The
+        controller counts its starts.
+        """
+        now, before = self._clock(), self.state
+        self.state = self._fresh()
+        self.state.angles.place(before.standing(now), now)
+        self.state.gripper.place(before.gripper.position(now), now)
+        self.state.starts = before.starts + 1
         self._session = DeviceSession(self._codec)
+
+    def _fresh(self) -> ArmState:
+        state = ArmState(self.table.joints, self._geometry)
+        for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
+            state.minimum[joint], state.maximum[joint] = lowest, highest
+        return state
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -145,13 +158,13 @@ class SimulatedArm:
         result = {} if command.request_text is not None else self._do(command, given)
         if not command.answers and not (command.ack and self._acks):
             return b""
-        values = _complete(command, given, result)
+        values = complete(command, given, result)
         try:
             return self._session.answer(command.name, values)
         except UsageError:
             # A pose far out in the world, or a limit: no wire has a word for it.
             self._note(command, "answered with the nearest that the wire can say")
-            return self._session.answer(command.name, _sayable(command, result, values))
+            return self._session.answer(command.name, sayable(command, result, values))
 
     def _do(self, command: Command, given: Mapping[str, Any]) -> dict[str, Any]:
         handler = BEHAVIOUR.get(command.name)
@@ -179,57 +192,3 @@ def _joint_limits(table: Table) -> list[tuple[float, float]]:
             limits = [(n.minimum / n.divide, n.maximum / n.divide) for n in numbers]
             return limits if all(high <= HALF_TURN for _, high in limits) else []
     return []
-
-
-def _complete(command: Command, given: dict[str, Any], result: dict[str, Any]) -> dict[str, Any]:
-    """Fill a reply up: echoes from the request, the rest with what is legal and usual."""
-    if command.text is not None:
-        return {name: result.get(name, "") for name in command.text.fields}
-    form = command.reply[_form(command, result)]
-    # An acknowledgement says 1, done.
-    usual = 1 if command.ack else 0
-    return {
-        field.name: given[field.name] if field.echo else result.get(field.name, _near(field, usual))
-        for field in form.fields
-    }
-
-
-def _sayable(command: Command, result: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
-    """The same reply with each number inside what the edition allows in its place."""
-    said = dict(values)
-    for field in command.reply[_form(command, result)].fields:
-        row = values[field.name] if field.many else (values[field.name],)
-        kept = tuple(_inside(number, value) for number, value in zip(field.cases[0].numbers, row))
-        if not field.echo:
-            said[field.name] = kept if field.many else kept[0]
-    return said
-
-
-def _inside(number: Number, value: Any) -> Any:
-    low, high = number.minimum, number.maximum
-    if number.scaled:
-        share = number.multiply / number.divide
-        return min(max(value, low * share), high * share)
-    return min(max(value, low), high)
-
-
-def _form(command: Command, result: dict[str, Any]) -> int:
-    """The first form of the reply that has room for the whole result."""
-    for index, form in enumerate(command.reply):
-        if set(result) <= {field.name for field in form.fields}:
-            return index
-    return 0
-
-
-def _near(field: Field, usual: int) -> Any:
-    """The legal value that is nearest to the usual one."""
-    numbers = field.cases[0].numbers
-    values = [
-        field.choices[0] if field.choices else min(max(usual, number.minimum), number.maximum)
-        for number in numbers
-    ]
-    scaled = [
-        value * number.multiply / number.divide if number.scaled else value
-        for value, number in zip(values, numbers)
-    ]
-    return scaled if field.many else scaled[0]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from cobotwire.sim.kinematics import Geometry, Pose, flange
+from cobotwire.sim.kinematics import DEGREES_A_TICK, Geometry, Pose, flange
 from cobotwire.sim.kinematics.ticks import (
+    ZERO_TICK,
     angle_at,
     encoder_at,
     inside,
@@ -53,6 +54,10 @@ class ArmState:
     pins: dict[int, bool] = field(default_factory=dict)
     pin_modes: dict[int, int] = field(default_factory=dict)
     basic_pins: dict[int, bool] = field(default_factory=dict)
+    # Frequency in hertz and share in 256ths, by pin.
+    pulses: dict[int, tuple[int, int]] = field(default_factory=dict)
+    # How often the controller has started.
+    starts: int = 1
     gripper: Axes = field(default_factory=lambda: Axes((0.0,), OPENING_ACCELERATION))
     settings: Settings = field(default_factory=Settings)
     # What happened in the request of the moment that no answer tells; the arm makes notes of it.
@@ -73,8 +78,11 @@ class ArmState:
 
     def standing(self, now: float) -> tuple[float, ...]:
         """Where the joints are, on their encoders' ticks."""
-        position = self.angles.position(now)
-        return tuple(map(on_tick, position)) if self.geometry else position
+        return self.on_ticks(self.angles.position(now))
+
+    def on_ticks(self, angles: tuple[float, ...]) -> tuple[float, ...]:
+        """Where joints would stand that are sent to angles: on the nearest ticks."""
+        return tuple(map(on_tick, angles)) if self.geometry else angles
 
     def told_angles(self, angles: tuple[float, ...]) -> tuple[float, ...]:
         """Angles as the arm tells them."""
@@ -92,10 +100,15 @@ class ArmState:
         """End every motion of the arm at once, as where the torque is gone."""
         self.angles.halt(now)
 
+    def servo_speeds(self, now: float) -> tuple[int, ...]:
+        """How fast each joint's servo turns, in encoder steps a second; it counts as they do."""
+        speeds = enumerate(self.angles.speed(now))
+        return tuple(round(self._sign(joint) * v / DEGREES_A_TICK) for joint, v in speeds)
+
     def encoder(self, joint: int, now: float) -> int:
         """The encoder of a joint, counted from 0; the gripper's, behind the last joint."""
         if joint >= self.joints:
-            return encoder_at(0.0, 1) + round(self.gripper.position(now)[0])
+            return ZERO_TICK + round(self.gripper.position(now)[0])
         reading = encoder_at(self.angles.position(now)[joint], self._sign(joint))
         return min(max(reading, 0), ENCODER_MOST)
 

@@ -74,6 +74,7 @@ def go_to_angles(
             wish = min(max(on_tick(wish) if arm.geometry else wish, low), high)
         goal.append(wish)
     arm.angles.go(goal, rate(speed), now, queue=_queues(arm) if queue is None else queue)
+    _mind_the_pause(arm)
     return True
 
 
@@ -169,6 +170,13 @@ def _go_along(arm: ArmState, points: list[Point], speed: int, now: float, *, que
         min(max(on_tick(angle), low), high) for angle, (low, high) in zip(points[-1], arm.limits())
     )
     arm.angles.follow([*points[:-1], goal], rate(speed), now, queue=queue)
+    _mind_the_pause(arm)
+
+
+def _mind_the_pause(arm: ArmState) -> None:
+    """No answer tells that an order has to wait."""
+    if arm.paused:
+        arm.remarks.append("waits: the arm is paused until resume")
 
 
 def _steps(start: Pose, end: Pose) -> int:

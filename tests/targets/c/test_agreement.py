@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import vectors
@@ -31,6 +32,8 @@ from targets.c.peer import CPeer
 
 pytestmark = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
 DIRECTIONS: st.SearchStrategy[Direction] = st.sampled_from(["request", "reply"])
+# Each test runs for each edition; fuzz.py beside this goes on for longer.
+QUICK = settings(max_examples=40)
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
 
 
@@ -50,6 +53,7 @@ def peer(edition: str) -> Iterator[CPeer]:
         yield started
 
 
+@QUICK
 @given(data=st.data())
 def test_a_legal_message_is_built_and_read_alike(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -92,6 +96,7 @@ def _any_values(draw: st.DrawFn, form: Form) -> tuple[Any, ...]:
     )
 
 
+@QUICK
 @given(data=st.data())
 def test_any_value_is_built_or_refused_alike(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -103,6 +108,18 @@ def test_any_value_is_built_or_refused_alike(
     assert found == beside.encoded(form, values)
 
 
+@pytest.mark.parametrize("eighths", [1, 3, 5, 7, -1, -3, -5, -7])
+def test_half_a_step_goes_to_the_even_one(
+    edition: str, beside: Beside, peer: CPeer, eighths: int
+) -> None:
+    # Of hundredths, these alone are exactly between two.
+    form = next(form for form in forms_of(TABLES[edition]) if form.command.name == "send_angle")
+    values = (1, eighths / 8, 20)
+    number = beside.number(form)
+    assert peer.encode_values(number, beside.flat(number, values)) == beside.encoded(form, values)
+
+
+@QUICK
 @given(data=st.data())
 def test_any_bytes_are_read_or_refused_alike(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -129,6 +146,25 @@ def form_bytes(form: Form) -> st.SearchStrategy[bytes]:
     return st.binary(min_size=size, max_size=size).map(lambda data: head + data + frame.footer)
 
 
+def test_what_several_calls_could_mean_is_read_or_refused_as_the_first(
+    edition: str, beside: Beside, peer: CPeer
+) -> None:
+    table = TABLES[edition]
+    lengths = Counter((form.command.id, form.layout.size) for form in forms_of(table))
+    shared = sorted(key for key, count in lengths.items() if count > 1 and key[1])
+    assert shared
+    for id, size in shared:
+        head = table.frame.header + bytes([table.frame.length(size), id])
+        for fill in (0, 1, 2, 7, 23, 64, 101, 128, 200, 255):
+            frame = head + bytes([fill] * size) + table.frame.footer
+            (event,) = beside.codec.framer("both").feed(frame)
+            assert isinstance(event, Frame)
+            assert beside.read_in_c(peer.read("both", frame)) == beside.event(event)
+            for way in ("request", "reply"):
+                assert beside.read_in_c(peer.read(way, frame)) == beside.read(way, frame)
+
+
+@QUICK
 @given(data=st.data())
 def test_a_frame_is_refused_as_the_message_that_is_asked_for(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -141,6 +177,7 @@ def test_a_frame_is_refused_as_the_message_that_is_asked_for(
     assert found == beside.read(form.direction, frame, form.command.name)
 
 
+@QUICK
 @given(data=st.data())
 def test_a_stream_is_framed_alike_however_it_is_cut(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
@@ -160,6 +197,22 @@ def test_a_stream_is_framed_alike_however_it_is_cut(
     for event in right if not unknown else []:
         if isinstance(event, Frame):
             assert beside.read_in_c(peer.read(listening, event.data)) == beside.event(event)
+
+
+@pytest.mark.parametrize("longer", [-1, 0, 1])
+def test_a_frame_of_an_unknown_id_is_as_long_as_any_at_most(
+    edition: str, beside: Beside, peer: CPeer, longer: int
+) -> None:
+    table = TABLES[edition]
+    unknown = min(set(range(256)) - {command.id for command in table.commands})
+    length = table.frame.maximum_length + longer
+    size = length - table.frame.length(0)
+    stream = table.frame.header + bytes([length, unknown]) + bytes(size) + table.frame.footer
+    framer = beside.codec.framer("both", accept_unknown=True)
+    right = list(events(framer.feed(stream) + framer.flush()))
+    assert right[0].reason == ("bad-length" if longer > 0 else "ok")
+    found, _ = peer.events("both", [(stream, True)], True)
+    assert joined(found) == joined(right)
 
 
 def test_names_are_those_of_the_spec(beside: Beside, peer: CPeer) -> None:

@@ -28,7 +28,7 @@ DIRECTIONS: st.SearchStrategy[Direction] = st.sampled_from(["request", "reply"])
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
 
 
-@settings(max_examples=8, suppress_health_check=list(HealthCheck))
+@settings(max_examples=5, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_a_random_protocol_runs_in_c(tmp_path: Path, data: st.DataObject) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}"))

@@ -135,6 +135,12 @@ def test_a_frame_over_packets_names_where_it_begins_and_goes_on(tmp_path: Path) 
     assert began.split() == ["1", "1"]
 
 
+def test_what_stands_in_one_packet_begins_in_no_other(tmp_path: Path) -> None:
+    path = tmp_path / "line.pcapng"
+    path.write_bytes(serial([Chunk(0, "reply", piece) for piece in (FRAME, ON, ON)], "mycobot"))
+    assert tshark(path, "-Y", "mycobot.began_in || mycobot.continued_in") == ""
+
+
 def test_silence_refutes_what_waits_on_a_serial_line_and_not_over_tcp(tmp_path: Path) -> None:
     path = tmp_path / "line"
     chunks = [Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", ON, SILENCE_NS)]
@@ -144,6 +150,12 @@ def test_silence_refutes_what_waits_on_a_serial_line_and_not_over_tcp(tmp_path: 
         ("no-header", FRAME[1:6]),
         ("frame", ON),
     ]
+    # As for the recorder, half a second is silence, and no less.
+    for gap, kind in ((499_000_000, "frame"), (500_000_000, "truncated")):
+        path.write_bytes(
+            serial([Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", FRAME[6:], gap)], "mycobot")
+        )
+        assert joined(dissected(path, "mycobot"))[0][0] == kind
     # A lost segment is sent again after a second or so: a frame must outlast that.
     path.write_bytes(tcp([Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", FRAME[6:], 10**9)]))
     assert joined(dissected(path, "mycobot280"))[-1] == ("frame", FRAME)
@@ -237,6 +249,8 @@ def test_packets_that_were_cut_off_when_captured_are_told(tmp_path: Path) -> Non
     assert [i.data for i in second] == [ON]
     told = tshark(path, "-Y", "mycobot280.cut_off", "-T", "fields", "-e", "frame.number")
     assert told.split() == ["1"]
+    # What was cut off was on the line: nothing is missing between the two.
+    assert not tshark(path, "-Y", "mycobot280.missing", "-T", "fields", "-e", "frame.number")
 
 
 def test_packets_without_time_or_direction_are_read(tmp_path: Path) -> None:

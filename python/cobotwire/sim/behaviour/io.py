@@ -26,6 +26,12 @@ def get_digital_input(arm: ArmState, now: float, pin: int) -> dict[str, Any]:
     return {"high": arm.pins.get(pin, False)}
 
 
+@does("set_pwm_output")
+def set_pwm_output(arm: ArmState, now: float, channel: int, frequency: int, duty: int) -> None:
+    """Put pulses on a pin of the Atom; no command reads them back."""
+    arm.pulses[channel] = (frequency, duty)
+
+
 @does("set_color")
 def set_color(arm: ArmState, now: float, red: int, green: int, blue: int) -> None:
     """Set the light."""

@@ -41,8 +41,11 @@ def get_angles_coords(arm: ArmState, now: float) -> dict[str, Any]:
 
 @does("angles_to_coords")
 def angles_to_coords(arm: ArmState, now: float, angles: tuple[float, ...]) -> dict[str, Any]:
-    """Where the end would be, in the frame and for the end type that are set; nothing moves."""
-    return told("coords", arm.told_coords(angles))
+    """Where the end would be, in the frame and for the end type that are set; nothing moves.
+
+    Joints stand on ticks: for the angles that get_angles tells, it is what get_coords tells.
+    """
+    return told("coords", arm.told_coords(arm.on_ticks(angles)))
 
 
 @does("solve_inv_kinematics")

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from cobotwire.sim.behaviour.gripper import set_gripper_value
 from cobotwire.sim.behaviour.motion import send_angle
 from cobotwire.sim.behaviour.registry import does
+from cobotwire.sim.kinematics.ticks import ZERO_TICK
 from cobotwire.sim.state import ArmState
 from cobotwire.sim.targets import go_to_angles
 
@@ -14,10 +16,19 @@ from cobotwire.sim.targets import go_to_angles
 def set_encoder(
     arm: ArmState, now: float, joint: int, encoder: int, speed: int | None = None
 ) -> None:
-    """Move one servo, at its speed or the one that is set."""
+    """Move one servo, at its speed or the one that is set; the one behind the last: the gripper.
+
+    No source says what a gripper's encoder reads. Here it is the middle when closed, and a step
+    more for each percent that it is open.
+    """
+    chosen = arm.speed if speed is None else speed
     if joint <= arm.joints:
-        chosen = arm.speed if speed is None else speed
         send_angle(arm, now, joint, arm.angle_at(joint - 1, encoder), chosen)
+    elif 0 <= encoder - ZERO_TICK <= 100:
+        set_gripper_value(arm, now, encoder - ZERO_TICK, chosen)
+    else:
+        low, high = ZERO_TICK, ZERO_TICK + 100
+        arm.remarks.append(f"refused: the gripper's encoder goes from {low} to {high}")
 
 
 @does("get_encoder")

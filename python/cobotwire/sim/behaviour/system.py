@@ -31,6 +31,18 @@ def get_basic_version(arm: ArmState, now: float) -> dict[str, Any]:
     return {"version": BASIC_VERSION}
 
 
+@does("check_async_or_sync")
+def check_async_or_sync(arm: ArmState, now: float) -> dict[str, Any]:
+    """Whether a motion is acknowledged at its end; here it is as soon as it is heard."""
+    return {"synchronous": False}
+
+
+@does("get_reboot_count")
+def get_reboot_count(arm: ArmState, now: float) -> dict[str, Any]:
+    """How often the controller has started: once when it was made, and after each panic."""
+    return {"reboots": arm.starts}
+
+
 @does("get_error_information")
 def get_error_information(arm: ArmState, now: float) -> dict[str, Any]:
     """The last error; 0 is none."""

@@ -13,6 +13,18 @@ DEGREES_CELSIUS = 30
 ALL_SERVOS = 254
 
 
+@does("get_servo_speeds")
+def get_servo_speeds(arm: ArmState, now: float) -> dict[str, Any]:
+    """How fast each servo turns, in steps a second."""
+    return {"speeds": arm.servo_speeds(now)}
+
+
+@does("get_servo_status")
+def get_servo_status(arm: ArmState, now: float) -> dict[str, Any]:
+    """The faults of each servo: these servos have none."""
+    return {"faults": (0,) * arm.joints}
+
+
 @does("get_servo_voltages")
 def get_servo_voltages(arm: ArmState, now: float) -> dict[str, Any]:
     """What each servo is fed with."""

@@ -103,6 +103,8 @@ class Fault:
     kind: ClassVar[str] = ""
     # Whether there is something to do only where something is answered.
     wants_reply: ClassVar[bool] = True
+    # Whether it is done to all of malformed input, and of a text, however it comes in pieces.
+    goes_on: ClassVar[bool] = False
 
     commands: tuple[str | int, ...] = ruled(Several(command), ())
     only: Only = ruled(one_of(ONLY), "requests")

@@ -107,19 +107,23 @@ class FaultyPeer:
         # Whether what came last was malformed: more of it is the same piece of it.
         self._malformed = False
         self._text_follows = False
+        # What was chosen for the piece, or the request, that may go on.
+        self._begun: Chosen = []
 
     def _sort(self, events: Sequence[Event]) -> None:
         for event in events:
             if self._line.deaf:
                 self._miss(event.data)
             elif isinstance(event, Noise) and (self._malformed or self._text_follows):
-                self._answer(event.data, [])
+                self._answer(event.data, self._going_on(event.data))
+                self._last = []
             else:
                 self._malformed = isinstance(event, Noise)
                 request = self._request(event)
                 command = request.command
                 self._text_follows = command is not None and command.request_text is not None
-                self._answer(event.data, self._chosen(request))
+                self._begun = self._chosen(request)
+                self._answer(event.data, self._begun)
 
     def _request(self, event: Event) -> Request:
         at = self._clock() - self._began
@@ -140,6 +144,15 @@ class FaultyPeer:
         chosen = [chooser for chooser in self._choosers if chooser.chooses(request)]
         return [(one, Moment(request, one.random, self._line, frame)) for one in chosen]
 
+    def _going_on(self, data: bytes) -> Chosen:
+        """What is done to the rest of malformed input, or to the text behind a request."""
+        rest, frame = (
+            Request(self._clock() - self._began, data, None, None),
+            self._codec.table.frame,
+        )
+        going_on = (one for one, _ in self._begun if one.fault.goes_on)
+        return [(one, Moment(rest, one.random, self._line, frame)) for one in going_on]
+
     def _answer(self, data: bytes, chosen: Chosen) -> None:
         for chooser, moment in chosen:
             if data:
@@ -151,11 +164,15 @@ class FaultyPeer:
         self._say(said, chosen)
 
     def _say(self, said: bytes, chosen: Chosen, *, alone: bool = False) -> None:
-        """Put the reply on the line; ``alone``: without what is only done as a request is heard."""
+        """Put the reply on the line; ``alone``: without what was done as the request was heard."""
+        if alone and self._line.deaf:
+            self._keep_quiet(said)
+            return
         reply: Reply = (Piece(0.0, said),) if said else ()
         delay = 0.0
         for chooser, moment in chosen:
-            if not reply and (alone or chooser.fault.wants_reply):
+            done_as_heard = not chooser.fault.wants_reply
+            if (alone and done_as_heard) or not (reply or done_as_heard):
                 continue
             before, moment.delay = len(joined(reply)), 0.0
             try:
@@ -175,6 +192,11 @@ class FaultyPeer:
         if detail and self._watch is not None:
             request = moment.request
             self._watch(Done(request.at, chooser.fault.kind, request.name, detail, more + moved))
+
+    def _keep_quiet(self, said: bytes) -> None:
+        if said and self._watch is not None:
+            at, lost = self._clock() - self._began, f"{len(said)} bytes not said"
+            self._watch(Done(at, "deaf", "what the arm says", lost, -len(said)))
 
     def _miss(self, data: bytes) -> None:
         if self._watch is not None:

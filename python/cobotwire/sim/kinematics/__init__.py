@@ -2,7 +2,7 @@
 
 from cobotwire.sim.kinematics.forward import coords_of, flange
 from cobotwire.sim.kinematics.geometry import MYCOBOT_280, Geometry, Link, geometry_of
-from cobotwire.sim.kinematics.inverse import get_ready, nearest, solutions
+from cobotwire.sim.kinematics.inverse import nearest, prepare, solutions
 from cobotwire.sim.kinematics.pose import Pose
 from cobotwire.sim.kinematics.ticks import DEGREES_A_TICK
 
@@ -15,7 +15,7 @@ __all__ = [
     "coords_of",
     "flange",
     "geometry_of",
-    "get_ready",
     "nearest",
+    "prepare",
     "solutions",
 ]

@@ -8,10 +8,10 @@ wire can say, or the arm is stretched out - SciPy looks for the nearest angles t
 
 from __future__ import annotations
 
+import importlib
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from importlib import import_module
 from itertools import islice
 
 from cobotwire.sim.kinematics.forward import flange
@@ -39,10 +39,13 @@ GUESSES = 8
 ROUNDING = 1e-6
 
 
-def get_ready() -> None:
-    """Import SciPy now, if it is there: half a second that no answer in real time can wait for."""
+def prepare() -> None:
+    """Import SciPy where it is installed: it takes longer than some answers may.
+
+    Else the first target on the edge of the reach waits for it.
+    """
     with suppress(ImportError):
-        import_module("cobotwire.sim.kinematics.refine")
+        importlib.import_module("cobotwire.sim.kinematics.refine")
 
 
 def nearest(

@@ -28,6 +28,11 @@ class Axes:
         leg = self._at(now)
         return self._rest if leg is None else leg.position(now - self._since)
 
+    def speed(self, now: float) -> Point:
+        """How fast each axis is, in units a second."""
+        leg = self._at(now)
+        return (0.0,) * len(self._rest) if leg is None else leg.speed(now - self._since)
+
     def target(self, now: float) -> Point:
         """Where the axes will stand at the end, if what waits is done too."""
         leg = self._at(now)

@@ -149,6 +149,7 @@ class Echo(Fault):
     """
 
     wants_reply = False
+    goes_on = True
 
     seconds: float = ruled(SECONDS, 0.0)
 
