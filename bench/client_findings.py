@@ -14,6 +14,7 @@ from cobotwire.conformance import Report, Verdict
 from cobotwire.conformance.client import Manners, Referee
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.sim import PtyPort, Server, TcpPort
+from cobotwire.sim.kinematics import prepare
 from referee.calls import script
 from referee.clients import CLIENTS
 
@@ -40,6 +41,7 @@ LINES: dict[str, Line] = {
 
 def judged(client: str, line: Line) -> tuple[Report, list[str]]:
     """Play the session; gives the report, and which calls failed for the caller."""
+    prepare()
     kind, play = CLIENTS[client]
     referee = Referee(
         TABLE,

@@ -18,6 +18,7 @@ from cobotwire.conformance.client import MISDEEDS, Manners, Referee, Told
 from cobotwire.conformance.places import places_of
 from cobotwire.errors import UsageError
 from cobotwire.sim import PtyPort, Server, TcpPort
+from cobotwire.sim.kinematics import prepare
 from cobotwire.sim.tcp import address
 from cobotwire.table import Table
 
@@ -72,6 +73,8 @@ def client(
             patience=patience / 1000,
             places=places_of(edition),
         )
+        # A referee that imports while the client waits would take its second try for haste.
+        prepare()
         server = _server(listen, referee)
         serve(server, looks=[_Ending(server, referee, seconds, idle).look])
     conclude(referee.finish(), files)

@@ -19,6 +19,8 @@ from cobotwire.sim.memory import MemoryLink
 from cobotwire.table import Table
 from cobotwire.transport import open_link
 
+IN_MEMORY = "simulated arm in memory"
+
 
 @click.command()
 @click.argument("port", metavar="URL", required=False)
@@ -103,7 +105,7 @@ def _line(table: Table, port: str | None, simulated: bool, baudrate: int | None)
         raise UsageError("URL", port, "a port or URL; or --simulated in its place")
     if port is None:
         clock = SteppedClock()
-        yield Line(MemoryLink(SimulatedArm(table, clock=clock), clock), clock)
+        yield Line(MemoryLink(SimulatedArm(table, clock=clock), clock), clock, IN_MEMORY)
         return
     link = open_link(port, table.baudrate if baudrate is None else baudrate)
     try:

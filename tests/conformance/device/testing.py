@@ -56,3 +56,20 @@ class Altered:
 
     def flush(self) -> bytes:
         return self._peer.flush()
+
+
+# What a run that was cut short leaves as it is: an arm without power would fall.
+HELD = ("powered", "stopped")
+
+
+def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> str:
+    """All that can be set, as one text; ``but`` leaves some of it out."""
+    state = arm.state
+    every = ("powered", "free", "stopped", "paused", "fresh_mode", "speed", "reference_frame")
+    names = [name for name in every if name not in but]
+    plain = {name: getattr(state, name) for name in names}
+    rows = (state.end_type, state.ssid, state.password, state.tool, state.world, state.registers)
+    limits = (state.minimum, state.maximum)
+    both = (state.pins, state.basic_pins)
+    high = [sorted(pin for pin, high in pins.items() if high) for pins in both]
+    return repr((plain, rows, limits, high))

@@ -18,6 +18,8 @@ from cobotwire.errors import CobotwireError, LinkError
 
 # A line that is longer than this is no answer; nothing asked here needs a hundredth of it.
 LONGEST_LINE = 1 << 20
+# The greeting may take so many times as long as an answer: the command has to start.
+STARTING = 3
 
 
 class NoAnswer(CobotwireError):
@@ -51,7 +53,7 @@ class Program:
     """
 
     def __init__(self, command: Sequence[str], *, timeout: float = 10.0) -> None:
-        """Name the command; ``timeout`` is seconds for each answer."""
+        """Name the command; ``timeout`` is seconds for each answer; the greeting has more."""
         self._command = list(command)
         self._timeout = timeout
         self._process: subprocess.Popen[bytes] | None = None
@@ -89,8 +91,9 @@ class Program:
         self._count += 1
         line = json.dumps({"id": self._count, **question}, separators=(",", ":")) + "\n"
         try:
-            self._write(process, line.encode())
-            answer = self._parse(self._line(process))
+            seconds = self._timeout * (STARTING if question["do"] == "hello" else 1)
+            self._write(process, line.encode(), seconds)
+            answer = self._parse(self._line(process, seconds))
         except NoAnswer:
             self.stop()
             raise
@@ -129,11 +132,11 @@ class Program:
         self._process = process
         return process
 
-    def _write(self, process: subprocess.Popen[bytes], data: bytes) -> None:
+    def _write(self, process: subprocess.Popen[bytes], data: bytes, seconds: float) -> None:
         assert process.stdin is not None
-        deadline = time.monotonic() + self._timeout
+        deadline = time.monotonic() + seconds
         while data:
-            self._wait_for(process.stdin, selectors.EVENT_WRITE, deadline)
+            self._wait_for(process.stdin, selectors.EVENT_WRITE, deadline, seconds)
             try:
                 data = data[os.write(process.stdin.fileno(), data) :]
             except BrokenPipeError:
@@ -141,11 +144,11 @@ class Program:
             except BlockingIOError:
                 continue
 
-    def _line(self, process: subprocess.Popen[bytes]) -> bytes:
+    def _line(self, process: subprocess.Popen[bytes], seconds: float) -> bytes:
         assert process.stdout is not None
-        deadline = time.monotonic() + self._timeout
+        deadline = time.monotonic() + seconds
         while b"\n" not in self._said:
-            self._wait_for(process.stdout, selectors.EVENT_READ, deadline)
+            self._wait_for(process.stdout, selectors.EVENT_READ, deadline, seconds)
             chunk = process.stdout.read(65536)
             if chunk == b"":
                 raise NoAnswer("crashed", self._last_words(process))
@@ -155,11 +158,11 @@ class Program:
         line, _, self._said = self._said.partition(b"\n")
         return line
 
-    def _wait_for(self, stream: Any, event: int, deadline: float) -> None:
+    def _wait_for(self, stream: Any, event: int, deadline: float, given: float) -> None:
         with selectors.DefaultSelector() as selector:
             selector.register(stream, event)
             if not selector.select(max(0.0, deadline - time.monotonic())):
-                raise NoAnswer("silent", f"no answer within {self._timeout:g} s")
+                raise NoAnswer("silent", f"no answer within {given:g} s")
 
     def _parse(self, line: bytes) -> Json:
         try:

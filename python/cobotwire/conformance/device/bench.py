@@ -125,12 +125,16 @@ class Bench:
         return None
 
     def set_back(self, undo: dict[str, Undo]) -> None:
-        """Set back what a trial, or the run, has changed: the last first."""
+        """Set back what a trial, or the run, has changed: the last first.
+
+        What an interrupt cuts short stays in ``undo``, and can be set back again.
+        """
         while undo:
-            _, step = undo.popitem()
+            name = next(reversed(undo))
             # What a device told may be nonsense, and a case may have failed often enough.
             with suppress(UsageError, Hopeless):
-                step()
+                undo[name]()
+            undo.pop(name, None)
 
 
 def _same_text(one: Hearing, other: Hearing) -> bool:

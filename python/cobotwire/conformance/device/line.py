@@ -10,14 +10,16 @@ from cobotwire.transport.interface import Transport
 class Line:
     """A link and its clock. Everything that passes is kept as evidence."""
 
-    def __init__(self, link: Transport, clock: Clock | None = None) -> None:
+    def __init__(self, link: Transport, clock: Clock | None = None, name: str = "") -> None:
         """Begin to listen.
 
         Args:
             link: an open link: a port, a socket, or a link in memory.
             clock: the one that the link's reads go by; left out: the link's own, else real time.
+            name: what reports call the device; left out: the link's URL.
         """
         self.link = link
+        self.name = name or link.url
         self.clock: Clock = clock or getattr(link, "clock", None) or RunningClock()
         self._began = self.clock()
         self._exchanges: list[Exchange] = []

@@ -79,7 +79,7 @@ class Tester:
             retries=retries,
         )
         began = datetime.now(UTC).isoformat(timespec="seconds")
-        self.report = Report("device", table.edition, line.link.url, began)
+        self.report = Report("device", table.edition, line.name, began)
         self.report.reply_seconds = self.bench.reply_seconds
         self.report.deadline_seconds = {c.name: c.deadline_ms / 1000 for c in table.commands}
 
@@ -106,9 +106,12 @@ class Tester:
                 if progress is not None:
                     progress(step, index, len(steps))
                 self.report.results += self.results(step)
-            self.report.finished = True
+        except KeyboardInterrupt:
+            self._halt()
+            raise
         finally:
             self.end()
+        self.report.finished = True
         return self.report
 
     def _halt(self) -> None:
@@ -119,8 +122,17 @@ class Tester:
             self.bench.ask(stop)
 
     def end(self) -> None:
-        """Set back what the run has changed for its whole length: power and pose."""
-        self.bench.set_back(self.bench.undo_last)
+        """Set back what is still to be; then what was changed for the whole run: power and pose.
+
+        The arm may be on its way back: an interrupt stops it too.
+        """
+        try:
+            self.bench.set_back(self.bench.undo)
+            self.bench.set_back(self.bench.undo_last)
+        except KeyboardInterrupt:
+            self._halt()
+            self.bench.set_back(self.bench.undo)
+            raise
 
     def _ask_version(self) -> None:
         query = self.bench.command("version")

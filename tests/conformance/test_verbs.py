@@ -1,0 +1,149 @@
+"""The verbs as processes: what they print, what they write, and how they end."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import vectors
+from cobotwire.conformance import Verdict
+from cobotwire.conformance.reports import from_json
+from cobotwire.editions.mycobot280 import MyCobot280
+
+VERB = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
+CONFORM = [*VERB, "--edition", "mycobot280", "conform"]
+ADAPTER = [sys.executable, "-m", "cobotwire.conformance.codec.adapter"]
+# The maker's library in a process of its own: it must not share a line with ours.
+PYMYCOBOT = """
+import sys
+from pymycobot import MyCobot280
+arm = MyCobot280(sys.argv[1], 115200)
+print(arm.get_angles())
+arm.send_angle(1, 2.55, 50)
+"""
+
+
+def _run(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*CONFORM, *words], capture_output=True, text=True, check=False, cwd=vectors.ROOT
+    )
+
+
+class _Listening:
+    """``conform client`` as a process; ``url`` is what its first line says."""
+
+    def __init__(self, *words: str) -> None:
+        self._process = subprocess.Popen(
+            [*CONFORM, "client", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        assert self._process.stdout is not None
+        self.url = self._process.stdout.readline().strip()
+
+    def end(self) -> tuple[int, str]:
+        """Its exit code, and what it printed behind the first line."""
+        said, _ = self._process.communicate(timeout=60)
+        return self._process.returncode, said
+
+
+@pytest.mark.parametrize("listen", ["pty", "socket://127.0.0.1:0"])
+def test_our_client_passes_the_referee(listen: str, tmp_path: Path) -> None:
+    file = tmp_path / "report.json"
+    referee = _Listening("--listen", listen, "--idle", "1", "--json", str(file))
+    with MyCobot280(referee.url) as arm:
+        assert arm.get_angles() is not None
+        arm.send_angle(1, 2.55, 50)
+    code, said = referee.end()
+    assert code == 0, said
+    report = from_json(file.read_text())
+    assert (report.kind, report.conforms) == ("client", True)
+
+
+def test_pymycobot_does_not_where_it_cuts_an_angle_off(tmp_path: Path) -> None:
+    told = tmp_path / "calls.txt"
+    told.write_text("get_angles\nsend_angle 1 2.55 speed=50\n")
+    referee = _Listening("--listen", "pty", "--expect", str(told), "--idle", "1")
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", PYMYCOBOT, referee.url],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "[" in done.stdout
+    code, said = referee.end()
+    assert code == 1
+    assert "sent-rounded" in said
+
+
+def test_the_native_codec_conforms() -> None:
+    done = _run("codec", "--only", "*get_angles*", "--", *ADAPTER, "native")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("source", "says"),
+    [
+        ("raise SystemExit(3)", "ended with code 3"),
+        ("import time; time.sleep(60)", "no answer within"),
+        ("print('hello'); input()", "is no JSON"),
+    ],
+    ids=["crashes", "hangs", "babbles"],
+)
+def test_a_command_that_never_greets_could_not_be_tested(source: str, says: str) -> None:
+    done = _run("codec", "--timeout", "1", "--", sys.executable, "-c", source)
+    assert done.returncode == 2
+    assert says in done.stderr
+
+
+def test_known_failures_of_pymycobot_are_excused_and_none_is_out_of_date(tmp_path: Path) -> None:
+    known = vectors.ROOT / "tests" / "peers" / "pymycobot-codec.txt"
+    words = ["codec", "--only", "*/send_angle/*", "--expected"]
+    done = _run(*words, str(known), "--", *ADAPTER, "pymycobot")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "not supported" in done.stdout
+    # Our codec has none of these failures: a file that says so is out of date, and told.
+    done = _run(*words, str(known), "--", *ADAPTER, "native")
+    assert done.returncode == 1
+    assert "expected-failure" in done.stdout
+    assert "passed, among them" in done.stdout
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["device", "/dev/no-such-port"],
+        ["device", "socket://127.0.0.1:1"],
+        ["device"],
+        ["client", "--listen", "nowhere"],
+        ["client", "--expect", "no-such-file"],
+        ["codec", "--", "/no/such/command"],
+        ["codec", "--expected", "no-such-file", "--", "true"],
+        ["compare", "no-such-file", "nor-this"],
+    ],
+    ids=" ".join,
+)
+def test_what_cannot_run_ends_with_2_and_a_sentence(words: list[str]) -> None:
+    done = _run(*words)
+    assert done.returncode == 2
+    assert done.stderr.strip()
+    assert "Traceback" not in done.stderr
+
+
+def test_the_rules_of_all_three_testers_are_listed() -> None:
+    found = json.loads(_run("rules", "--json").stdout)["rules"]
+    assert found["device"]["reply-once"]
+    assert found["client"]["motion-resent"]
+    assert found["codec"]["stream-frames"]
+    listed = _run("rules").stdout
+    assert all(f"  {id} " in listed for rules in found.values() for id in rules)
+
+
+def test_a_simulated_arm_is_called_one(tmp_path: Path) -> None:
+    file = tmp_path / "report.json"
+    assert _run("device", "--simulated", "--json", str(file)).returncode == 0
+    report = from_json(file.read_text())
+    assert report.subject == "simulated arm in memory"
+    assert any(result.verdict is Verdict.PASS for result in report.results)
