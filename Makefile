@@ -3,12 +3,13 @@ PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
 COMPUTING := $(addprefix tests/,bench codec codegen diagnose spec targets typing)
+SIMULATING := $(addprefix tests/,conformance docs faults peers plot sim testing)
 # In a log, one after the other; a person sees both go on.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests waiting-tests rust-test gen targets docs bench plots table fuzz clean faults conform
+.PHONY: help demo test lint python-test computing-tests simulating-tests waiting-tests rust-test gen targets docs bench plots table fuzz clean faults conform
 .DEFAULT_GOAL := help
 
 help: ## what the targets do
@@ -33,13 +34,16 @@ rust-test: ## the Rust core's own tests
 	cargo test --workspace --quiet
 
 python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs; those that wait for lines beside those that compute
-	$(MAKE) --no-print-directory --jobs 2 $(IN_TURN) computing-tests waiting-tests
+	$(MAKE) --no-print-directory --jobs 3 $(IN_TURN) computing-tests simulating-tests waiting-tests
 
 computing-tests:
 	$(BIN)/python -m pytest $(COMPUTING)
 
+simulating-tests:
+	$(BIN)/python -m pytest $(SIMULATING)
+
 waiting-tests:
-	$(BIN)/python -m pytest $(COMPUTING:%=--ignore=%)
+	$(BIN)/python -m pytest $(addprefix --ignore=,$(COMPUTING) $(SIMULATING))
 
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen

@@ -162,9 +162,13 @@ def test_the_guides_examples_are_scenarios() -> None:
 
 
 def test_the_guides_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    (example,) = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
-    exec(compile(example, str(GUIDE), "exec"), {})
-    assert "Angles(j1=0.0" in capsys.readouterr().out
+    examples = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
+    for example in examples:
+        exec(compile(example, str(GUIDE), "exec"), {})
+    printed = capsys.readouterr().out
+    assert len(examples) == 2
+    assert "b'\\xfe\\xfe\\x0e " in printed
+    assert "Angles(j1=0.0" in printed
 
 
 def test_the_guide_names_every_fault_and_every_key() -> None:
