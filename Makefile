@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
-COMPUTING := $(addprefix tests/,bench codec codegen diagnose spec targets typing)
+COMPUTING := $(addprefix tests/,codec codegen diagnose spec typing)
 SIMULATING := $(addprefix tests/,conformance docs faults peers plot sim testing)
 # In a log, one after the other; a person sees both go on.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
