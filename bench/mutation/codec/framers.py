@@ -173,11 +173,11 @@ class _Late(_Broken):
 
 
 class _Impatient(_Broken):
-    flaw = "waits with sixteen bytes at most"
+    flaw = "waits with ten bytes at most"
 
     def feed(self, data: Data) -> list[Event]:
         events = super().feed(data)
-        return events + (super().flush() if len(self._waiting) > 16 else [])
+        return events + (super().flush() if len(self._waiting) > 10 else [])
 
 
 class _Rewriting(_Broken):
