@@ -1,27 +1,29 @@
-# Each target does its own set-up, once, in .venv. Needs Python 3.11+, Rust and make.
+# Each target sets itself up once, in .venv. Needs Python 3.11+, Rust and make.
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
-COMPUTING := $(addprefix tests/,codec codegen diagnose spec typing)
-SIMULATING := $(addprefix tests/,conformance docs faults peers plot sim testing)
-# In a log, one after the other; a person sees both go on.
+# The Python tests run in three lanes at once: two that compute, and one that mostly waits for ports.
+COMPUTING := $(addprefix tests/,codec codegen diagnose protocol spec typing)
+SIMULATING := $(addprefix tests/,conformance docs inspect peers simulator)
+# In CI, print the output of one lane after another; a person sees all lanes at once.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests simulating-tests waiting-tests rust-test gen targets docs bench plots table fuzz clean faults conform
+.PHONY: help demo test lint python-test computing-tests simulating-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform
 .DEFAULT_GOAL := help
 
-help: ## what the targets do
+help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
-demo: .venv/.native ## drive a simulated arm over a pty and check every answer
+demo: .venv/.native ## drive a simulated arm over a pty and check every reply
 	$(BIN)/cobotwire demo --codec native
 
-test: lint rust-test python-test ## everything that must hold: linters, generated files, Rust, Python
+test: lint rust-test python-test ## run everything: linters, types, generated files, Rust, Python
 
-lint: .venv/.tools .venv/.native ## formatting, linters, types, stubs against the binary, generated files
+lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the binary, generated files
 	$(BIN)/cobotwire-gen --check
+	$(BIN)/python tools/unasync.py --check
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
@@ -30,10 +32,10 @@ lint: .venv/.tools .venv/.native ## formatting, linters, types, stubs against th
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
 	cargo clippy --workspace --all-targets --quiet -- -D warnings
 
-rust-test: ## the Rust core's own tests
+rust-test: products ## run the tests of the Rust core
 	cargo test --workspace --quiet
 
-python-test: .venv/.tools .venv/.native ## the Python tests, on both codecs; those that wait for lines beside those that compute
+python-test: .venv/.tools .venv/.native ## run the Python tests on both codecs, in three lanes
 	$(MAKE) --no-print-directory --jobs 3 $(IN_TURN) computing-tests simulating-tests waiting-tests
 
 computing-tests:
@@ -48,16 +50,19 @@ waiting-tests:
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
 
-targets: .venv/.tools .venv/.native ## what other people's tools make of every vector, target by target
+products: .venv/.tools ## write the build products: output targets, data of the Rust tests
+	$(BIN)/cobotwire-gen --products
+
+targets: products .venv/.native ## build each output target and run it in its real tool
 	PYTHONPATH=tests $(BIN)/python tests/targets/report.py
 
-docs: .venv/.tools .venv/.native ## the docs site, into docs/_build; a warning is an error
+docs: .venv/.tools .venv/.native ## build the docs site into docs/_build; a warning is an error
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build
 	@echo open docs/_build/index.html
 
-bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost on bad lines
+bench: .venv/.tools .venv/.native ## measure speed beside the limits, and losses on bad lines
 	$(BIN)/python bench/generator.py
-	$(BIN)/python bench/driver.py
+	$(BIN)/python bench/client.py
 	$(BIN)/python bench/simulated_time.py
 	$(BIN)/python bench/kinematics.py
 	$(BIN)/python bench/resync.py
@@ -69,30 +74,33 @@ bench: .venv/.tools .venv/.native ## how fast, beside the limits; what is lost o
 	$(BIN)/python bench/pymycobot_session.py
 	$(BIN)/python bench/stepped_client.py
 
-plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/ again; takes minutes
+plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench
 	mkdir -p target
 	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
 
-fuzz: .venv/.tools .venv/.native $(CARGO_FUZZ) ## search for faults, FUZZ_SECONDS (60) a target; CONTRIBUTING.md says what then
+fuzz: products .venv/.native $(CARGO_FUZZ) ## fuzz, FUZZ_SECONDS (60) a target; see CONTRIBUTING.md
 	cargo clippy --manifest-path rust/fuzz/Cargo.toml --all-targets --quiet -- -D warnings
 	@status=0; \
 	$(BIN)/python rust/fuzz/run.py $(FUZZ_SECONDS) || status=1; \
 	$(BIN)/python tests/deep.py $(FUZZ_SECONDS) || status=1; \
 	exit $$status
 
-table: .venv/.tools .venv/.native ## what we and pymycobot make of bad lines, into docs/bad-lines.md
+table: .venv/.tools .venv/.native ## compare us with pymycobot on bad lines, into docs/bad-lines.md
 	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
-conform: .venv/.tools .venv/.native ## break subjects on purpose and count what the testers find, into docs/conformance-mutants.md
-	$(BIN)/python bench/conform.py --page docs/conformance-mutants.md
+conform: .venv/.tools .venv/.native ## break subjects on purpose and count what the testers of conformance find
+	PYTHONPATH=tests $(BIN)/python -m mutation
 
-faults: .venv/.tools .venv/.native ## what we and pymycobot make of the fault scenarios, into docs/fault-scenarios.md
+faults: .venv/.tools .venv/.native ## run us and pymycobot on each fault, into docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py
 
-clean: ## forget the environment and what was built
-	rm -rf .venv target .cargo-tools rust/fuzz/target docs/_build
+figures: .venv/.tools .venv/.native ## count files and lines of each room, import circles, files that a call passes
+	$(BIN)/python tests/house_figures.py
+
+clean: ## remove the environment and what was built
+	rm -rf .venv target targets rust/core/tests/data .cargo-tools rust/fuzz/target docs/_build
 
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
@@ -100,7 +108,7 @@ clean: ## forget the environment and what was built
 	$(BIN)/python -m pip install --quiet --upgrade pip 'maturin>=1.9,<2'
 	touch $@
 
-# A release build of the Rust codec, installed in place together with what the command line needs.
+# Build the Rust codec in release mode and install it in place, with what the command line needs.
 .venv/.native: .venv/.base $(RUST_SOURCES)
 	. $(BIN)/activate && maturin develop --release --quiet --extras cli,sim
 	touch $@
@@ -109,6 +117,6 @@ clean: ## forget the environment and what was built
 	$(BIN)/python -m pip install --quiet -e codegen --group test
 	touch $@
 
-# In the project, so that no other project's version is touched.
+# Installed in the project, so that it does not change the version of other projects.
 $(CARGO_FUZZ):
 	cargo install --quiet --locked --root .cargo-tools --version 0.13.1 cargo-fuzz

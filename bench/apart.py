@@ -1,6 +1,7 @@
-"""A function in a process of its own, which is ended after a time limit: to hang is a result too.
+"""Call a function in a separate process, and end it after a time limit, since it may hang.
 
-The processes are forked from one that has imported what they need: importing is not what is timed.
+The processes are forked from one that has already imported what they need, so that imports are not
+timed.
 """
 
 from __future__ import annotations
@@ -15,24 +16,24 @@ _PROCESSES = multiprocessing.get_context("forkserver")
 
 
 class Started(NamedTuple):
-    """A process that will tell what its function gave."""
+    """A process that will send the result of its function."""
 
     process: multiprocessing.context.ForkServerProcess
     end: Connection
 
     def result(self, until: float) -> Any:
-        """What the function gave; None if it does not come back by that ``time.monotonic()``."""
-        given = None
+        """Return the function's result, or None if there is none at that ``time.monotonic()``."""
+        result = None
         if self.end.poll(max(0.0, until - time.monotonic())):
-            given = self.end.recv()
+            result = self.end.recv()
             self.process.join(1)
         self.process.kill()
         self.process.join()
-        return given
+        return result
 
 
 def warm_up(modules: Sequence[str]) -> None:
-    """Start the process that the others are forked from, with these modules imported."""
+    """Start the process from which the others are forked, and import these modules there."""
     _PROCESSES.set_forkserver_preload(list(modules))
     first = _PROCESSES.Process(target=time.sleep, args=(0,))
     first.start()
@@ -40,7 +41,7 @@ def warm_up(modules: Sequence[str]) -> None:
 
 
 def start(function: Callable[..., Any], *arguments: Any) -> Started:
-    """Call a function of a module in a process of its own."""
+    """Call a module-level function in a process of its own."""
     ours, theirs = _PROCESSES.Pipe(duplex=False)
     process = _PROCESSES.Process(target=_child, args=(theirs, function, arguments))
     process.start()

@@ -1,10 +1,10 @@
-"""What three clients make of the field notes' cases; writes docs/bad-lines.md.
+"""Run the cases of the field notes with three clients; write docs/bad-lines.md.
 
     make table
 
-Each case is played by a scripted peer on a real pty, and over real TCP, to one client at a time:
-our blocking one, our asyncio one, and pymycobot 4.0.7 as it comes. Each client runs in a process of
-its own and is ended after a time limit, so that to hang is a result too.
+Each case runs on a real pty and over real TCP, with one client at a time: our blocking one, our
+asyncio one, and unmodified pymycobot 4.0.7. Each client runs in a process of its own and is ended
+after a time limit, so that hanging is a result, too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import apart
 from bad_lines_page import BEGIN, END, Row, page
 from field_notes.case import Case
 from field_notes.cases import CASES
-from field_notes.peer import COUNTING_PEERS
+from field_notes.line import line_of
 from field_notes.play import Outcome, play
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "bad-lines.md"
@@ -30,21 +30,26 @@ PRELOADED = ["field_notes.play", "field_notes.cases", "pymycobot"]
 
 
 class Run(NamedTuple):
-    """One case, on one kind of line, by one client."""
+    """One case, on one kind of line, with one client."""
 
     case: Case
-    link: str
+    transport: str
     who: str
 
 
 def main() -> None:
-    """Play all cases that the command line names, or all; without names the page is written."""
+    """Run the cases that the command line names, or all; without names, write the page."""
     chosen = [CASES[name] for name in sys.argv[1:]] or list(CASES.values())
-    runs = [Run(case, link, who) for case in chosen for link in case.links for who in CLIENTS]
+    runs = [
+        Run(case, transport, who)
+        for case in chosen
+        for transport in case.transports
+        for who in CLIENTS
+    ]
     apart.warm_up(PRELOADED)
     with ThreadPoolExecutor(AT_ONCE) as pool:
         rows = list(pool.map(_measured, runs))
-    results = {(run.case.name, run.link, run.who): row for run, row in zip(runs, rows)}
+    results = {(run.case.name, run.transport, run.who): row for run, row in zip(runs, rows)}
     text = page(results, CLIENTS, LIMIT_SECONDS)
     if sys.argv[1:]:
         for key, row in results.items():
@@ -56,13 +61,13 @@ def main() -> None:
 
 
 def _measured(run: Run) -> Row:
-    with COUNTING_PEERS[run.link](run.case) as peer:
+    with line_of(run.case, run.transport) as line:
         clients = range(run.case.clients)
-        started = [apart.start(_play, run.case.name, run.who, peer.url, at) for at in clients]
+        started = [apart.start(_play, run.case.name, run.who, line.url, at) for at in clients]
         until = time.monotonic() + LIMIT_SECONDS
         results = [one.result(until) for one in started]
-        peer.settle()
-        frames, garbled = list(peer.frames), peer.garbled
+        line.settle()
+        frames, garbled = list(line.arm.frames), line.arm.garbled
     ended = [result for result in results if result is not None]
     outcomes = [outcome for result in ended for outcome in result[0]]
     seconds = max((result[1] for result in ended), default=LIMIT_SECONDS)

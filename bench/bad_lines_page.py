@@ -1,4 +1,4 @@
-"""The page of bad lines: how a run's outcomes are judged, and how they are laid out."""
+"""The page of bad lines: judge the outcomes of each run, and lay them out."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from field_notes.notes import NOTES
 from field_notes.play import RIGHT, WRONG, Outcome
 
 BEGIN, END = "<!-- begin: make table -->", "<!-- end: make table -->"
-LINKS = {"pty": "pty", "tcp": "TCP"}
+TRANSPORTS = {"pty": "pty", "tcp": "TCP"}
 TITLES = {"blocking": "blocking", "asyncio": "asyncio", "pymycobot": "pymycobot 4.0.7"}
 KINDS = ("right", "honest error", "-1 or None", "crash", WRONG, "sent too often", "hang")
 
 
 @dataclass(frozen=True)
 class Row:
-    """What one client did with one case."""
+    """How one client fared with one case."""
 
     case: Case
     outcomes: list[Outcome]
@@ -29,14 +29,14 @@ class Row:
     hung: bool
 
     def kinds(self) -> Counter[str]:
-        """How often each kind of end was reached."""
+        """Count how many calls ended in each way."""
         kinds = Counter(self._kind(outcome) for outcome in self.outcomes)
         if self.hung:
             kinds["hang"] += 1
         return kinds
 
     def worst(self) -> str:
-        """The kind that the row counts as."""
+        """Return the worst of them, as which the row counts."""
         return max(self.kinds(), key=KINDS.index)
 
     def _kind(self, outcome: Outcome) -> str:
@@ -50,34 +50,34 @@ class Row:
             return "-1 or None"
         return "honest error" if outcome.meant else "crash"
 
-    def _orders(self) -> list[bytes]:
+    def _one_way(self) -> list[bytes]:
         return [call.sends for call in self.case.calls if call.right == DONE and call.sends]
 
     def _wrong_on_the_line(self) -> bool:
-        return any(order not in self.frames for order in self._orders())
+        return any(request not in self.frames for request in self._one_way())
 
     def _too_often(self) -> bool:
-        return any(self.frames.count(order) > 1 for order in self._orders())
+        return any(self.frames.count(request) > 1 for request in self._one_way())
 
     def text(self, limit: float) -> str:
-        """The cell of the table."""
-        parts = [self._ends(), self._time(limit), self._asked()]
+        """Return the cell of the table."""
+        parts = [self._ends(), self._time(limit), self._requests()]
         return ", ".join(part for part in parts if part)
 
     def _ends(self) -> str:
-        told = Counter(self._told(outcome) for outcome in self.outcomes)
+        described = Counter(self._described(outcome) for outcome in self.outcomes)
         if self.hung:
-            told["**hangs**"] += 1
+            described["**hangs**"] += 1
         if self._by_chance():
             order = sorted(self.outcomes, key=lambda outcome: KINDS.index(self._kind(outcome)))
-            return f"from {self._told(order[0])} to {self._told(order[-1])}"
-        return "; ".join(told) if len(told) < len(self.outcomes) else "; ".join(told.elements())
+            return f"from {self._described(order[0])} to {self._described(order[-1])}"
+        return "; ".join(described if len(described) < len(self.outcomes) else described.elements())
 
     def _by_chance(self) -> bool:
-        """Many calls that end in different ways: how many in which way differs from run to run."""
+        """Return whether many calls end in different ways, so that counts vary from run to run."""
         return len(self.outcomes) > 3 and len({self._kind(one) for one in self.outcomes}) > 1
 
-    def _told(self, outcome: Outcome) -> str:
+    def _described(self, outcome: Outcome) -> str:
         kind = self._kind(outcome)
         if kind == "right":
             return "right"
@@ -97,11 +97,11 @@ class Row:
             return ""
         return "< 0.1 s" if self.seconds < 0.095 else f"{self.seconds:.1f} s"
 
-    def _asked(self) -> str:
+    def _requests(self) -> str:
         calls = len(self.case.calls) * self.case.repeat
         garbled = f", {self.garbled} bytes garbled" if self.garbled else ""
         requests = len(self.frames)
-        if self.case.deaf or self._by_chance() or (requests == calls and not garbled):
+        if self.case.unread or self._by_chance() or (requests == calls and not garbled):
             return ""
         often = f"{requests} request{'s' if requests > 1 else ''} for {calls} calls"
         if calls == 1:
@@ -113,7 +113,7 @@ Results = Mapping[tuple[str, str, str], Row]
 
 
 def page(results: Results, clients: tuple[str, ...], limit: float) -> str:
-    """The generated part of the page."""
+    """Return the generated part of the page."""
     parts = [BEGIN, _summary(results, clients)]
     for title, cases in GROUPS.items():
         parts.append(f"### {title}")
@@ -149,14 +149,14 @@ def _summary(results: Results, clients: tuple[str, ...]) -> str:
 
 def _table(cases: list[Case], results: Results, clients: tuple[str, ...], limit: float) -> str:
     lines = [
-        "| case | what the peer does | line | " + " | ".join(TITLES[w] for w in clients) + " |"
+        "| case | what the line does | line | " + " | ".join(TITLES[w] for w in clients) + " |"
     ]
     lines.append("|---|---|---|" + "---|" * len(clients))
     for case in cases:
-        for number, link in enumerate(case.links):
-            head = f"| {case.name} | {case.peer} " if number == 0 else "| | "
-            cells = " | ".join(results[case.name, link, who].text(limit) for who in clients)
-            lines.append(f"{head}| {LINKS[link]} | {cells} |")
+        for number, transport in enumerate(case.transports):
+            head = f"| {case.name} | {case.line} " if number == 0 else "| | "
+            cells = " | ".join(results[case.name, transport, who].text(limit) for who in clients)
+            lines.append(f"{head}| {TRANSPORTS[transport]} | {cells} |")
     return "\n".join(lines)
 
 

@@ -1,6 +1,6 @@
-"""The figures of docs/captures.md: our captures beside MCAP and python-pcapng.
+"""Compare our captures with MCAP and python-pcapng, for docs/captures.md.
 
-Needs both beside cobotwire: pip install mcap python-pcapng
+Install both first: pip install mcap python-pcapng
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ STEP_NS = 10_000_000
 
 
 def ours() -> tuple[float, bytes, bytes]:
-    """Microseconds a frame; the file when the writer is killed, and when it ends in order."""
+    """Return microseconds a frame, the file of a killed writer, and the file of a closed one."""
     from cobotwire.capture import CaptureWriter, Interface, Packet
 
     file = io.BytesIO()
     writer = CaptureWriter(file)
     writer.interface(Interface("/dev/ttyACM0", "mycobot", 115200))
-    cost = timed(lambda n: writer.packet(Packet(n * STEP_NS, "heard", FRAME)))
+    cost = timed(lambda n: writer.packet(Packet(n * STEP_NS, "received", FRAME)))
     killed = file.getvalue()
     writer.finish()
     return cost, killed, file.getvalue()
 
 
 def mcap(**options: Any) -> tuple[float, bytes, bytes]:
-    """The same."""
+    """Return the same for MCAP."""
     file = io.BytesIO()
     writer = importlib.import_module("mcap.writer").Writer(file, **options)
     writer.start("", "bench")
     schema = writer.register_schema("", "", b"")
-    channel = writer.register_channel("heard", "application/octet-stream", schema)
+    channel = writer.register_channel("received", "application/octet-stream", schema)
     cost = timed(lambda n: writer.add_message(channel, n * STEP_NS, FRAME, n * STEP_NS))
     killed = file.getvalue()
     writer.finish()
@@ -45,7 +45,7 @@ def mcap(**options: Any) -> tuple[float, bytes, bytes]:
 
 
 def pcapng() -> tuple[float, bytes, bytes]:
-    """The same."""
+    """Return the same for python-pcapng."""
     package = importlib.import_module("pcapng")
     blocks = importlib.import_module("pcapng.blocks")
     file = io.BytesIO()
@@ -65,7 +65,7 @@ def pcapng() -> tuple[float, bytes, bytes]:
 
 
 def timed(write: Callable[[int], object]) -> float:
-    """Microseconds that a frame takes."""
+    """Return the microseconds that one frame takes to write."""
     started = time.perf_counter()
     for n in range(FRAMES):
         write(n)
@@ -73,26 +73,26 @@ def timed(write: Callable[[int], object]) -> float:
 
 
 def read_ours(data: bytes) -> int:
-    """How many packets are read."""
+    """Count the packets that our reader finds."""
     from cobotwire.capture import CaptureReader
 
     return sum(1 for _ in CaptureReader(io.BytesIO(data)))
 
 
 def read_mcap(data: bytes) -> int:
-    """The same; its reader for streams needs no index at the end."""
+    """Count the packets that MCAP's reader for streams finds; it needs no index at the end."""
     reader = importlib.import_module("mcap.reader").NonSeekingReader(io.BytesIO(data))
     return sum(1 for _ in reader.iter_messages())
 
 
 def read_pcapng(data: bytes) -> int:
-    """The same; everything but the section and interface is a packet."""
+    """Count the packets that python-pcapng finds: all blocks except section and interface."""
     scanner = importlib.import_module("pcapng.scanner").FileScanner(io.BytesIO(data))
     return sum(1 for _ in scanner) - 2
 
 
 def outcome(read: Callable[[bytes], int], data: bytes) -> str:
-    """What reading comes to."""
+    """Return what reading gives: a number of packets, or an error."""
     try:
         return f"{read(data)} packets"
     except Exception as error:
@@ -100,7 +100,7 @@ def outcome(read: Callable[[bytes], int], data: bytes) -> str:
 
 
 def damaged(data: bytes) -> bytes:
-    """The capture with the length in front of its tenth frame (of pcapng, so far) set to 0."""
+    """Return the capture with the length before its tenth frame set to 0, at pcapng's offset."""
     place = 0
     for _ in range(10):
         place = data.find(FRAME, place + 1)
@@ -108,13 +108,13 @@ def damaged(data: bytes) -> bytes:
 
 
 def import_seconds(module: str) -> float:
-    """How long importing it takes in a new interpreter, beyond what starting that takes."""
+    """Return the seconds that an import adds to the start of a new interpreter."""
 
     def best(script: str) -> float:
         times = []
         for _ in range(5):
             started = time.perf_counter()
-            subprocess.run([sys.executable, "-c", script], check=True)  # noqa: S603  (our own words)
+            subprocess.run([sys.executable, "-c", script], check=True)
             times.append(time.perf_counter() - started)
         return min(times)
 

@@ -1,4 +1,4 @@
-"""A whole session of pymycobot 4.0.7 and of our clients before the referee; prints its findings.
+"""Play a session of pymycobot 4.0.7 and of our clients to the referee; print the failures.
 
 .venv/bin/python bench/client_findings.py                 # all clients, all lines
 .venv/bin/python bench/client_findings.py --only cobotwire
@@ -10,47 +10,47 @@ import argparse
 import time
 from typing import NamedTuple
 
-from cobotwire.conformance import Report, Verdict
-from cobotwire.conformance.client import Manners, Referee
+from cobotwire.conformance import Report
+from cobotwire.conformance.client import Referee, faulty_replies
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim import PtyPort, Server, TcpPort
-from cobotwire.sim.kinematics import prepare
+from cobotwire.simulator import PtyServer, Server, TcpServer
+from cobotwire.simulator.kinematics import prepare
 from referee.calls import script
 from referee.clients import CLIENTS
 
 
 class Line(NamedTuple):
-    """How the arm answers."""
+    """How the arm replies."""
 
     text: str
-    misdeeds: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
     acks: bool = True
     delay: float = 0.008
 
 
 LINES: dict[str, Line] = {
-    "good": Line("every answer after 8 ms"),
-    "no-acks": Line("older firmware: orders are not acknowledged", acks=False),
-    "lost": Line("every fifth answer is lost", ("lost",)),
-    "late": Line("every fifth answer comes 0.6 s late", ("late",)),
-    "split": Line("every fifth answer in two parts, 50 ms apart", ("split",)),
-    "merged": Line("every fifth answer comes with the next one", ("merged",)),
-    "noise": Line("a servo packet in front of every fifth answer", ("noise",)),
+    "good": Line("every reply after 8 ms"),
+    "no-acks": Line("older firmware: changes are not acknowledged", acks=False),
+    "lost": Line("every fifth reply is lost", ("lost",)),
+    "late": Line("every fifth reply comes 0.6 s late", ("late",)),
+    "split": Line("every fifth reply in two parts, 50 ms apart", ("split",)),
+    "merged": Line("every fifth reply comes with the next one", ("merged",)),
+    "noise": Line("a servo packet before every fifth reply", ("noise",)),
 }
 
 
 def judged(client: str, line: Line) -> tuple[Report, list[str]]:
-    """Play the session; gives the report, and which calls failed for the caller."""
+    """Play the session; return the report, and the calls that failed for the caller."""
     prepare()
     kind, play = CLIENTS[client]
     referee = Referee(
         TABLE,
         subject=client,
-        manners=Manners(line.delay, line.misdeeds, every=5),
+        scenario=faulty_replies(line.delay, line.faults, every=5),
         script=script(),
         acks=line.acks,
     )
-    server: Server = PtyPort(referee) if kind == "pty" else TcpPort(lambda: referee)
+    server: Server = PtyServer(referee) if kind == "pty" else TcpServer(lambda: referee)
     with server:
         failures = play(server.url)
         _settle(referee)
@@ -58,13 +58,13 @@ def judged(client: str, line: Line) -> tuple[Report, list[str]]:
 
 
 def _settle(referee: Referee) -> None:
-    """Let the last orders arrive: who closes a port has not waited for them."""
+    """Let the last requests arrive: a client may close its port right after sending them."""
     while (referee.silence or 0.0) < 0.3:
         time.sleep(0.05)
 
 
 def main() -> None:
-    """Print a table and the findings behind it."""
+    """Print the failures of each client on each line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", default="", help="clients whose name begins so")
     parser.add_argument("--line", choices=LINES, help="one line alone")
@@ -77,10 +77,10 @@ def main() -> None:
 
 def _print(client: str, name: str, line: Line) -> None:
     report, failures = judged(client, line)
-    found = [result for result in report.results if result.verdict is Verdict.FAIL]
-    print(f"{client}, {name} ({line.text}): {len(found)} findings, {len(failures)} calls failed")
+    found = report.failures
+    print(f"{client}, {name} ({line.text}): {len(found)} failures, {len(failures)} calls failed")
     for result in found:
-        print(f"    {result.rule:20} {result.command:22} {result.reason}")
+        print(f"    {result.case:20} {result.command:22} {result.reason}")
     for failure in failures:
         print(f"    call failed          {failure[:110]}")
 

@@ -1,10 +1,10 @@
-"""What our client and pymycobot make of the fault scenarios; writes docs/fault-scenarios.md.
+"""Run the fault scenarios with our client and pymycobot; write docs/fault-scenarios.md.
 
     make faults
 
-Each shipped scenario is put in front of an arm that always answers the same, on a real pty; each
-client plays the same session of 18 calls against it, in a process of its own that is ended after a
-time limit. With names on the command line those rows are printed, and nothing is written.
+Each scenario that comes with the package is applied to an arm that always replies the same, on a
+real pty. Each client makes the same 18 calls, in a process of its own that is ended after a time
+limit. With names on the command line, print their rows and write nothing.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ from typing import NamedTuple
 import apart
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim import PtyPort
-from cobotwire.sim.faults import find, shipped
-from fault_session import CAREFUL, SESSION, SteadyArm, TimedOutcome, play_session
+from cobotwire.simulator import PtyServer
+from cobotwire.simulator.faults import find, shipped
+from fault_session import CAREFUL, SESSION, TimedOutcome, play_session
 from field_notes.case import DONE, Call
 from field_notes.play import RIGHT, WRONG, Outcome
+from field_notes.steady_arm import SteadyArm
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "fault-scenarios.md"
 BEGIN, END = "<!-- begin: make faults -->", "<!-- end: make faults -->"
@@ -35,17 +36,17 @@ CLIENTS = {
 AT_ONCE = 4
 LIMIT_SECONDS = 60.0
 KINDS = ("right", "honest error", "-1 or None", WRONG, "exception", "not ended")
-# Beside the scenarios: how it is without any.
+# For comparison: no scenario.
 NONE = "(none)"
 
 
 class Run(NamedTuple):
-    """What one client did under one scenario.
+    """How one client fared with one scenario.
 
     Attributes:
-        kinds: how many calls ended in which way.
-        seconds: those of each call that ended.
-        again: how many orders came to the arm more often than they were called.
+        kinds: how many calls ended in each way.
+        seconds: the duration of each call that ended.
+        again: how many one-way requests arrived more often than they were called.
     """
 
     kinds: Counter[str]
@@ -54,7 +55,7 @@ class Run(NamedTuple):
 
 
 def main() -> None:
-    """Play the scenarios that are named, or all."""
+    """Run the scenarios that are named, or all."""
     names = sys.argv[1:] or [NONE, *shipped()]
     apart.warm_up(["fault_session", "pymycobot"])
     wanted = [(name, who) for name in names for who in CLIENTS]
@@ -74,10 +75,10 @@ def _measured(name: str, who: str) -> Run:
     arm = SteadyArm()
     codec = codecs.load(TABLE)
     peer = arm if name == NONE else find(name, TABLE).wrap(arm, codec)
-    with PtyPort(peer) as port:
+    with PtyServer(peer) as port:
         started = apart.start(play_session, who, port.url)
         timed = started.result(time.monotonic() + LIMIT_SECONDS)
-        # What was written at last is heard by then.
+        # What was written last arrives meanwhile.
         time.sleep(0.3)
     return _judged(timed, arm.frames)
 
@@ -86,13 +87,13 @@ def _judged(timed: list[TimedOutcome] | None, frames: list[bytes]) -> Run:
     if timed is None:
         return Run(Counter({"not ended": len(SESSION)}), [], 0)
     kinds = Counter(_kind(call, one.outcome, frames) for call, one in zip(SESSION, timed))
-    orders = [call.sends for call in SESSION if call.right == DONE]
-    again = sum(frames.count(order) > orders.count(order) for order in orders)
+    sent = [call.sends for call in SESSION if call.right == DONE]
+    again = sum(frames.count(one) > sent.count(one) for one in sent)
     return Run(kinds, [one.seconds for one in timed], again)
 
 
 def _kind(call: Call, outcome: Outcome, frames: list[bytes]) -> str:
-    """An order that came back as if it were done, but did not come to the arm, is wrong."""
+    """Return how a call ended; a one-way request that did not arrive, but seems done, is wrong."""
     if outcome.verdict == RIGHT and call.right == DONE:
         if outcome.detail == "-1":
             return "-1 or None"
@@ -122,22 +123,24 @@ def _sums(runs: dict[tuple[str, str], Run]) -> str:
         ]
         lines.append(f"| {kind} | {' | '.join(map(str, sums))} |")
     again = [sum(run.again for (_, by), run in runs.items() if by == who) for who in CLIENTS]
-    lines.append(f"| (orders that came to the arm twice or more) | {' | '.join(map(str, again))} |")
+    lines.append(
+        f"| (one-way requests that arrived twice or more) | {' | '.join(map(str, again))} |"
+    )
     return "\n".join(lines)
 
 
 def _cell(run: Run) -> str:
-    """Such as ``16 right, 2 -1 or None; 12 ms a call, 1.5 s at most``."""
-    told = [f"{run.kinds[kind]} {_loud(kind)}" for kind in KINDS if run.kinds[kind]]
+    """Return a cell such as ``16 right, 2 -1 or None; 12 ms a call, 1.5 s at most``."""
+    parts = [f"{run.kinds[kind]} {_emphasized(kind)}" for kind in KINDS if run.kinds[kind]]
     if run.again:
-        told.append(f"**{run.again} orders sent again**")
+        parts.append(f"**{run.again} one-way requests sent again**")
     if not run.seconds:
-        return ", ".join(told)
+        return ", ".join(parts)
     mean, longest = sum(run.seconds) / len(run.seconds), max(run.seconds)
-    return f"{', '.join(told)}; {_time(mean)} a call, {_time(longest)} at most"
+    return f"{', '.join(parts)}; {_time(mean)} a call, {_time(longest)} at most"
 
 
-def _loud(kind: str) -> str:
+def _emphasized(kind: str) -> str:
     return f"**{kind}**" if kind in (WRONG, "exception", "not ended") else kind
 
 

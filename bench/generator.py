@@ -1,4 +1,4 @@
-"""How long the generator takes: each row is a whole process, cold, as a person starts it."""
+"""Measure how long the generator takes: each row is a whole process, as a person starts it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+
+from responder import within
 
 ROOT = Path(__file__).parent.parent
 TURNS = 5
@@ -23,25 +25,24 @@ def main() -> None:
         ]
         for what, words, limit in rows:
             median = sorted(_seconds(words) for _ in range(TURNS))[TURNS // 2]
-            verdict = "within" if median <= limit else "OVER"
-            print(f"{what:34} {median:6.2f} s   {verdict} {limit:.0f} s")
+            print(f"{what:34} {median:6.2f} s   {within(median <= limit)} {limit:.0f} s")
 
 
 def _seconds(words: list[str]) -> float:
     started = time.perf_counter()
     command = [sys.executable, "-m", "cobotwire_codegen", *words]
-    subprocess.run(command, check=True, capture_output=True)  # noqa: S603  (our own program)
+    subprocess.run(command, check=True, capture_output=True)
     return time.perf_counter() - started
 
 
 def _big() -> str:
-    """A protocol of 400 commands; ids are used again with other lengths."""
+    """Return a protocol of 400 commands, where ids repeat with other lengths."""
     head = (ROOT / "tests/codegen/lamp.yaml").read_text().partition("commands:\n")[0]
     commands, vectors = [], []
     for index in range(400):
         id, count = index % 250, index // 250 + 1
         fields = "".join(f"      - {{name: f{n}, is: channel}}\n" for n in range(count))
-        # Behind the 250th command the ids are used again, with more data.
+        # After the 250th command the ids repeat, with more data.
         shared = f"    shares_id: call{id}\n" if count > 1 else ""
         commands.append(
             f"  call{index}:\n    id: {id}\n{shared}    title: Call\n    doc: Calls.\n"

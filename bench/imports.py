@@ -1,8 +1,8 @@
-"""What it costs to have cobotwire: the time of its import beside pymycobot's, and its size on disk.
+"""Measure the import time of cobotwire beside pymycobot's, and its installed size.
 
-Each import runs in a process of its own, all candidates in turns; the import alone is timed, not
-the start of Python. The median counts. The names that a program uses are loaded when they are asked
-for, so there is a row for the name of the client, too.
+Each import runs in its own process, and all candidates take turns. Only the import is timed, not
+the start of Python. The median counts. ``import cobotwire`` loads a name only on its first use, so
+a second row imports the client.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ import sys
 import tempfile
 import zipfile
 from pathlib import Path
+
+from responder import within
 
 ROOT = Path(__file__).parents[1]
 TURNS = 15
@@ -39,7 +41,7 @@ def _times() -> None:
     for turn in range(TURNS + 1):
         for name, statement in IMPORTS.items():
             seconds = _timed(statement)
-            # The first turn writes the caches.
+            # The first turn only fills the caches.
             if turn:
                 taken[name].append(seconds)
     middle = {name: statistics.median(times) for name, times in taken.items()}
@@ -48,7 +50,7 @@ def _times() -> None:
         ("cobotwire's client", "pymycobot's client", None),
     ):
         faster = middle[theirs] / middle[ours]
-        verdict = "" if limit is None else f"   {_within(faster >= limit)} {limit:.0f} x"
+        verdict = "" if limit is None else f"   {within(faster >= limit)} {limit:.0f} x"
         print(
             f"{IMPORTS[ours]:30} {middle[ours] * 1e3:6.1f} ms   {faster:5.1f} x faster than "
             f"{IMPORTS[theirs]} ({middle[theirs] * 1e3:.1f} ms){verdict}"
@@ -57,17 +59,15 @@ def _times() -> None:
 
 def _timed(statement: str) -> float:
     command = [sys.executable, "-c", TIMED.format(statement)]
-    result = subprocess.run(command, capture_output=True, text=True, check=True)  # noqa: S603  (our own)
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
     return float(result.stdout)
 
 
 def _size() -> None:
-    """The wheel, built anew, unpacked and compiled, as pip leaves it."""
+    """Build the wheel, unpack and compile it as pip does, and print its size."""
     with tempfile.TemporaryDirectory() as folder:
         maturin = [sys.executable, "-m", "maturin", "build", "--release", "--quiet"]
-        subprocess.run(  # noqa: S603  (our own)
-            [*maturin, "--out", folder], cwd=ROOT, check=True, capture_output=True
-        )
+        subprocess.run([*maturin, "--out", folder], cwd=ROOT, check=True, capture_output=True)
         wheel = next(Path(folder).glob("*.whl"))
         packed = wheel.stat().st_size
         unpacked = Path(folder) / "unpacked"
@@ -77,12 +77,8 @@ def _size() -> None:
         size = sum(file.stat().st_size for file in unpacked.rglob("*") if file.is_file())
     print(
         f"installed size without extras {size / 2**20:5.2f} MiB (packed {packed / 2**20:.2f} MiB)"
-        f"   {_within(size <= LARGEST)} 5 MiB"
+        f"   {within(size <= LARGEST)} 5 MiB"
     )
-
-
-def _within(right: bool) -> str:
-    return "within" if right else "OVER"
 
 
 if __name__ == "__main__":

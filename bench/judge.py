@@ -1,4 +1,4 @@
-"""What a reader made of a line, judged by the truth about the line and by the table alone."""
+"""Judge what a reader found on a line, by the truth about the line and by the table alone."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from cobotwire.codec.interface import Listening
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
 from readers import Accepted
-from streams import Line, Places, forms_of
+from streams import Line, Places, variants_of
 
 Legal = set[bytes]
 STEPS = tuple(range(0, 132, 4))  # bytes
@@ -20,7 +20,7 @@ STEPS = tuple(range(0, 132, 4))  # bytes
 
 @dataclass(frozen=True)
 class Covered:
-    """An undamaged frame that was not read, and the false frame that stands over its start."""
+    """An undamaged frame that was not read, and the false frame that covers its start."""
 
     start: int
     false_start: int
@@ -29,13 +29,17 @@ class Covered:
 
 @dataclass(frozen=True)
 class Verdict:
-    """How one reader did on one line.
+    """How one reader fared on one line.
 
-    ``unexplained`` are the undamaged frames that were lost although no legal false frame covers
-    them. ``altered`` frames were damaged and are legal all the same: their values are wrong.
-    ``restored`` ones were damaged and yet read as they were sent. ``phantoms`` were accepted where
-    no frame was sent. ``distances`` are the bytes from each damage to the next undamaged frame that
-    was read.
+    Attributes:
+        undamaged: how many frames arrived undamaged.
+        recovered: how many of them were read.
+        covered: undamaged frames that were lost because a legal false frame covers them.
+        unexplained: the start of each undamaged frame that was lost without such a cover.
+        altered: how many damaged frames are still legal, and were read with wrong values.
+        restored: how many damaged frames were read as they were sent.
+        phantoms: how many frames were accepted where none was sent.
+        distances: the bytes from each damage to the next undamaged frame that was read.
     """
 
     undamaged: int
@@ -54,15 +58,15 @@ class Verdict:
 
 
 def legal_heads(table: Table, listening: Listening) -> Legal:
-    """``LEN CMD`` of every form that may come: the table's word on what is legal."""
-    forms = [form for way in ("request", "reply") for form in forms_of(table, way)]
+    """Return ``LEN CMD`` of every variant that may arrive: what the table allows."""
+    variants = [variant for way in ("request", "reply") for variant in variants_of(table, way)]
     if listening != "both":
-        forms = forms_of(table, listening)
-    return {bytes([table.frame.length(layout.size), id]) for id, layout in forms}
+        variants = variants_of(table, listening)
+    return {bytes([table.frame.length(variant.size), id]) for id, variant in variants}
 
 
 def is_legal(table: Table, legal: Legal, frame: bytes) -> bool:
-    """Whether these bytes are one frame of the edition; asks no codec."""
+    """Return whether these bytes are one frame of the edition, without a codec."""
     size = frame[2] + 3 if len(frame) > 4 else -1
     return (
         frame.startswith(table.frame.header)
@@ -96,12 +100,12 @@ def judge(table: Table, listening: Listening, line: Line, read: Sequence[Accepte
 
 
 def ideal_distances(line: Line) -> Places:
-    """Bytes from each damage to the next undamaged frame: what no reader can better."""
+    """Return the bytes from each damage to the next undamaged frame: the least that is possible."""
     return _distances(line.sites, line.starts[line.whole].tolist())
 
 
-def told(verdict: Verdict) -> dict[str, Any]:
-    """A verdict as the report's JSON has it."""
+def as_json(verdict: Verdict) -> dict[str, Any]:
+    """Return a verdict for the report's JSON."""
     return {
         "share": verdict.share,
         "lost": verdict.undamaged - verdict.recovered,
@@ -114,7 +118,7 @@ def told(verdict: Verdict) -> dict[str, Any]:
 
 
 def spread(distances: Places) -> dict[str, Any]:
-    """Median, 99 % and most; and how many of the distances are longer than each of ``STEPS``."""
+    """Return median, 99 % and maximum, and how many distances exceed each of ``STEPS``."""
     if not len(distances):
         return {"median": 0, "p99": 0, "max": 0, "longer": [0] * len(STEPS)}
     median, p99, most = np.quantile(distances, [0.5, 0.99, 1], method="higher").tolist()
@@ -145,7 +149,7 @@ def _sort_false(line: Line, false_ones: Sequence[Accepted]) -> tuple[int, int, i
     acks = set(line.acks.tolist())
     altered = restored = phantoms = 0
     for frame in false_ones:
-        # A reader that left bytes out in the middle took a frame whose start is not known exactly.
+        # If a reader skips bytes within a frame, the start of that frame is not known exactly.
         ended = by_end.get(frame.end)
         if ended is not None and frame.data == line.original(ended):
             restored += 1
@@ -157,7 +161,7 @@ def _sort_false(line: Line, false_ones: Sequence[Accepted]) -> tuple[int, int, i
 
 
 def _distances(sites: Places, starts: list[int]) -> Places:
-    """From each site to the first of the starts at or behind it; sites behind the last left out."""
+    """Return the distance from each site to the next start; skip sites after the last start."""
     if not starts:
         return np.zeros(0, np.int64)
     places = np.array(starts, np.int64)

@@ -1,11 +1,11 @@
-"""Inverse then forward kinematics over 10,000 random poses that some joint angles reach.
+"""Measure inverse and then forward kinematics of 10,000 random poses within reach.
 
     python bench/kinematics.py [--poses N]
 
-Every pose is that of random angles inside the limits of the edition mycobot280; it is looked for
-from other random angles. Once as it is, once cut to the wire's steps as get_coords tells it, which
-may put it a hair out of reach. And from random coordinates in the box that the edition allows: how
-many are reachable at all.
+Every pose is that of random angles inside the limits of the edition mycobot280; the search starts
+from other random angles. The poses are taken once as they are, and once truncated to the wire's
+steps as in get_coords, which may put them slightly out of reach. Then random coordinates in the box
+that the edition allows: how many of them are reachable.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import time
 from pathlib import Path
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim.kinematics import MYCOBOT_280, Pose, flange, nearest
-from cobotwire.sim.kinematics.ticks import told_coords
+from cobotwire.simulator.kinematics import MYCOBOT_280, Pose, flange, nearest
+from cobotwire.simulator.kinematics.ticks import reported_coords
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
@@ -28,17 +28,17 @@ MILLIMETRES, DEGREES = 0.1, 0.02
 
 
 def main() -> None:
-    """Measure, and print beside the limits."""
+    """Measure the poses; print them with the limits."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--poses", type=int, default=10_000)
     poses: int = parser.parse_args().poses
     rng = random.Random(280)  # noqa: S311  (samples, no secrets)
     exact = [flange(MYCOBOT_280, random_angles(rng)) for _ in range(poses)]
     _round_trip("as they are", exact, rng, limited=True)
-    told = [Pose.of(told_coords(pose.coords)) for pose in exact]
-    _round_trip("as get_coords tells them", told, rng, limited=False)
+    reported = [Pose.of(reported_coords(pose.coords)) for pose in exact]
+    _round_trip("as get_coords reports them", reported, rng, limited=False)
     numbers = TABLE.in_role("coordinate targets").request[0].fields[0].cases[0].numbers
-    box = [(number.minimum / number.divide, number.maximum / number.divide) for number in numbers]
+    box = [(number.physical(number.minimum), number.physical(number.maximum)) for number in numbers]
     anywhere = [Pose.of([rng.uniform(low, high) for low, high in box]) for _ in range(poses)]
     _round_trip("anywhere in the box that send_coords takes", anywhere, rng, limited=False)
 

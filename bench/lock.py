@@ -1,7 +1,7 @@
-"""What the interpreter's lock costs: a call that holds it, and one that releases it.
+"""Measure what holding or releasing the interpreter's lock costs a call.
 
-Small input is read under the lock, large input without. This prints, for sizes on both sides of the
-threshold, how long a call takes alone and beside a thread that is busy in Python.
+Small input is decoded under the lock, large input without it. For sizes on both sides of the
+threshold this prints the time of a call, alone and beside a thread that is busy in Python.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def _median(codec: Codec, data: bytes) -> float:
 
 
 class _Busy:
-    """A thread that counts in Python."""
+    """A context in which another thread is busy in Python."""
 
     def __enter__(self) -> None:
         self.stop = False

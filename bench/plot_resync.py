@@ -1,4 +1,4 @@
-"""Draws the curves of ``docs/framing.md`` from the JSON of ``bench/resync.py``."""
+"""Draw the curves of ``docs/framing.md`` from the JSON of ``bench/resync.py``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from judge import STEPS
 
 Rows = Sequence[dict[str, Any]]
 
-# Colours and marks that are told apart without colour vision, too (Okabe and Ito's palette).
+# Colours and marks that can be distinguished without colour vision (Okabe and Ito's palette).
 LOOKS: dict[str, dict[str, Any]] = {
     "cobotwire": {"color": "#0072B2", "marker": "o"},
     "any LEN to 64": {"color": "#009E73", "marker": "s"},
@@ -37,13 +37,13 @@ SETTINGS: Any = {
     "axes.spines.right": False,
     "axes.grid": True,
     "grid.color": "#dddddd",
-    "figure.facecolor": "white",  # to be read on a dark page, too
+    "figure.facecolor": "white",  # readable on a dark page
     "savefig.facecolor": "white",
 }
 
 
 def lost_by_rate(rows: Rows) -> Figure:
-    """Undamaged frames lost, over how often something happens to a byte."""
+    """Plot undamaged frames lost, over the rate of damage."""
     figure, axes = _canvas("All kinds of damage together, all streams of both editions")
     mixed = _some(rows, kind="mixed")
     rates = sorted({row["rate"] for row in mixed})
@@ -61,7 +61,7 @@ def lost_by_rate(rows: Rows) -> Figure:
 
 
 def lost_by_kind(rows: Rows) -> Figure:
-    """Undamaged frames lost, for each kind of damage."""
+    """Plot undamaged frames lost, for each kind of damage."""
     figure, axes = _canvas("One damage in a hundred bytes, replies of both editions", height=5.6)
     rows = _some(rows, stream="catalogue", listening="reply", rate=1e-2)
     kinds = list(dict.fromkeys(row["kind"] for row in rows))
@@ -84,7 +84,7 @@ def lost_by_kind(rows: Rows) -> Figure:
 
 
 def recovery(rows: Rows) -> Figure:
-    """How many bytes behind a damage the next undamaged frame is read."""
+    """Plot how many bytes after a damage the next undamaged frame is read."""
     figure, axes = _canvas("All kinds of damage, one in a hundred bytes, all streams")
     mixed = _some(rows, kind="mixed")
     some = _some(mixed, rate=max(row["rate"] for row in mixed))
@@ -99,13 +99,13 @@ def recovery(rows: Rows) -> Figure:
     axes.set_xlim(0, 80)
     axes.set_ylim(1e-3, 1)
     axes.set_yticks([1, 0.1, 0.01, 0.001], ["100 %", "10 %", "1 %", "0.1 %"])
-    axes.set_xlabel("bytes behind the damage")
-    axes.set_ylabel("share of damages after which\nno undamaged frame was read yet")
+    axes.set_xlabel("bytes after the damage")
+    axes.set_ylabel("share of damages after which\nno undamaged frame has been read")
     return _with_legend(figure, axes)
 
 
 def bounds(each: Rows) -> Figure:
-    """What a bound on LEN is worth, beside the table."""
+    """Plot undamaged frames lost, for the table and for bounds on LEN."""
     figure, axes = _canvas("Stream A with 10 % line noise: what limits the same scan")
     for place, (edition, colour) in enumerate((("mycobot", "#0072B2"), ("mycobot280", "#E69F00"))):
         lost = [1e6 * (1 - row["share"]) for row in each if row["edition"] == edition]
@@ -148,7 +148,7 @@ def _longer(spreads: Rows, damages: int) -> list[float]:
 
 
 def main() -> None:
-    """Draw all of them."""
+    """Draw all curves."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("report", type=Path)
     parser.add_argument("folder", type=Path)

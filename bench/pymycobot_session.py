@@ -1,8 +1,8 @@
-"""A whole session with the served arm: pymycobot 4.0.7, unmodified, beside ours, call by call.
+"""Time each call of a whole session: pymycobot 4.0.7, unmodified, beside our client.
 
-Each client has an arm of its own, in real time, on a pty and over TCP. What is printed is the table
-of docs/simulation.md, "What pymycobot does with it". A motion takes as long as the arm does; what
-the client adds to that is what differs.
+Each client drives its own simulated arm in real time, on a pty and over TCP. The output is the
+table of docs/simulation.md, "A session with pymycobot". A motion takes as long as the arm needs;
+the clients differ in what they add.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from contextlib import contextmanager, suppress
 from typing import Any, NamedTuple
 
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
-from cobotwire.sim import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
+from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
 
 POSE = [30.0, -20.0, -35.0, 25.0, 40.0, 15.0]
-# What else runs on the machine only adds: each call counts by its fastest turn.
+# The fastest turn of each call counts, since other programs can only add time.
 TURNS = 3
 NEAR = [20.0, -25.0, -30.0, 20.0, 35.0, 10.0]
-# Where a session moves to the coordinates that it read at POSE.
+# Stands for the coordinates that the session read at POSE.
 READ = "the coordinates read before"
 
 
 class Step(NamedTuple):
-    """A call by pymycobot's name; then so many seconds of the arm's time pass."""
+    """A call by pymycobot's name, and the seconds of the arm's time that pass after it."""
 
     name: str
     values: tuple[Any, ...] = ()
@@ -47,7 +47,7 @@ SESSION = (
     Step("send_angle", (1, 0, 80), 1.5),
     Step("jog_angle", (1, 1, 20), 0.5),
     Step("is_moving"),
-    Step("stop", pause=0.5),  # it brakes
+    Step("stop", pause=0.5),  # the arm brakes
     Step("is_moving"),
     Step("resume"),
     Step("jog_increment", (2, 10, 60), 1.0),
@@ -66,14 +66,14 @@ OUR_NAMES = {"sync_send_angles": "move_angles", "sync_send_coords": "move_coords
 
 
 class Called(NamedTuple):
-    """What a call returned, or raised, and the real seconds that it took."""
+    """What a call returned or raised, and the real seconds that it took."""
 
     result: Any
     seconds: float
 
 
 def play(client: Any, clock: RunningClock) -> list[Called]:
-    """Go through the session; what a call raises is its result."""
+    """Play the session; an exception is the result of its call."""
     called: list[Called] = []
     coords: Sequence[float] = ()
     for step in SESSION:
@@ -82,7 +82,7 @@ def play(client: Any, clock: RunningClock) -> list[Called]:
         started = time.perf_counter()
         try:
             result = getattr(client, name)(*values)
-        except Exception as error:  # whatever it is, it goes into the table
+        except Exception as error:  # the table shows any exception
             result = error
         called.append(Called(result, time.perf_counter() - started))
         if step.name == "get_coords" and isinstance(result, list | tuple):
@@ -92,7 +92,7 @@ def play(client: Any, clock: RunningClock) -> list[Called]:
 
 
 def pymycobot_on(url: str) -> Any:
-    """Its class for a port, or for a socket, as its users open it; both sleep 1.5 s over it."""
+    """Open its class for a port or a socket as its users do; both constructors sleep 1.5 s."""
     with warnings.catch_warnings():
         # Importing it compiles and calls what Python deprecates.
         warnings.simplefilter("ignore")
@@ -107,13 +107,13 @@ def pymycobot_on(url: str) -> Any:
 CLIENTS: dict[str, Callable[[str], Any]] = {"pymycobot": pymycobot_on, "cobotwire": MyCobot280}
 SERVERS: dict[str, Callable[[SimulatedArm, RunningClock], Server]] = {
     "pty": PtyServer,
-    "TCP": lambda arm, clock: TcpServer(arm, clock=clock),
+    "TCP": lambda arm, clock: TcpServer(arm.connect, clock=clock),
 }
 
 
 @contextmanager
 def session(who: str, link: str, speed: float = 1.0) -> Iterator[tuple[Any, RunningClock]]:
-    """A client that is connected to a new arm."""
+    """Connect a client to a new arm."""
     clock = RunningClock(speed)
     with SERVERS[link](SimulatedArm(TABLE, clock=clock), clock) as server:
         client = CLIENTS[who](server.url)
@@ -141,7 +141,9 @@ def main() -> None:
         print(f"| `{step.name}` | " + " | ".join(cells) + " |")
     waits = [index for index, step in enumerate(SESSION) if step.name not in OUR_NAMES]
     sums = [sum(column[index].seconds for index in waits) for column in columns.values()]
-    print("| all but the motions waited for | " + " | ".join(map(_time, sums)) + " |")
+    print(
+        "| all calls except motions that were waited for | " + " | ".join(map(_time, sums)) + " |"
+    )
 
 
 def _seconds(called: Called) -> float:
@@ -149,10 +151,10 @@ def _seconds(called: Called) -> float:
 
 
 def _cell(called: Called) -> str:
-    return f"{_said(called.result)} · {_time(called.seconds)}"
+    return f"{_shown(called.result)} · {_time(called.seconds)}"
 
 
-def _said(result: Any) -> str:
+def _shown(result: Any) -> str:
     if isinstance(result, BaseException):
         return f"**{type(result).__name__}**"
     if isinstance(result, list | tuple):

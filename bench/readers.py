@@ -1,7 +1,7 @@
-"""Who reads the streams: our two codecs, pymycobot's own reader, a textbook state machine.
+"""The readers of the streams: our two codecs, pymycobot's own reader, a textbook state machine.
 
-Each takes the bytes of a line and gives what it took for frames, in order. The peers are given the
-best case: they are asked again and again, so that they lose only what their reading itself loses.
+Each takes the bytes of a line and returns what it took for frames, in order. The peers get the best
+case: they are called until the line ends, so that they lose only what their reading loses.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from unittest import mock
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Event, Frame, Listening
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
 from streams import Line
 
 
 class Accepted(NamedTuple):
-    """Bytes that a reader took for a frame, and where they stand on the line."""
+    """Bytes that a reader took for a frame, and their place on the line."""
 
     start: int
     end: int
@@ -35,7 +35,7 @@ SECONDS_PER_BYTE = 10 / 115_200
 
 
 def ours(table: Table, name: codecs.CodecName, listening: Listening) -> Reader:
-    """One of our codecs, given the whole line at once."""
+    """Return one of our codecs as a reader that gets the whole line at once."""
     codec = codecs.load(table, name)
 
     def read(data: bytes) -> list[Accepted]:
@@ -46,7 +46,7 @@ def ours(table: Table, name: codecs.CodecName, listening: Listening) -> Reader:
 
 
 def accepted(events: list[Event]) -> list[Accepted]:
-    """The frames among the events."""
+    """Return the frames among the events."""
     return [
         Accepted(event.offset, event.offset + len(event.data), event.data)
         for event in events
@@ -55,12 +55,12 @@ def accepted(events: list[Event]) -> list[Accepted]:
 
 
 def textbook(table: Table) -> Reader:
-    """The policy that consumes on failure, as state machines in textbooks and drivers do.
+    """Return a reader that consumes bytes on failure, as state machines in textbooks do.
 
-    pymavlink, for one, moves past all that a header claims before it looks at the checksum. Here:
-    header, header, LEN between 2 and the longest, LEN bytes, FA. What does not fit throws away all
-    that was taken until then, and the next byte is the first of the next try. Like pymycobot it
-    does not look at ids.
+    pymavlink, for example, skips all bytes that a header claims before it checks the checksum. This
+    reader expects header, header, LEN between 2 and the longest, LEN bytes, FA. If a byte does not
+    fit, all bytes so far are lost, and the next byte begins the next attempt. Like pymycobot, it
+    ignores ids.
     """
     longest = table.frame.maximum_length
 
@@ -83,7 +83,7 @@ def textbook(table: Table) -> Reader:
 
 
 def any_length(longest: int) -> Reader:
-    """Our own scan without the table: any id, any LEN from 2 to ``longest``, FA at the end."""
+    """Return our scan without the table: any id, any LEN from 2 to ``longest``, FA at the end."""
 
     def read(data: bytes) -> list[Accepted]:
         found: list[Accepted] = []
@@ -101,13 +101,12 @@ def any_length(longest: int) -> Reader:
 
 
 def pymycobot() -> Reader:
-    """``_read`` of pymycobot's MyCobot280, its own code, called until the line is over.
+    """Return ``_read`` of pymycobot's MyCobot280 as a reader: called until the line ends.
 
-    This is its best case: nothing that it read is thrown away for being another reply than the one
-    waited for. In memory: the port gives one byte a call, as its code asks for; the clock is the
-    line's, a byte at 115200 baud for each look at it, so that its 0.5 s are over after 5,760 bytes
-    without a frame. A frame counts as read if ``_read`` returns just its bytes when its last byte
-    has been taken.
+    This is its best case: no reply is dropped because another one is expected. Its port is in
+    memory and returns one byte per call, as its code requests. Its clock advances by one byte at
+    115200 baud with each call, so that its 0.5 s are over after 5,760 bytes without a frame. A
+    frame counts as read if ``_read`` returns its bytes right after its last byte.
     """
     common, peer = pymycobot_peer()
 
@@ -121,7 +120,7 @@ def pymycobot() -> Reader:
                 try:
                     frame = bytes(peer._read(0x20))
                 except struct.error:
-                    break  # the line ends behind a header: it decodes the LEN that did not come
+                    break  # the line ends after a header: pymycobot decodes a missing LEN
                 if frame:
                     end = len(data) - operator.length_hint(line)
                     found.append(Accepted(end - len(frame), end, frame))
@@ -131,18 +130,18 @@ def pymycobot() -> Reader:
 
 
 def pymycobot_asked(line: Line) -> list[Accepted]:
-    """The same code as its users meet it: a request for each frame that was sent, in turn.
+    """Read with the same code as its users: with one request for each frame that was sent.
 
-    Each request empties the buffer, as ``_res`` does, so that reading starts anew behind the frame
-    before; what stands in front of the reply comes behind the request. A frame with another id is
-    thrown away, as there. Asking again, which ``_res`` does twice, would be another frame.
+    Each request empties the buffer, as in ``_res``: reading starts after the previous frame, and
+    noise before the reply comes after the request. A frame with another id is dropped, as in
+    ``_res``. There are no further attempts: their replies would be other frames.
     """
     common, peer = pymycobot_peer()
     found: list[Accepted] = []
     begins = [0, *line.ends.tolist()]
     for begin, start, end in zip(begins, line.starts.tolist(), line.ends.tolist()):
         window = iter([line.data[at : at + 1] for at in range(begin, end)])
-        # Behind the reply nothing more comes, and its 0.5 s go by.
+        # After the reply nothing more comes, and its 0.5 s pass.
         times = itertools.chain(itertools.repeat(0.0, end - begin + 1), itertools.repeat(1.0))
         peer._serial_port = SimpleNamespace(read=partial(next, window, b""))
         with mock.patch.object(common, "time", SimpleNamespace(time=times.__next__)):
@@ -154,11 +153,11 @@ def pymycobot_asked(line: Line) -> list[Accepted]:
 
 
 def pymycobot_peer() -> tuple[SimpleNamespace, SimpleNamespace]:
-    """Pymycobot's module of shared code, and one of its arms without a port."""
+    """Return pymycobot's module of shared code, and one of its arms without a port."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # importing it calls what Python 3.11 deprecates
         from pymycobot import CommandGenerator, MyCobot280, common
-    # As its constructor makes it, but for the port and 1.5 s of sleep.
+    # Like its constructor, without the port and without 1.5 s of sleep.
     peer = object.__new__(MyCobot280)
     CommandGenerator.__init__(peer)
     return common, peer

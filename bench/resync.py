@@ -1,7 +1,7 @@
-"""The resync report: what each reader makes of damaged lines, frame by frame.
+"""The resync report: which frames each reader finds on damaged lines.
 
-Every undamaged frame must be recovered, unless a false frame that is legal by the table covers it;
-these are counted and shown one by one. Any other loss, or two codecs that differ, ends with 1.
+Every undamaged frame must be found, unless a false frame that the table allows covers it; those are
+counted and shown. If any other frame is lost, or the two codecs differ, the exit code is 1.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Listening
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
 from damage import KINDS, damage, noisy
-from judge import ideal_distances, judge, spread, told
+from judge import as_json, ideal_distances, judge, spread
 from readers import Reader
 from streams import Line
 
 TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
-# Rarer damage needs a longer line to happen at all: so many times --frames.
+# Rarer damage needs a longer line: by this factor.
 LENGTHS = {1e-4: 2.0, 1e-3: 1.0, 1e-2: 0.5}
 BYTE_BY_BYTE = 100_000
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """One row: which stream of which edition, and what happens to it."""
+    """One row: a stream of an edition, and its damage."""
 
     edition: str
     stream: str
@@ -45,7 +45,7 @@ class Scenario:
     rate: float
 
     def line(self, frames: int, seed: int) -> Line:
-        """The damaged stream."""
+        """Return the damaged stream."""
         table, count = TABLES[self.edition], int(frames * LENGTHS.get(self.rate, 1.0))
         clean = (
             streams.stream_a(table, count, seed=seed)
@@ -58,7 +58,7 @@ class Scenario:
 
 
 def scenarios() -> Iterator[Scenario]:
-    """Replies with each kind of damage; a shared line and stream A with all of them at once."""
+    """Yield replies with each kind of damage, and a shared line and stream A with all of them."""
     for edition in TABLES:
         for rate in LENGTHS:
             for kind in KINDS:
@@ -70,7 +70,7 @@ def scenarios() -> Iterator[Scenario]:
 
 
 def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) -> dict[str, Any]:
-    """One row of the report."""
+    """Measure one row of the report."""
     table = TABLES[scenario.edition]
     line = scenario.line(frames, seed)
     read = {
@@ -90,7 +90,7 @@ def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) ->
         "undamaged": int(line.whole.sum()),
         "damages": len(line.sites),
         "ideal": spread(ideal_distances(line)),
-        "readers": {name: told(verdict) for name, verdict in verdicts.items()},
+        "readers": {name: as_json(verdict) for name, verdict in verdicts.items()},
         "covered": [
             {"frame_at": c.start, "by_false_at": c.false_start, "false": c.false_frame.hex(" ")}
             for c in verdicts["cobotwire"].covered
@@ -102,17 +102,17 @@ def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) ->
 
 
 def bounded(edition: str, frames: int, seed: int) -> list[dict[str, Any]]:
-    """What the table is worth: the same scan with any id and any LEN up to a bound."""
+    """Measure the value of the table: the same scan with any id and any LEN up to a bound."""
     table = TABLES[edition]
     line = Scenario(edition, "A", "reply", "line noise", 0.1).line(frames, 1000 * seed)
-    asked: dict[str, Reader] = {"the table": readers.ours(table, "native", "reply")}
-    # FE as LEN, 254, is a case of its own: FE FE FE is then a header.
+    scans: dict[str, Reader] = {"the table": readers.ours(table, "native", "reply")}
+    # LEN 254 is FE, a case of its own: FE FE FE is then a header.
     lengths = {"longest": table.frame.maximum_length, "64": 64, "128": 128, "253": 253, "255": 255}
     for name, longest in lengths.items():
-        asked[name] = readers.any_length(longest)
+        scans[name] = readers.any_length(longest)
     return [
-        {"edition": edition, "bound": name, **told(judge(table, "reply", line, read(line.data)))}
-        for name, read in asked.items()
+        {"edition": edition, "bound": name, **as_json(judge(table, "reply", line, read(line.data)))}
+        for name, read in scans.items()
     ]
 
 
@@ -124,7 +124,7 @@ def _agree(table: Table, listening: Listening, data: bytes) -> bool:
 
 
 def _late(table: Table, listening: Listening, data: bytes) -> dict[str, int]:
-    """How many bytes behind its last one a frame is delivered, fed byte by byte."""
+    """Feed byte by byte; count the bytes after its last one until each frame is delivered."""
     framer = codecs.load(table, "native").framer(listening)
     late = []
     for fed, byte in enumerate(memoryview(data).cast("c"), start=1):
@@ -133,7 +133,7 @@ def _late(table: Table, listening: Listening, data: bytes) -> dict[str, int]:
 
 
 def main() -> int:
-    """Measure all rows, print them, and tell whether each lost frame is explained."""
+    """Measure and print all rows; return 1 if a lost frame is not explained."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=20_000, help="sent in a row, on average")
     parser.add_argument("--reference-bytes", type=int, default=20_000, help="for both codecs")

@@ -1,4 +1,4 @@
-"""The rows of the resync report as text."""
+"""Format the rows of the resync report."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Any
 READERS = ("cobotwire", "any LEN to 64", "textbook", "pymycobot", "pymycobot asked")
 
 HEAD = """\
-Recovered: % of the undamaged frames; lost: how many of them we did not read, all covered by a false
-frame that the table allows, + those without that excuse. Wrong: frames accepted that were not sent,
-damaged-but-legal + where no frame was. To next: bytes from a damage to the next undamaged frame
-read, median/99 %/most; ideal is what no reader can better. Late: how many of our frames came after
-more bytes than their own, and by how many at most.
+Recovered: % of the undamaged frames. Lost: how many of them we did not find because a false frame
+that the table allows covers them, + how many without this reason. Wrong: accepted frames that were
+not sent: damaged but legal, + phantoms. To next: bytes from a damage to the next undamaged frame
+that was found, median/99 %/most; ideal is the least possible. Late: how many of our frames needed
+bytes after their own, and at most how many.
 Readers: ours; the same scan with any id and any LEN up to 64; a textbook state machine; pymycobot's
-own code, reading on and on, and asked for one reply after the other.
+own code, reading continuously, and with one request for each reply.
 """
 COLUMNS = (
     f"{'edition':10} {'stream':9} {'damage':12} {'rate':>6} {'undamaged':>9} |"
@@ -26,13 +26,13 @@ COLUMNS = (
 
 
 def row(row: dict[str, Any]) -> str:
-    """One line of the table."""
-    told = [row["readers"][name] for name in READERS]
-    some = [told[0], told[2], told[3]]
+    """Format one line of the table."""
+    readers = [row["readers"][name] for name in READERS]
+    some = [readers[0], readers[2], readers[3]]
     stream = {"A": "A", "reply": "replies", "both": "both ways"}
     name = stream[row["stream"] if row["stream"] == "A" else row["listening"]]
-    shares = " ".join(f"{_percent(each):>7}" for each in told)
-    lost = f"{told[0]['covered']}+{len(row['unexplained'])}"
+    shares = " ".join(f"{_percent(each):>7}" for each in readers)
+    lost = f"{readers[0]['covered']}+{len(row['unexplained'])}"
     wrong = " ".join(f"{each['altered']}+{each['phantoms']}".rjust(8) for each in some)
     spreads = [row["ideal"], *(each["bytes_to_recovery"] for each in some)]
     distances = " ".join(
@@ -47,7 +47,7 @@ def row(row: dict[str, Any]) -> str:
 
 
 def bounds(rows: Sequence[dict[str, Any]]) -> str:
-    """What the table is worth against a bound on LEN alone."""
+    """Format the value of the table compared with a bound on LEN alone."""
     lines = [
         "",
         "Stream A with 10 % line noise, read by the same scan, but any id with any LEN up to",
@@ -61,13 +61,14 @@ def bounds(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def summary(rows: Sequence[dict[str, Any]], show: int) -> str:
-    """What is lost and wrong in all rows, and the lost frames one by one."""
+    """Format the lost and wrong frames of all rows, and each lost frame."""
     undamaged = sum(row["undamaged"] for row in rows)
     lines = ["", f"All rows together: {undamaged} undamaged frames."]
     for name in READERS:
-        told = [row["readers"][name] for row in rows]
+        readers = [row["readers"][name] for row in rows]
         lost, altered, restored, phantoms = (
-            sum(each[key] for each in told) for key in ("lost", "altered", "restored", "phantoms")
+            sum(each[key] for each in readers)
+            for key in ("lost", "altered", "restored", "phantoms")
         )
         lines.append(
             f"  {name:15} lost {lost:6} ({100 * lost / undamaged:.4f} %), damaged but legal"
@@ -96,6 +97,6 @@ def summary(rows: Sequence[dict[str, Any]], show: int) -> str:
     return "\n".join(lines)
 
 
-def _percent(told: dict[str, Any]) -> str:
+def _percent(reader: dict[str, Any]) -> str:
     # Rounded down: 100 is only what lost nothing at all.
-    return "100" if not told["lost"] else f"{min(100 * told['share'], 99.999):.3f}"
+    return "100" if not reader["lost"] else f"{min(100 * reader['share'], 99.999):.3f}"

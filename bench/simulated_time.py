@@ -1,10 +1,10 @@
-"""An hour of motion at 100 Hz in stepped time: the arm moves, and is asked every 10 ms.
+"""Measure an hour of motion in stepped time, with a query every 10 ms.
 
     python bench/simulated_time.py [--minutes N]
 
-One core, one process, no line: what the simulated arm itself takes, from a request's bytes to its
-reply's. Targets follow each other without a pause. Asked once for the angles, once for the
-coordinates. The limit is a minute for the hour.
+In one process, without a line: the time is that of the simulated arm, from the request's bytes to
+the reply's. Targets follow each other without a pause. The queries are get_angles in one run
+and get_coords in another. The limit is one minute for the hour.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from pathlib import Path
 
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim import SimulatedArm
-from cobotwire.sim.clock import SteppedClock
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
@@ -31,7 +31,7 @@ SPEED = 40
 
 
 def main() -> None:
-    """Measure, and print beside the limit."""
+    """Measure both runs; print them with the limit."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--minutes", type=float, default=60.0)
     seconds = parser.parse_args().minutes * 60
@@ -43,7 +43,7 @@ def _hour(name: str, samples: int) -> None:
     clock, rng = SteppedClock(), random.Random(100)  # noqa: S311  (samples, no secrets)
     arm = SimulatedArm(TABLE, clock=clock)
     codec = codecs.load(TABLE)
-    question = codec.encode(name, "request", ())
+    query = codec.encode(name, "request", ())
     arm.receive(codec.encode("power_on", "request", ()))
     moved = 0
     before = b""
@@ -53,9 +53,9 @@ def _hour(name: str, samples: int) -> None:
             target = [angle / 2 for angle in random_angles(rng)]
             arm.receive(codec.encode("send_angles", "request", (target, SPEED)))
         clock.sleep(PERIOD)
-        answer = arm.receive(question)
-        moved += answer != before
-        before = answer
+        reply = arm.receive(query)
+        moved += reply != before
+        before = reply
     taken = (time.process_time() - started) * HOUR / (samples * PERIOD)
     print(
         f"an hour at {1 / PERIOD:.0f} Hz, {name:10} {taken:6.1f} s of CPU   "

@@ -1,6 +1,6 @@
-"""How fast the native codec is, as ratios to others on the same input in the same run.
+"""Measure the native codec, as ratios to other programs on the same input in the same run.
 
-Each round runs everything once, one after the other; a ratio is the median over the rounds.
+Each round runs everything once, one after another; a ratio is the median over the rounds.
 """
 
 from __future__ import annotations
@@ -20,31 +20,31 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Columns, Noise, Scan
 from cobotwire.editions.mycobot280 import TABLE
 from damage import noisy
-from speed_table import Asked, Ratio, Timed, Told, measure, ratios, show, write_json
+from speed_table import Ratio, Target, Timed, measure, ratios, show, untargeted, write_json
 from streams import stream_a
 
 ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
 CHUNK = 4096
-# What pymycobot reads in a round; the time is that of a whole stream.
+# The frames that pymycobot reads in a round; its time is scaled to the whole stream.
 SLOWEST = 2_000
 MIB = 1 << 20
 
 
 def main() -> None:
-    """Measure, print, and say with the exit code whether all was met."""
+    """Measure and print; with --strict, exit with 1 if a target was missed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=1_000_000, help="of stream A")
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--json", type=Path, help="write the ratios to this file")
-    parser.add_argument("--strict", action="store_true", help="exit 1 if a row is not met")
+    parser.add_argument("--strict", action="store_true", help="exit with 1 if a target was missed")
     options = parser.parse_args()
     codec = codecs.load(TABLE, "native")
     console = Console(width=118)
     found: list[Ratio] = []
     for title, part in PARTS.items():
-        timed, asked = part(codec, options.frames)
+        timed, targets = part(codec, options.frames)
         measure(timed, options.rounds)
-        rows = ratios(timed, asked)
+        rows = ratios(timed, targets)
         show(title, rows, console)
         found += rows
     if options.json:
@@ -53,20 +53,20 @@ def main() -> None:
 
 
 class Reused:
-    """Calls with ``out=`` the result of the call before, as one who reads many captures does."""
+    """Call with ``out=`` the previous result, as a program does that reads many captures."""
 
     def __init__(self, call: Any) -> None:
         self.call = call
         self.last: Scan | Columns | None = None
 
     def __call__(self) -> object:
-        """Once more."""
+        """Call once more."""
         self.last = self.call(out=self.last)
         return self.last
 
 
-def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
-    """Scans and columns of stream A, and of one with 10 % noise."""
+def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
+    """Time scans and columns of stream A, clean and with 10 % noise."""
     line = stream_a(TABLE, frames)
     clean, bad = line.data, noisy(TABLE, line).data
     few = stream_a(TABLE, SLOWEST)
@@ -86,20 +86,20 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         "pymycobot, no port": Timed(peers.pymycobot_reads_memory(few.data), scale=frames / SLOWEST),
     }
     return timed, [
-        Asked("framing scan to offsets", "scan", "memcpy", 1.6),
-        Asked("the same, 10 % noise", "noisy scan", "memcpy of the noisy one", 2.5),
-        Asked("float64 columns, out=", "reused", "memcpy", 6.5),
-        Asked("float64 columns, fresh", "fresh", "memcpy", 8),
-        Asked("float64 columns, fresh", "fresh", "NumPy", 10, faster=True),
-        Asked("float64 columns, fresh", "fresh", "pymycobot", 3000, faster=True),
-        Told("float64 columns, fresh", "fresh", "pymycobot, no port"),
-        Asked("raw columns, out=", "raw", "memcpy", 2.5),
-        Asked("the same, 10 % noise", "noisy raw", "memcpy of the noisy one", 3),
+        Target("framing scan to offsets", "scan", "memcpy", 1.6),
+        Target("the same, 10 % noise", "noisy scan", "memcpy of the noisy one", 2.5),
+        Target("float64 columns, out=", "reused", "memcpy", 6.5),
+        Target("float64 columns, fresh", "fresh", "memcpy", 8),
+        Target("float64 columns, fresh", "fresh", "NumPy", 10, faster=True),
+        Target("float64 columns, fresh", "fresh", "pymycobot", 3000, faster=True),
+        untargeted("float64 columns, fresh", "fresh", "pymycobot, no port"),
+        Target("raw columns, out=", "raw", "memcpy", 2.5),
+        Target("the same, 10 % noise", "noisy raw", "memcpy of the noisy one", 3),
     ]
 
 
-def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
-    """Messages as Python objects."""
+def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
+    """Time messages as Python objects."""
     data = stream_a(TABLE, frames).data
     few = stream_a(TABLE, SLOWEST)
 
@@ -127,17 +127,17 @@ def objects(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         "eager": Timed(eager),
     }
     return timed, [
-        Asked("lazy messages, a list", "list", "find", 35, faster=True),
-        Asked("lazy messages, each value read once", "iterated", "find", 12, faster=True),
-        Asked("lazy messages in 4 KiB chunks", "chunks", "pymycobot", 400, faster=True),
-        Told("lazy messages in 4 KiB chunks", "chunks", "pymycobot, no port"),
-        Asked("eager values, held in a list", "eager", "find", 7, faster=True),
-        Asked("eager values, held in a list", "eager", "pymycobot", 60, faster=True),
+        Target("lazy messages, a list", "list", "find", 35, faster=True),
+        Target("lazy messages, each value read once", "iterated", "find", 12, faster=True),
+        Target("lazy messages in 4 KiB chunks", "chunks", "pymycobot", 400, faster=True),
+        untargeted("lazy messages in 4 KiB chunks", "chunks", "pymycobot, no port"),
+        Target("eager values, held in a list", "eager", "find", 7, faster=True),
+        Target("eager values, held in a list", "eager", "pymycobot", 60, faster=True),
     ]
 
 
 def _frames(codec: Codec, data: bytes) -> Any:
-    """All frames of a buffer, block by block: what is not kept takes no memory."""
+    """Yield all frames of a buffer block by block, so that memory stays small."""
     framer = codec.framer("reply")
     for start in range(0, len(data), 1 << 16):
         for event in framer.feed(data[start : start + (1 << 16)]):
@@ -145,8 +145,8 @@ def _frames(codec: Codec, data: bytes) -> Any:
                 yield event
 
 
-def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
-    """One frame at a time."""
+def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
+    """Time one frame at a time."""
     frame = codec.encode("get_angles", "reply", (ANGLES,))
     framer = codec.framer("reply")
     textbook = peers.FindDecoder(TABLE)
@@ -165,16 +165,16 @@ def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         "pymycobot's building": Timed(peers.pymycobot_send_angles(ANGLES, 30), 1000),
     }
     return timed, [
-        Asked("feed() of one frame, eager", "feed", "find", 7, faster=True),
-        Asked("feed() of one frame, eager", "feed", "pymycobot", 90, faster=True),
-        Asked("feed() of one frame, eager", "feed", "a no-op call", 10),
-        Asked("encode send_angles", "encode", "struct", 8, faster=True),
-        Asked("encode send_angles", "encode", "pymycobot's building", 50, faster=True),
+        Target("feed() of one frame, eager", "feed", "find", 7, faster=True),
+        Target("feed() of one frame, eager", "feed", "pymycobot", 90, faster=True),
+        Target("feed() of one frame, eager", "feed", "a no-op call", 10),
+        Target("encode send_angles", "encode", "struct", 8, faster=True),
+        Target("encode send_angles", "encode", "pymycobot's building", 50, faster=True),
     ]
 
 
-def adversarial(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
-    """64 MiB made to be slow, and half of it."""
+def adversarial(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
+    """Time 64 MiB that are made to be slow, and half of that."""
     longest = TABLE.frame.maximum_length
     header = codec.encode("get_angles", "reply", (ANGLES,))[:4]
     patterns = {
@@ -184,18 +184,18 @@ def adversarial(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked
         "a legal header every 4 bytes": header,
     }
     timed = {"memcpy": Timed(peers.memcpy(bytes(64 * MIB)))}
-    asked = []
+    targets = []
     for name, pattern in patterns.items():
         for size in (64, 32):
             data = pattern * (size * MIB // len(pattern))
             timed[f"{name}, {size}"] = Timed(partial(codec.scan, data))
-        asked.append(Asked(f"64 MiB of {name}", f"{name}, 64", "memcpy", 12))
-        asked.append(Asked("  and twice the input", f"{name}, 64", f"{name}, 32", 2.5))
-    return timed, asked
+        targets.append(Target(f"64 MiB of {name}", f"{name}, 64", "memcpy", 12))
+        targets.append(Target("  and twice the input", f"{name}, 64", f"{name}, 32", 2.5))
+    return timed, targets
 
 
-def threads(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
-    """Two captures in two threads, against one after the other."""
+def threads(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
+    """Time two captures in two threads, against one after another."""
     data = stream_a(TABLE, 4 * frames).data
     out: list[Columns | None] = [None, None]
 
@@ -214,7 +214,7 @@ def threads(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Asked]]:
         read(1)
 
     timed = {"one thread": Timed(in_turn), "two": Timed(together)}
-    return timed, [Asked("two captures in two threads", "two", "one thread", 1.8, faster=True)]
+    return timed, [Target("two captures in two threads", "two", "one thread", 1.8, faster=True)]
 
 
 PARTS = {

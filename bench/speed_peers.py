@@ -1,4 +1,4 @@
-"""The others on the speed bench: memcpy, a textbook decoder, NumPy, pymycobot."""
+"""The peers of the speed bench: memcpy, a textbook decoder, NumPy, pymycobot."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from unittest import mock
 import numpy as np
 import serial
 
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
 from readers import pymycobot_peer
 
 ANGLES, COORDS = 0x20, 0x23
 
 
 def memcpy(data: bytes) -> Callable[[], object]:
-    """Copies the input into memory that is there."""
+    """Return a function that copies the input into allocated memory."""
     source = np.frombuffer(data, np.uint8)
     target = np.empty_like(source)
     return lambda: np.copyto(target, source)
 
 
 class Found(NamedTuple):
-    """What the textbook decoder gives."""
+    """A message that the textbook decoder found."""
 
     offset: int
     name: str
@@ -38,10 +38,10 @@ class Found(NamedTuple):
 
 
 class FindDecoder:
-    """What a careful person writes in Python: ``bytes.find`` and ``struct`` over a kept buffer.
+    """A careful decoder in plain Python: ``bytes.find`` and ``struct`` over a kept buffer.
 
-    It knows the replies by id and LEN, keeps what is not whole, and scans on at the next byte
-    where a candidate fails.
+    It knows the replies by id and LEN, keeps incomplete frames, and continues at the next byte if
+    a candidate fails.
     """
 
     def __init__(self, table: Table) -> None:
@@ -49,15 +49,15 @@ class FindDecoder:
         self.offset = 0
         self.kinds: dict[tuple[int, int], tuple[str, struct.Struct, list[float]]] = {}
         for command in table.commands:
-            for form in command.reply:
-                numbers = [n for part in form.fields for n in part.cases[0].numbers]
+            for variant in command.reply:
+                numbers = [n for part in variant.fields for n in part.cases[0].numbers]
                 codes = "".join({1: "B", 2: "h", 4: "i"}[number.width] for number in numbers)
-                key = command.id, table.frame.length(form.size)
-                scales = [number.divide / number.multiply for number in numbers]
+                key = command.id, table.frame.length(variant.size)
+                scales = [number.steps(1.0) for number in numbers]
                 self.kinds.setdefault(key, (command.name, struct.Struct(">" + codes), scales))
 
     def feed(self, data: bytes) -> list[Found]:
-        """Take bytes; give the messages in them."""
+        """Take bytes and return the messages in them."""
         data = self.buffer + data
         found = []
         at = data.find(b"\xfe\xfe")
@@ -82,10 +82,10 @@ class FindDecoder:
 
 
 def numpy_columns(data: bytes) -> dict[int, tuple[Any, Any]]:
-    """A vectorised scan: offsets and float64 values of angles and coordinates, by id.
+    """Return offsets and float64 values of angles and coordinates by id, from a vectorised scan.
 
-    It takes each place where header, LEN and footer fit for a frame, and so is right only where no
-    frame holds what looks like one; it does not look at any other message.
+    It takes every position with a fitting header, LEN and footer for a frame. So it is right only
+    if no frame contains bytes that look like one. It ignores all other messages.
     """
     bytes_ = np.frombuffer(data, np.uint8)
     starts = np.flatnonzero((bytes_[:-16] == 0xFE) & (bytes_[1:-15] == 0xFE))
@@ -102,10 +102,10 @@ def numpy_columns(data: bytes) -> dict[int, tuple[Any, Any]]:
 
 
 def pymycobot_reads(data: bytes, starts: Sequence[int]) -> Callable[[], list[Any]]:
-    """Pymycobot's own ``_read`` and ``_process_received`` on pyserial, as its users run them.
+    """Return pymycobot's ``_read`` and ``_process_received`` on pyserial, as its users run them.
 
-    The port is a pseudo-terminal that is filled before each 100 frames are read, so that nothing is
-    waited for; to fill it takes one system call.
+    The port is a pseudo-terminal. One system call fills it before each 100 frames, so that no read
+    waits.
     """
     _, peer = pymycobot_peer()
     master, slave = os.openpty()
@@ -126,7 +126,7 @@ def pymycobot_reads(data: bytes, starts: Sequence[int]) -> Callable[[], list[Any
 
 
 def pymycobot_reads_memory(data: bytes) -> Callable[[], list[Any]]:
-    """The same without pyserial: each byte from a list, by the fastest call that there is."""
+    """Return the same without pyserial: each byte comes from a list, by the fastest call."""
     common, peer = pymycobot_peer()
     clock = SimpleNamespace(time=lambda: 0.0)
 
@@ -139,7 +139,7 @@ def pymycobot_reads_memory(data: bytes) -> Callable[[], list[Any]]:
                 try:
                     frame = peer._read(0x20)
                 except StopIteration:
-                    break  # the line is over; to wait for more is not what is timed
+                    break  # end of the stream; waiting for more is not timed
                 found.append(_pymycobot_values(peer, frame))
         return found
 
@@ -151,7 +151,7 @@ def _pymycobot_values(peer: Any, frame: Any) -> Any:
     try:
         words = peer._process_received(frame, id)
     except struct.error:
-        return None  # its users meet this error: some short replies are shorter than it expects
+        return None  # its users see this error: some replies are shorter than it expects
     if id == ANGLES:
         return [peer._int2angle(word) for word in words]
     if id == COORDS:
@@ -160,13 +160,13 @@ def _pymycobot_values(peer: Any, frame: Any) -> Any:
 
 
 def struct_send_angles(angles: list[float], speed: int) -> bytes:
-    """A frame by ``struct`` and ``round``, unchecked."""
+    """Build a frame with ``struct`` and ``round``, without checks."""
     words = [round(angle * 100) for angle in angles]
     return struct.pack(">4B6hBB", 0xFE, 0xFE, 15, 0x22, *words, speed, 0xFA)
 
 
 def pymycobot_send_angles(angles: list[float], speed: int) -> Callable[[], list[int]]:
-    """Pymycobot's building of the frame: its conversion, ``_mesg`` and ``_flatten``; no port."""
+    """Return pymycobot's frame builder: its conversion, ``_mesg`` and ``_flatten``, no port."""
     _, peer = pymycobot_peer()
     from pymycobot import MyCobot280
     from pymycobot.common import ProtocolCode

@@ -1,4 +1,4 @@
-"""What the speed bench prints: ratios of what was timed side by side, beside what is asked."""
+"""Compute and print the ratios of the speed bench beside their targets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Work = Callable[[], object]
 
 @dataclass
 class Timed:
-    """One thing that is timed: seconds a run, one entry a round."""
+    """One thing that is timed, with the seconds a run in each round."""
 
     work: Work
     times_a_round: int = 1
@@ -25,7 +25,7 @@ class Timed:
     seconds: list[float] = field(default_factory=list)
 
     def run(self) -> None:
-        """One round."""
+        """Run one round."""
         work = self.work
         started = time.perf_counter()
         for _ in range(self.times_a_round):
@@ -35,8 +35,8 @@ class Timed:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A ratio asked for: ``ours`` takes at most ``limit`` x ``peer``; or is so much faster."""
+class Target:
+    """A target: ``ours`` takes at most ``limit`` x ``peer``, or is ``limit`` x faster than it."""
 
     row: str
     ours: str
@@ -45,40 +45,40 @@ class Asked:
     faster: bool = False
 
 
-def Told(row: str, ours: str, peer: str) -> Asked:
-    """A ratio that nobody asks for, and that one should know."""
-    return Asked(row, ours, peer, 0, faster=True)
+def untargeted(row: str, ours: str, peer: str) -> Target:
+    """Return a ratio that is shown without a target."""
+    return Target(row, ours, peer, 0, faster=True)
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """A ratio as it was measured: the median over the rounds, each beside its peer's round."""
+    """A measured ratio: the median over the rounds, each against its peer in the same round."""
 
-    asked: Asked
+    target: Target
     measured: float
     ours_seconds: float
 
     @property
     def met(self) -> bool:
-        """Whether it is what was asked for."""
-        if self.asked.faster:
-            return self.measured >= self.asked.limit
-        return self.measured <= self.asked.limit
+        """Whether the ratio meets its target."""
+        if self.target.faster:
+            return self.measured >= self.target.limit
+        return self.measured <= self.target.limit
 
 
 def measure(timed: dict[str, Timed], rounds: int) -> None:
-    """Run everything in turn, again and again, so that a slow moment meets all of it."""
+    """Run everything in turn, round by round, so that a slow moment affects all alike."""
     for each in timed.values():
-        each.work()  # not counted: memory and caches are as they stay
+        each.work()  # not counted: it fills memory and caches
     for _ in range(rounds):
         for each in timed.values():
             each.run()
 
 
-def ratios(timed: dict[str, Timed], asked: Sequence[Asked]) -> list[Ratio]:
-    """The ratios that are asked for."""
+def ratios(timed: dict[str, Timed], targets: Sequence[Target]) -> list[Ratio]:
+    """Return the measured ratio of each target."""
     found = []
-    for each in asked:
+    for each in targets:
         ours, peer = timed[each.ours].seconds, timed[each.peer].seconds
         pairs = [(a, b) for a, b in zip(ours, peer)]
         measured = statistics.median(b / a if each.faster else a / b for a, b in pairs)
@@ -89,21 +89,23 @@ def ratios(timed: dict[str, Timed], asked: Sequence[Asked]) -> list[Ratio]:
 def show(title: str, found: Sequence[Ratio], console: Console) -> None:
     """Print the ratios as a table."""
     table = RichTable(title=title, title_justify="left")
-    for name in ("work", "against", "measured", "asked", "", "ours"):
-        table.add_column(name, justify="right" if name in ("measured", "asked", "ours") else "left")
+    for name in ("work", "against", "measured", "target", "", "ours"):
+        table.add_column(
+            name, justify="right" if name in ("measured", "target", "ours") else "left"
+        )
     for ratio in found:
-        asked = ratio.asked
-        bound = f"{asked.limit:g} x faster" if asked.faster else f"{asked.limit:g} x"
+        target = ratio.target
+        bound = f"{target.limit:g} x faster" if target.faster else f"{target.limit:g} x"
         verdict = "[green]met[/]" if ratio.met else "[red]NOT MET[/]"
-        if not asked.limit:
+        if not target.limit:
             bound, verdict = "", ""
         measured = f"{ratio.measured:,.2f} x"
-        table.add_row(asked.row, asked.peer, measured, bound, verdict, human(ratio.ours_seconds))
+        table.add_row(target.row, target.peer, measured, bound, verdict, human(ratio.ours_seconds))
     console.print(table)
 
 
 def human(seconds: float) -> str:
-    """A time in the unit that fits it."""
+    """Return a time in a fitting unit."""
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
@@ -111,14 +113,14 @@ def human(seconds: float) -> str:
 
 
 def write_json(path: Path, found: Sequence[Ratio]) -> None:
-    """All ratios, for machines."""
+    """Write all ratios as JSON."""
     rows = [
         {
-            "row": ratio.asked.row,
-            "against": ratio.asked.peer,
+            "row": ratio.target.row,
+            "against": ratio.target.peer,
             "measured": ratio.measured,
-            "asked": ratio.asked.limit,
-            "faster": ratio.asked.faster,
+            "target": ratio.target.limit,
+            "faster": ratio.target.faster,
             "met": ratio.met,
             "seconds": ratio.ours_seconds,
         }

@@ -1,4 +1,4 @@
-"""What a client over a link in memory takes of real time, where its own time is stepped."""
+"""Measure the real time that a client needs over a transport in memory, in stepped time."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Callable
 from itertools import islice
 
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
-from cobotwire.sim import MemoryLink, SimulatedArm, SteppedClock
+from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 
 TURNS = 5
 MINUTE_AT_100_HZ = 6001
 
 
 def main() -> None:
-    """Measure each by its fastest turn, and print."""
+    """Measure each by its fastest run, and print it."""
     for name, work in (("a motion that is waited for", _move), ("a minute at 100 Hz", _stream)):
         stepped, real = min((_turn(work) for _ in range(TURNS)), key=lambda turn: turn[1])
         print(f"{name:30} {stepped:6.1f} s of the arm's time in {real * 1e3:6.1f} ms")
@@ -22,7 +22,7 @@ def main() -> None:
 
 def _turn(work: Callable[[MyCobot280], object]) -> tuple[float, float]:
     clock = SteppedClock()
-    arm = MyCobot280(MemoryLink(SimulatedArm(TABLE, clock=clock), clock))
+    arm = MyCobot280(MemoryTransport(SimulatedArm(TABLE, clock=clock), clock))
     arm.power_on()
     began, started = clock(), time.perf_counter()
     work(arm)
@@ -34,7 +34,7 @@ def _move(arm: MyCobot280) -> None:
 
 
 def _stream(arm: MyCobot280) -> None:
-    list(islice(arm.stream("get_angles", rate=100), MINUTE_AT_100_HZ))
+    list(islice(arm.stream(TABLE.request_type("get_angles")(), rate=100), MINUTE_AT_100_HZ))
 
 
 if __name__ == "__main__":

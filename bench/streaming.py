@@ -1,10 +1,10 @@
-"""A day of a stream at 100 Hz in accelerated time: memory flat, none twice, none out of order.
+"""Stream for a day at 100 Hz in accelerated time; check memory, repetition and order.
 
     python bench/streaming.py              about a minute of this machine's time
     python bench/streaming.py --whole-day  all of the day's 8.64 million slots
 
-The line is in memory and owns the clock (tests/accelerated.py); the driver, the session and the
-native codec are those of every call. Some answers are lost, some slow, some come too late.
+The transport is in memory and owns the clock (tests/accelerated.py); client, session and native
+codec are the ordinary ones. Some replies are lost, some slow, some come too late.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from accelerated import Checker, accelerated
 RATE = 100.0
 DAY = 86_400.0
 MINUTE = 50.0
-# What a process may grow between a tenth of the run and its end, in bytes: a page here and there.
+# Bytes that the process may grow between a tenth of the run and its end: some pages.
 GROWTH = 1 << 20
 CHUNK = 1000
 
 
 def main() -> None:
-    """Stream for a minute of ours, or a day of the arm's; print what came and what it took."""
+    """Stream for a minute of real time, or a day of the arm's; print the samples and the cost."""
     bound = None if "--whole-day" in sys.argv[1:] else MINUTE
     started = time.perf_counter()
     early: int | None = None
@@ -40,17 +40,21 @@ def main() -> None:
                 sample = next(stream)
                 reading = sample.readings[0]
                 checker.check(
-                    sample.number, sample.slot, reading.value, reading.asked_at, reading.answered_at
+                    sample.number,
+                    sample.slot,
+                    reading.value,
+                    reading.requested_at,
+                    reading.replied_at,
                 )
             share = (arm.now - begun) / DAY
             spent = time.perf_counter() - started
             if early is None and (share if bound is None else spent / bound) >= 0.1:
                 early = _resident()
         report = stream.report
-    assert early is not None, "a tenth comes before the end"
+    assert early is not None, "a tenth of the run comes before its end"
     grown = _resident() - early
     slots = round((arm.now - begun) * RATE)
-    assert abs(report.slots - slots) <= 1, "every slot is a sample, or missed and counted"
+    assert abs(report.slots - slots) <= 1, "every slot has a sample, or is counted as missed"
     print(
         f"a day at {RATE:.0f} Hz: {share:.1%} of it in {spent:.0f} s, {DAY * share / spent:.0f} x "
         f"real time; none twice, none out of order"
@@ -63,7 +67,7 @@ def main() -> None:
 
 
 def _resident() -> int:
-    """Bytes of this process that are in memory."""
+    """Return the resident memory of this process in bytes."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 

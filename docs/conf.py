@@ -1,4 +1,4 @@
-"""How the docs site is built: ``make docs``. Warnings are errors, and nothing is fetched."""
+"""Configure the docs site (``make docs``): warnings are errors, and nothing is fetched."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ extensions = [
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build"]
 nitpicky = False
-# What names no language is what a program printed, or commands.
+# A block that names no language is program output, or commands.
 highlight_language = "none"
 
 myst_heading_anchors = 4
@@ -28,7 +28,7 @@ autodoc_member_order = "bysource"
 autodoc_class_signature = "separated"
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
-# Or the fields of a tuple would be described twice.
+# Otherwise Sphinx describes the fields of a named tuple twice.
 napoleon_use_ivar = True
 
 html_theme = "furo"
@@ -37,5 +37,5 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_theme_options = {"source_directory": "docs/"}
 html_show_sphinx = False
-# A page says where it comes from; the text itself is in the repository.
+# Each page links to its source in the repository.
 html_copy_source = False

@@ -1,4 +1,4 @@
-"""The asyncio client behind the face of the blocking one, so that one test holds for both."""
+"""Wrap the asyncio client in the blocking client's interface, so that one test covers both."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
-from cobotwire.driver import Driver
-from cobotwire.driver.aio import AsyncDriver
+from cobotwire.client import Client
+from cobotwire.client.aio import AsyncClient
 
 
 class InLoop:
-    """Runs an asyncio client in a loop of its own thread; every call waits for its result."""
+    """Run an asyncio client in the loop of a separate thread; every call waits for its result."""
 
-    def __init__(self, client: type[AsyncDriver], *arguments: Any, **options: Any) -> None:
+    def __init__(self, client: type[AsyncClient], *arguments: Any, **options: Any) -> None:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()
@@ -33,8 +33,8 @@ class InLoop:
             return found
         return lambda *arguments, **options: self._run(found(*arguments, **options))
 
-    def stream(self, *queries: Any, **options: Any) -> _StreamInLoop:
-        return _StreamInLoop(self._run, self.client.stream(*queries, **options))
+    def stream(self, *requests: Any, **options: Any) -> _StreamInLoop:
+        return _StreamInLoop(self._run, self.client.stream(*requests, **options))
 
     def _run(self, work: Any) -> Any:
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()
@@ -58,7 +58,7 @@ class InLoop:
 
 
 class _StreamInLoop:
-    """A stream of an asyncio client, gone through by an ordinary loop."""
+    """A stream of an asyncio client as an ordinary iterator."""
 
     def __init__(self, run: Callable[[Any], Any], stream: Any) -> None:
         self._run = run
@@ -80,8 +80,8 @@ class _StreamInLoop:
 Opener = Callable[..., Any]
 
 
-def openers(blocking: type[Driver], asynchronous: type[AsyncDriver]) -> dict[str, Opener]:
-    """How a test opens an arm in each way; what comes back is used alike."""
+def openers(blocking: type[Client], asynchronous: type[AsyncClient]) -> dict[str, Opener]:
+    """Return functions that open either client; a test uses the results alike."""
 
     def in_loop(*arguments: Any, **options: Any) -> InLoop:
         return InLoop(asynchronous, *arguments, **options)

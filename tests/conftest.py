@@ -1,4 +1,4 @@
-"""What every test may use: the codecs, an arm on a pty, and the profiles of Hypothesis."""
+"""Fixtures that every test may use, and the profiles of Hypothesis."""
 
 from __future__ import annotations
 
@@ -12,49 +12,49 @@ from hypothesis import HealthCheck, settings
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE, MyCobot
-from cobotwire.sim import PtyServer, SimulatedArm
+from cobotwire.simulator import PtyServer, SimulatedArm
 
 settings.register_profile(
     "quick",
     max_examples=100,
-    deadline=None,  # two busy cores: a slow moment is not a failure
+    deadline=None,  # examples are sometimes slow on two busy cores
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.register_profile(
     "deep",
     settings.get_profile("quick"),
-    # `make fuzz` takes as many as its time allows (deep.py).
+    # `make fuzz` sets as many as its time allows (deep.py).
     max_examples=int(os.environ.get("HYPOTHESIS_EXAMPLES", "20000")),
 )
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "quick"))
 
 
 def pytest_configure() -> None:
-    """Ctrl-C works in tests, and in what they start, even where a shell started us without it."""
+    """Restore Ctrl-C in tests and their subprocesses; a background shell may have disabled it."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(params=["reference", "native"])
 def codec(request: pytest.FixtureRequest) -> Codec:
-    """Runs the test on both codecs. A missing binary is a failure, not a skip."""
+    """Run the test on both codecs. A missing binary is a failure, not a skip."""
     return codecs.load(TABLE, request.param)
 
 
 @pytest.fixture
 def simulated() -> SimulatedArm:
-    """A simulated arm, switched off."""
+    """Return a simulated arm that is switched off."""
     return SimulatedArm(TABLE)
 
 
 @pytest.fixture
 def server(simulated: SimulatedArm) -> Iterator[PtyServer]:
-    """The simulated arm on a real pseudo-terminal."""
+    """Serve the simulated arm on a real pseudo-terminal."""
     with PtyServer(simulated) as serving:
         yield serving
 
 
 @pytest.fixture
 def arm(server: PtyServer) -> Iterator[MyCobot]:
-    """The generated client, connected to the simulated arm through pyserial."""
+    """Connect the generated client to the simulated arm through pyserial."""
     with MyCobot(server.url) as client:
         yield client

@@ -1,4 +1,4 @@
-"""``cobotwire decode`` as another process, and a capture for it."""
+"""Run ``cobotwire decode`` in another process, and write a capture for it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from cobotwire.sim.faults import noise
+from cobotwire.simulator.faults import noise
 from diagnosing import ANGLES, FRAME, READ
 
 COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "decode"]
@@ -22,7 +22,7 @@ def run(*words: str, stdin: bytes = b"", cwd: Path | None = None) -> tuple[int, 
 
 
 def capture_in(folder: Path) -> str:
-    """A file with a bit of everything; its path."""
+    """Write a file with frames and all kinds of noise; return its path."""
     path = folder / "capture.bin"
     path.write_bytes(FIELD)
     return str(path)

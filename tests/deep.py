@@ -1,7 +1,7 @@
-"""Runs the property tests of the codecs for a while: ``python tests/deep.py SECONDS``.
+"""Run the property tests of the codecs for some time: ``python tests/deep.py SECONDS``.
 
-Hypothesis is bounded by a number of examples, not by time. So a round measures how long a number
-takes, and the next one takes as many as fit into what is left.
+Hypothesis takes a number of examples, not a time. So each round measures how long its examples
+take, and the next round takes as many as fit into the remaining time.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 FIRST = 25
-# A round that would be smaller than the first finds nothing new; one that is planned to the last
-# second is late.
+# A round smaller than the first finds nothing new, so none is started. Only a share of the
+# remaining time is planned, because a round planned to the last second would end late.
 SHARE = 0.8
 
 
 def main(seconds: float) -> int:
-    """Rounds until the time is over, or something is found; 1 then."""
+    """Run rounds until the time is over or a property fails. Return 1 if one failed."""
     started = time.monotonic()
     examples, rounds, passed = FIRST, 0, 0
     while True:
@@ -42,9 +42,9 @@ def main(seconds: float) -> int:
 
 
 def _round(examples: int) -> tuple[int, int]:
-    """Pytest's status, and how many examples held."""
+    """Run pytest once. Return its status and the number of examples that passed."""
     command = [sys.executable, "-m", "pytest", "-q", "-m", "hypothesis", "tests/codec"]
-    done = subprocess.run(  # our own program
+    done = subprocess.run(  # trusted: our own tests
         [*command, "--hypothesis-show-statistics"],
         cwd=ROOT,
         env={

@@ -1,10 +1,10 @@
-"""Bytes through a framer and its diagnosis, and what a real line carries (field notes)."""
+"""Diagnose bytes, and name the packets that real lines carry (field notes)."""
 
 from __future__ import annotations
 
 from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.diagnose import Diagnoser, Item
-from cobotwire.sim.faults import noise
+from cobotwire.simulator.faults import noise
 
 READ = bytes.fromhex("ff ff 01 04 02 38 02 be")
 STATUS = bytes.fromhex("ff ff 01 04 00 ff 07 f4")
@@ -31,5 +31,5 @@ def only(codec: Codec, data: bytes, listening: Listening = "reply") -> Item:
 
 
 def kinds(items: list[Item]) -> list[type]:
-    """What each is; frames of either codec are frames."""
+    """Return the type of each item; frames of either codec are ``Frame``."""
     return [Frame if isinstance(item, Frame) else type(item) for item in items]

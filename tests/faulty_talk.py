@@ -1,4 +1,4 @@
-"""What is said to a faulty peer in memory, and what comes back when, in stepped time."""
+"""Send requests to a faulty peer in memory, and record its replies, in stepped time."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim import SimulatedArm
-from cobotwire.sim.clock import SteppedClock
-from cobotwire.sim.faults import Done, Fault, Scenario
-from cobotwire.sim.peer import Peer
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.faults import AppliedFault, Fault, Scenario
+from cobotwire.simulator.peer import Peer
 
 CODEC = codecs.load(TABLE)
 IS_POWERED = bytes.fromhex("FE FE 02 12 FA")
@@ -19,15 +19,15 @@ POWER_ON = bytes.fromhex("FE FE 02 10 FA")
 ACK = bytes.fromhex("FE FE 03 10 01 FA")
 GET_ANGLES = bytes.fromhex("FE FE 02 20 FA")
 ZEROS = bytes.fromhex("FE FE 0E 20") + bytes(12) + b"\xfa"
-# What the longest fault of the tests has said by then.
+# After these seconds, the longest fault of the tests has sent everything.
 LONG = 30.0
 
 
 class Tapped:
-    """A peer that notes each thing that it says."""
+    """A peer that records the bytes it sends."""
 
     def __init__(self, peer: Peer, restart: Callable[[], None]) -> None:
-        self.said: list[bytes] = []
+        self.sent: list[bytes] = []
         self.restart = restart
         self._peer = peer
 
@@ -42,20 +42,20 @@ class Tapped:
         return self._noted(self._peer.flush())
 
     def _noted(self, data: bytes) -> bytes:
-        self.said += [data] if data else []
+        self.sent += [data] if data else []
         return data
 
 
 class Talk(NamedTuple):
-    """All that came back, with its time; what was done; what the arm had said."""
+    """The received bytes with their times, the applied faults, and the bytes that the arm sent."""
 
-    heard: list[tuple[float, bytes]]
-    done: list[Done]
-    said: list[bytes]
+    received: list[tuple[float, bytes]]
+    applied: list[AppliedFault]
+    sent: list[bytes]
 
     @property
     def data(self) -> bytes:
-        return b"".join(data for _, data in self.heard)
+        return b"".join(data for _, data in self.received)
 
 
 def talk(
@@ -65,30 +65,33 @@ def talk(
     seed: int = 0,
     size: int | None = None,
 ) -> Talk:
-    """Say bytes, wait seconds; ``size``: the bytes come in pieces of that size, at one time."""
+    """Send each item of bytes, wait each number of seconds.
+
+    With ``size``, bytes are sent in pieces of that size, at the same time.
+    """
     clock = SteppedClock()
-    done: list[Done] = []
+    applied: list[AppliedFault] = []
     arm = SimulatedArm(TABLE, clock=clock)
     tapped = Tapped(arm, arm.restart)
     scenario = Scenario(name="test", faults=tuple(faults), seed=seed)
-    peer = scenario.wrap(tapped, CODEC, clock=clock, watch=done.append)
-    heard: list[tuple[float, bytes]] = []
+    peer = scenario.wrap(tapped, CODEC, clock=clock, on_fault=applied.append)
+    received: list[tuple[float, bytes]] = []
     for step in (*requests, LONG):
         if isinstance(step, float):
-            pass_time(peer, clock, step, heard)
+            pass_time(peer, clock, step, received)
             continue
         pieces = (
             [step] if size is None else [step[at : at + size] for at in range(0, len(step), size)]
         )
         for piece in pieces:
-            _note(heard, clock(), peer.receive(piece))
-    return Talk(heard, done, tapped.said)
+            _note(received, clock(), peer.receive(piece))
+    return Talk(received, applied, tapped.sent)
 
 
 def pass_time(
-    peer: Peer, clock: SteppedClock, seconds: float, heard: list[tuple[float, bytes]]
+    peer: Peer, clock: SteppedClock, seconds: float, received: list[tuple[float, bytes]]
 ) -> None:
-    """Wake the peer whenever it wants to be woken."""
+    """Let time pass; flush the peer whenever it is due."""
     until = clock() + seconds
     for _ in range(100_000):
         wait = peer.wait
@@ -96,14 +99,14 @@ def pass_time(
             clock.sleep(until - clock())
             return
         clock.sleep(wait)
-        _note(heard, clock(), peer.flush())
-    raise AssertionError("the peer wants to be woken for ever")
+        _note(received, clock(), peer.flush())
+    raise AssertionError("the peer never stops asking for a flush")
 
 
-def _note(heard: list[tuple[float, bytes]], now: float, data: bytes) -> None:
+def _note(received: list[tuple[float, bytes]], now: float, data: bytes) -> None:
     if not data:
         return
-    if heard and heard[-1][0] == now:
-        heard[-1] = (now, heard[-1][1] + data)
+    if received and received[-1][0] == now:
+        received[-1] = (now, received[-1][1] + data)
     else:
-        heard.append((now, data))
+        received.append((now, data))

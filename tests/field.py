@@ -1,4 +1,4 @@
-"""Strategies of what the field's lines carry: servo leaks, firmware text, reboots, damage."""
+"""Generate the noise of real serial lines: servo leaks, firmware text, reboots, damage."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from hypothesis import strategies as st
 
 import strategies
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.sim.faults.noise import COMMAND_ERROR, PANIC, servo_packet
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
+from cobotwire.simulator.faults.noise import COMMAND_ERROR, PANIC, servo_packet
 
 
 def servo_packets() -> st.SearchStrategy[bytes]:
-    """A servo packet with a right checksum."""
+    """Generate a servo packet with a right checksum."""
     codes = st.sampled_from([0, 1, 2, 3, 4, 5, 0x20, 0x82, 0x83]) | st.integers(0, 255)
     return st.builds(
         lambda id, code, rest: servo_packet(bytes([id, len(rest) + 2, code]) + rest),
@@ -21,8 +21,8 @@ def servo_packets() -> st.SearchStrategy[bytes]:
     )
 
 
-def spoilt_panics() -> st.SearchStrategy[bytes]:
-    """A panic with some bytes in its middle that are no text."""
+def damaged_panics() -> st.SearchStrategy[bytes]:
+    """Generate a panic dump with some bytes in its middle that are not text."""
     return st.builds(
         lambda cut, bad: PANIC[:cut] + bad + PANIC[cut:],
         st.integers(21, len(PANIC)),
@@ -31,7 +31,7 @@ def spoilt_panics() -> st.SearchStrategy[bytes]:
 
 
 def damaged_replies() -> st.SearchStrategy[bytes]:
-    """The beginning of a get_angles reply, with or without a footer at the wrong place."""
+    """Generate the start of a get_angles reply, with or without a footer at the wrong place."""
     return st.builds(
         lambda size, footer: (b"\xfe\xfe\x0e\x20" + bytes(range(16)))[:size] + footer,
         st.integers(1, 19),
@@ -40,7 +40,7 @@ def damaged_replies() -> st.SearchStrategy[bytes]:
 
 
 def noise() -> st.SearchStrategy[bytes]:
-    """What firmware, servos and bad lines say, whole or broken off, short and long."""
+    """Generate noise of firmware, servos and bad lines, complete or cut, short and long."""
     whole = st.one_of(
         servo_packets(),
         st.sampled_from(
@@ -50,11 +50,11 @@ def noise() -> st.SearchStrategy[bytes]:
         st.integers(1, 3000).map(lambda size: b"~" * size),
         st.binary(max_size=300),
         strategies.line_noise(),
-        spoilt_panics(),
-        # A message at a line's limit, and right behind a frame that breaks off.
+        damaged_panics(),
+        # A message at the limit of a line, and directly after a truncated frame.
         st.integers(1000, 1050).map(lambda size: b"x" * size + b"cmd_len error"),
         st.builds(
-            lambda parts, behind: b"".join(parts) + behind,
+            lambda parts, after: b"".join(parts) + after,
             st.lists(damaged_replies(), min_size=1, max_size=4),
             st.sampled_from([b"", b"cmd_len error\r\n", PANIC]) | servo_packets(),
         ),
@@ -66,7 +66,7 @@ def noise() -> st.SearchStrategy[bytes]:
 
 @st.composite
 def streams(draw: st.DrawFn, table: Table = TABLE) -> bytes:
-    """Frames and field noise; sometimes a frame stands in the middle of a piece of noise."""
+    """Generate frames and noise; sometimes a frame interrupts a piece of noise."""
     stream = b""
     pieces = noise() | strategies.real_frames(table) | strategies.near_frames(table)
     for piece in draw(st.lists(pieces, max_size=6)):

@@ -1,4 +1,4 @@
-"""The tables of what no edition has, as the Rust tests read them: ``rust/core/tests/samples``."""
+"""Load the sample tables with features that no edition has, from ``rust/core/tests/samples``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
-from cobotwire.table import Case, Command, Field, FrameFormat, Layout, Number, Table
+from cobotwire.protocol.table import Case, Command, Field, FrameFormat, Number, Table, Variant
 from strategies import TABLES
 from vectors import ROOT
 
@@ -17,17 +17,17 @@ SAMPLES = ROOT / "rust" / "core" / "tests" / "samples"
 
 @lru_cache
 def codec_of(name: str, kind: codecs.CodecName) -> Codec:
-    """One codec of an edition or of a sample, made once."""
+    """Return a codec of an edition or of a sample; it is made once."""
     return codecs.load(TABLES.get(name) or sample(name), kind)
 
 
 def sample(name: str) -> Table:
-    """The table of a sample."""
+    """Return the table of a sample."""
     return table_of(json.loads((SAMPLES / f"{name}.json").read_text())["table"])
 
 
 def table_of(record: dict[str, Any]) -> Table:
-    """The table that plain data describes."""
+    """Return the table that plain data describes."""
     frame = record["frame"]
     format = FrameFormat(
         bytes(frame["header"]),
@@ -42,12 +42,12 @@ def table_of(record: dict[str, Any]) -> Table:
 
 
 def _command(record: dict[str, Any]) -> Command:
-    forms = {way: tuple(map(_layout, record.get(way, ()))) for way in ("request", "reply")}
-    return Command(**{**record, **forms, "notes": tuple(record.get("notes", ()))})
+    variants = {way: tuple(map(_variant, record.get(way, ()))) for way in ("request", "reply")}
+    return Command(**{**record, **variants, "notes": tuple(record.get("notes", ()))})
 
 
-def _layout(record: dict[str, Any]) -> Layout:
-    return Layout(tuple(map(_field, record["fields"])))
+def _variant(record: dict[str, Any]) -> Variant:
+    return Variant(tuple(map(_field, record["fields"])))
 
 
 def _field(record: dict[str, Any]) -> Field:

@@ -1,4 +1,4 @@
-"""Random protocols: every part of the spec's language, in any mixture that the checker takes."""
+"""Random protocols: every part of the spec's language, in any mixture that the checker accepts."""
 
 from __future__ import annotations
 
@@ -11,17 +11,26 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.model import Command, Edition, Enum, Field, Flag, Form, Quantity, Type
+from cobotwire_codegen.model import (
+    Command,
+    Edition,
+    Enum,
+    Field,
+    Flag,
+    Quantity,
+    Type,
+    Variant,
+)
 from cobotwire_codegen.wire import build_frame
 
-# Scales whose multiples are finite decimals, so that a vector can say them exactly.
+# Scales with finite decimals as multiples, so that a vector can state them exactly.
 SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
 UNITS = ["degree", "millimetre", "percent", "volt"]
 
 
 @st.composite
 def frames(draw: st.DrawFn) -> dict[str, Any]:
-    """One of the maker's three frame variants."""
+    """Draw one of the maker's three frame formats."""
     check = draw(st.sampled_from(["footer", "crc16-modbus", "sum"]))
     frame: dict[str, Any] = {"header": "FE FE", "maximum_data": 60, "doc": "A frame."}
     if check == "footer":
@@ -33,12 +42,12 @@ def frames(draw: st.DrawFn) -> dict[str, Any]:
     if draw(st.booleans()):
         values = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
         frame["addresses"] = {f"A{v}": {"value": v, "doc": "An arm."} for v in values}
-    return {"frame": frame, "link": {"baudrate": 115200, "deadline_ms": 500}}
+    return {"frame": frame, "transport": {"baudrate": 115200, "deadline_ms": 500}}
 
 
 @st.composite
 def types(draw: st.DrawFn) -> dict[str, Any]:
-    """Wire types, quantities, flags, enums and values."""
+    """Draw wire types, quantities, flags, enums and values."""
     wires: dict[str, Any] = {"byte": {"bytes": 1, "doc": "A byte."}}
     for index in range(draw(st.integers(1, 3))):
         width = draw(st.integers(1, 4))
@@ -75,7 +84,7 @@ def types(draw: st.DrawFn) -> dict[str, Any]:
 
 @st.composite
 def quantity(draw: st.DrawFn, wires: dict[str, Any]) -> dict[str, Any]:
-    """A quantity on one of the wire types, with or without a range or choices."""
+    """Draw a quantity on one of the wire types, with or without a range or choices."""
     name = draw(st.sampled_from(sorted(wires)))
     wire = wires[name]
     top = 256 ** wire["bytes"] - 1
@@ -95,7 +104,7 @@ def quantity(draw: st.DrawFn, wires: dict[str, Any]) -> dict[str, Any]:
 
 
 def decimal(exact: Fraction) -> Any:
-    """A number that YAML says exactly."""
+    """Return a number that YAML represents exactly."""
     if exact.denominator == 1:
         return int(exact)
     return float(Decimal(exact.numerator) / Decimal(exact.denominator))
@@ -103,32 +112,32 @@ def decimal(exact: Fraction) -> Any:
 
 @st.composite
 def commands(draw: st.DrawFn) -> dict[str, Any]:
-    """Some commands; each has an id of its own, so that no two can be confused."""
+    """Draw some commands; each has its own id, so that no two can be confused."""
     kinds = st.sampled_from(["joint", "q0", "q1", "flag", "mode", "row"])
     ids = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
     made: dict[str, Any] = {}
     for index, id in enumerate(ids):
         fields: list[dict[str, Any]] = [
-            {"name": f"f{position}", "is": draw(kinds)}
+            {"name": f"f{position}", "type": draw(kinds)}
             for position in range(draw(st.integers(0, 3)))
         ]
         if draw(st.booleans()):
-            cases = {str(n): {"is": draw(st.sampled_from(["q0", "q0"]))} for n in (1, 2, 3)}
-            fields += [{"name": "chosen", "by": "number", "cases": cases}]
-            fields += [{"name": "number", "is": "joint"}]
+            cases = {str(n): {"type": draw(st.sampled_from(["q0", "q0"]))} for n in (1, 2, 3)}
+            fields += [{"name": "chosen", "selector": "number", "cases": cases}]
+            fields += [{"name": "number", "type": "joint"}]
         if draw(st.booleans()):
-            fields.insert(0, {"name": "always", "is": "flag", "const": 1})
+            fields.insert(0, {"name": "always", "type": "flag", "const": 1})
         if draw(st.booleans()):
-            fields.append({"name": "extra", "is": draw(kinds), "optional": True})
+            fields.append({"name": "extra", "type": draw(kinds), "optional": True})
         command = {"id": id, "title": "A call", "doc": "Does it.", "safety": "setting"}
         if fields:
             command["request"] = fields
         if draw(st.booleans()):
             command["safety"] = "query"
-            reply: list[dict[str, Any]] = [{"name": "answer", "is": draw(kinds)}]
-            if any(field == {"name": "f0", "is": "joint"} for field in fields):
+            reply: list[dict[str, Any]] = [{"name": "answer", "type": draw(kinds)}]
+            if any(field == {"name": "f0", "type": "joint"} for field in fields):
                 echo = draw(st.sampled_from(["required", "optional"]))
-                reply.insert(0, {"name": "f0", "is": "joint", "echo": echo})
+                reply.insert(0, {"name": "f0", "type": "joint", "echo": echo})
             command["reply"] = reply
         made[f"call{index}"] = command
     return made
@@ -136,7 +145,7 @@ def commands(draw: st.DrawFn) -> dict[str, Any]:
 
 @st.composite
 def specs(draw: st.DrawFn, folder: Path, name: str = "rnd") -> tuple[Path, Edition]:
-    """A whole protocol as one YAML file, with a vector for each form; and its model."""
+    """Draw a whole protocol as one YAML file, with a vector for each variant; return its model."""
     data: dict[str, Any] = {
         "edition": name,
         "class": "Rnd",
@@ -154,8 +163,8 @@ def specs(draw: st.DrawFn, folder: Path, name: str = "rnd") -> tuple[Path, Editi
         vector
         for command in edition.commands
         for direction in ("request", "reply")
-        for form in command.forms("request" if direction == "request" else "reply")
-        for vector in [draw(vectors(edition, command, direction, form))]
+        for variant in command.variants("request" if direction == "request" else "reply")
+        for vector in [draw(vectors(edition, command, direction, variant))]
     ]
     _write(path, data)
     return path, build_edition(path, folder)
@@ -170,25 +179,25 @@ def _write(path: Path, data: dict[str, Any]) -> None:
 
 @st.composite
 def vectors(
-    draw: st.DrawFn, edition: Edition, command: Command, direction: Any, form: Form
+    draw: st.DrawFn, edition: Edition, command: Command, direction: Any, variant: Variant
 ) -> dict[str, Any]:
-    """A vector for a form, its frame built by the generator's exact encoder."""
+    """Draw a vector for a variant; the generator's exact encoder builds its frame."""
     values: dict[str, Any] = {}
-    for field in form:
-        if not field.by:
+    for field in variant:
+        if not field.selector:
             values[field.name] = draw(_value(field, field.type))
-    for field in form:
-        if field.by:
+    for field in variant:
+        if field.selector:
             cases = {member.name: type for member, type in field.cases}
-            values[field.name] = draw(_value(field, cases[str(values[field.by])]))
-    exact = {field.name: values[field.name] for field in form}
+            values[field.name] = draw(_value(field, cases[str(values[field.selector])]))
+    exact = {field.name: values[field.name] for field in variant}
     frame = build_frame(edition.frame, command, direction, exact)
     return {
-        "name": f"{command.name} {direction} {len(form)}",
+        "name": f"{command.name} {direction} {len(variant)}",
         "command": command.name,
         "direction": direction,
         "frame": frame.hex(" "),
-        "values": {key: _said(value) for key, value in exact.items()},
+        "values": {key: _as_text(value) for key, value in exact.items()},
     }
 
 
@@ -211,7 +220,7 @@ def _number(type: Quantity) -> st.SearchStrategy[Fraction]:
     return st.integers(lowest, highest).map(lambda steps: steps * type.scale)
 
 
-def _said(value: Any) -> Any:
+def _as_text(value: Any) -> Any:
     if isinstance(value, tuple):
-        return [_said(item) for item in value]
+        return [_as_text(item) for item in value]
     return decimal(value) if isinstance(value, Fraction) else value

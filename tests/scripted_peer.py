@@ -1,4 +1,4 @@
-"""A scripted peer on a real pseudo-terminal or over real TCP: it says what the test tells it to."""
+"""A scripted peer on a real pseudo-terminal or over real TCP."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Step = bytes | float | None
 
 
 class _Peer:
-    """Waits for a request, then plays its script: bytes are sent, numbers slept, None unplugs."""
+    """Wait for a request, then play a script: send bytes, sleep for numbers, unplug at None."""
 
     url: str
 
     def __init__(self, *scripts: Sequence[Step]) -> None:
-        self.heard = b""
+        self.received = b""
         self._scripts = scripts
         self._stop = False
         self._thread = threading.Thread(target=self._play, daemon=True)
@@ -42,22 +42,22 @@ class _Peer:
         self.unplug()
 
     def unplug(self) -> None:
-        """Whoever has the port open hears that it is gone."""
+        """Disconnect the port from the programs that have it open."""
         raise NotImplementedError
 
-    def say(self, data: bytes) -> None:
+    def send(self, data: bytes) -> None:
         """Send bytes now."""
         raise NotImplementedError
 
-    def _hear(self) -> bytes:
-        """What has come; nothing after 20 ms without."""
+    def _receive(self) -> bytes:
+        """Return the received bytes; empty if none arrive within 20 ms."""
         raise NotImplementedError
 
     def _play(self) -> None:
         scripts = list(self._scripts)
         while not self._stop:
-            data = self._hear()
-            self.heard += data
+            data = self._receive()
+            self.received += data
             if not data:
                 continue
             for step in scripts.pop(0) if scripts else ():
@@ -65,13 +65,13 @@ class _Peer:
                     self.unplug()
                     return
                 if isinstance(step, bytes):
-                    self.say(step)
+                    self.send(step)
                 else:
                     time.sleep(step)
 
 
 class ScriptedPeer(_Peer):
-    """On a pseudo-terminal."""
+    """A scripted peer on a pseudo-terminal."""
 
     def __init__(self, *scripts: Sequence[Step]) -> None:
         super().__init__(*scripts)
@@ -86,17 +86,17 @@ class ScriptedPeer(_Peer):
                 os.close(descriptor)
         self._master = self._slave = -1
 
-    def say(self, data: bytes) -> None:
+    def send(self, data: bytes) -> None:
         """Send bytes now."""
         os.write(self._master, data)
 
-    def _hear(self) -> bytes:
+    def _receive(self) -> bytes:
         ready, _, _ = select.select([self._master], [], [], 0.02)
         return os.read(self._master, 4096) if ready else b""
 
 
 class ScriptedTcpPeer(_Peer):
-    """Over TCP, for one client; each step of bytes is a packet of its own."""
+    """A scripted peer over TCP, for one client; each step of bytes is a separate packet."""
 
     def __init__(self, *scripts: Sequence[Step]) -> None:
         super().__init__(*scripts)
@@ -106,18 +106,18 @@ class ScriptedTcpPeer(_Peer):
         self.url = f"socket://127.0.0.1:{self._listening.getsockname()[1]}"
 
     def unplug(self) -> None:
-        """Close the connection, and listen no more."""
+        """Close the connection, and stop listening."""
         if self._connection is not None:
             self._connection.close()
         self._listening.close()
 
-    def say(self, data: bytes) -> None:
+    def send(self, data: bytes) -> None:
         """Send bytes now."""
         assert self._connection is not None
         with suppress(BrokenPipeError, ConnectionResetError):
             self._connection.sendall(data)
 
-    def _hear(self) -> bytes:
+    def _receive(self) -> bytes:
         with suppress(TimeoutError, ConnectionResetError):
             if self._connection is None:
                 self._connection, _ = self._listening.accept()

@@ -1,4 +1,4 @@
-"""Every Hypothesis strategy, made from an edition's own table; left out: from ``mycobot``'s."""
+"""Hypothesis strategies made from an edition's table, by default from that of ``mycobot``."""
 
 from __future__ import annotations
 
@@ -7,62 +7,58 @@ from typing import Any, NamedTuple
 
 from hypothesis import strategies as st
 
-import line
+import noisy_lines
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
-from cobotwire.table import Case, Command, Direction, Field, Layout, Number, Table
+from cobotwire.protocol.table import Case, Command, Direction, Field, Number, Table, Variant
 
 TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
 
 
-class Form(NamedTuple):
-    """One form of one message; ``number`` tells it from the command's others."""
+class CommandVariant(NamedTuple):
+    """One variant of one message; ``number`` is its index among the command's variants."""
 
     command: Command
     direction: Direction
-    layout: Layout
+    variant: Variant
     number: int
 
 
-def forms_of(table: Table) -> list[Form]:
-    """Every form of every message of an edition."""
+def variants_of(table: Table) -> list[CommandVariant]:
+    """Return every variant of every message of an edition."""
     return [
-        Form(command, direction, layout, index)
+        CommandVariant(command, direction, variant, index)
         for command in table.commands
         for direction in ("request", "reply")
-        for index, layout in enumerate(command.layouts(direction))
+        for index, variant in enumerate(command.variants(direction))
     ]
 
 
-FORMS = forms_of(TABLE)
+VARIANTS = variants_of(TABLE)
 
 
 @lru_cache
 def codec_of(edition: str, name: codecs.CodecName) -> Codec:
-    """One codec of an edition, made once."""
+    """Return a codec of an edition; it is made once."""
     return codecs.load(TABLES[edition], name)
 
 
-def forms(table: Table = TABLE) -> st.SearchStrategy[Form]:
-    """Any form of any message of the edition."""
-    return st.sampled_from(FORMS if table is TABLE else forms_of(table))
+def variants(table: Table = TABLE) -> st.SearchStrategy[CommandVariant]:
+    """Draw any variant of any message of the edition."""
+    return st.sampled_from(VARIANTS if table is TABLE else variants_of(table))
 
 
-def _whole(field: Field, number: Number) -> st.SearchStrategy[int]:
+def _raw(field: Field, number: Number) -> st.SearchStrategy[int]:
     if field.choices:
         return st.sampled_from(field.choices)
     return st.integers(number.minimum, number.maximum)
 
 
 def _value(field: Field, number: Number) -> st.SearchStrategy[Any]:
-    whole = _whole(field, number)
-    if field.kind == "flag":
-        return whole.map(bool)
-    if number.scaled:
-        return whole.map(lambda steps: steps * number.multiply / number.divide)
-    return whole
+    raw = _raw(field, number)
+    return raw.map(bool) if field.kind == "flag" else raw.map(number.physical)
 
 
 def _of_case(field: Field, case: Case) -> st.SearchStrategy[Any]:
@@ -71,27 +67,27 @@ def _of_case(field: Field, case: Case) -> st.SearchStrategy[Any]:
 
 
 @st.composite
-def legal_values(draw: st.DrawFn, layout: Layout) -> tuple[Any, ...]:
-    """Values that the layout allows, each on a step of its scale."""
+def legal_values(draw: st.DrawFn, variant: Variant) -> tuple[Any, ...]:
+    """Draw values that the variant allows, each on a step of its scale."""
     values: list[Any] = [
         draw(_of_case(field, field.cases[0])) if field.selector < 0 else None
-        for field in layout.fields
+        for field in variant.fields
     ]
-    for index, field in enumerate(layout.fields):
+    for index, field in enumerate(variant.fields):
         if field.selector >= 0:
-            picked = values[field.selector]
-            case = next(case for case in field.cases if picked in case.when)
-            values[index] = draw(_of_case(field, case))
+            values[index] = draw(_of_case(field, variant.case(field, values)))
     return tuple(values)
 
 
-def messages(table: Table = TABLE) -> st.SearchStrategy[tuple[Form, tuple[Any, ...]]]:
-    """Any legal message: its form and its values."""
-    return forms(table).flatmap(lambda form: st.tuples(st.just(form), legal_values(form.layout)))
+def messages(table: Table = TABLE) -> st.SearchStrategy[tuple[CommandVariant, tuple[Any, ...]]]:
+    """Draw any legal message: its variant and its values."""
+    return variants(table).flatmap(
+        lambda variant: st.tuples(st.just(variant), legal_values(variant.variant))
+    )
 
 
 def odd_values() -> st.SearchStrategy[Any]:
-    """Values of all kinds, most of which no field allows."""
+    """Draw values of all kinds; no field allows most of them."""
     scalars = st.one_of(
         st.floats(),
         st.integers(),
@@ -111,16 +107,16 @@ def odd_values() -> st.SearchStrategy[Any]:
 
 @st.composite
 def any_arguments(draw: st.DrawFn, table: Table = TABLE) -> tuple[str, Direction, tuple[Any, ...]]:
-    """A message with values of which some, or all, or none, are allowed."""
-    form, values = draw(messages(table))
+    """Draw a message with any mixture of legal and illegal values."""
+    variant, values = draw(messages(table))
     spoilt = [draw(odd_values()) if draw(st.integers(0, 3)) == 0 else value for value in values]
     if draw(st.integers(0, 9)) == 0:
         spoilt.append(draw(odd_values()))
-    return form.command.name, form.direction, tuple(spoilt)
+    return variant.command.name, variant.direction, tuple(spoilt)
 
 
 def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
-    """What looks like a frame for some bytes, and is none or is one by chance."""
+    """Draw bytes that begin like a frame, and are a legal frame only by chance."""
     longest = table.frame.maximum_length
     lengths = st.integers(0, longest + 4)
     ids = st.sampled_from([command.id for command in table.commands]) | st.integers(0, 255)
@@ -133,41 +129,43 @@ def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
 
 
 def real_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
-    """A legal frame, built by the reference codec."""
+    """Draw a legal frame, built by the reference codec."""
     codec = codec_of(table.edition, "reference")
     return messages(table).map(lambda message: frame_of(codec, *message))
 
 
-def frame_of(codec: Codec, form: Form, values: tuple[Any, ...]) -> bytes:
-    """The frame of a message, in just that form."""
-    return codec.encode(form.command.name, form.direction, values, form=form.number)
+def frame_of(codec: Codec, variant: CommandVariant, values: tuple[Any, ...]) -> bytes:
+    """Return the frame of a message in exactly this variant."""
+    return codec.encode(variant.command.name, variant.direction, values, variant=variant.number)
 
 
 def line_noise(table: Table = TABLE) -> st.SearchStrategy[bytes]:
-    """Noise as a line carries it: servo packets, text, NULs, half headers, and anything."""
-    return line.line_noise(table)
+    """Draw realistic noise: servo packets, text, NULs, half headers, and any bytes."""
+    return noisy_lines.line_noise(table)
 
 
-def received(table: Table, listening: Listening) -> st.SearchStrategy[line.Received]:
-    """Frames of what is listened to as they come in over a bad line, and which came whole."""
+def received(table: Table, listening: Listening) -> st.SearchStrategy[noisy_lines.Received]:
+    """Draw frames received over a bad line, and which of them arrive undamaged."""
     codec = codec_of(table.edition, "reference")
-    heard = [form for form in forms_of(table) if listening in (form.direction, "both")]
+    expected = [
+        variant for variant in variants_of(table) if listening in (variant.direction, "both")
+    ]
     frames = (
-        st.sampled_from(heard)
-        .flatmap(lambda form: st.tuples(st.just(form), legal_values(form.layout)))
+        st.sampled_from(expected)
+        .flatmap(lambda variant: st.tuples(st.just(variant), legal_values(variant.variant)))
         .map(lambda message: frame_of(codec, *message))
     )
-    return line.received(frames, table)
+    return noisy_lines.received(frames, table)
 
 
 def streams(table: Table = TABLE) -> st.SearchStrategy[bytes]:
-    """What may stand on a line: frames, near frames and noise in any order."""
+    """Draw the bytes of a line: frames, near frames and noise in any order."""
     pieces = st.one_of(real_frames(table), near_frames(table), line_noise(table))
     return st.lists(pieces, max_size=8).map(b"".join)
 
 
 @st.composite
 def chunked(draw: st.DrawFn, data: bytes) -> list[bytes]:
-    """``data`` in pieces, some of them empty."""
+    """Draw ``data`` cut into pieces, some of them empty."""
     cuts = sorted(draw(st.lists(st.integers(0, len(data)), max_size=10)))
     return [data[a:b] for a, b in zip([0, *cuts], [*cuts, len(data)])]

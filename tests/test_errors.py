@@ -1,4 +1,4 @@
-"""Errors as data: they come whole out of another process."""
+"""Errors survive pickling and copying, so that they can cross processes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pickle
 
 import pytest
 
-from cobotwire.errors import (
+from cobotwire.protocol.errors import (
     CaptureError,
     CobotwireError,
     LinkError,
@@ -31,7 +31,7 @@ ERRORS = [
 
 @pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
 @pytest.mark.parametrize("way", [lambda e: pickle.loads(pickle.dumps(e)), copy.copy])
-def test_an_error_is_the_same_afterwards(error: CobotwireError, way: object) -> None:
+def test_pickled_or_copied_error_equals_the_original(error: CobotwireError, way: object) -> None:
     assert callable(way)
     again = way(error)
     assert type(again) is type(error)
@@ -39,7 +39,7 @@ def test_an_error_is_the_same_afterwards(error: CobotwireError, way: object) -> 
     assert vars(again) == vars(error)
 
 
-def test_every_branch_is_tried() -> None:
+def test_list_of_errors_holds_every_branch_of_the_root_error() -> None:
     found = CobotwireError.__subclasses__()
-    branches = {kind for kind in found if kind.__module__ == "cobotwire.errors"}
+    branches = {kind for kind in found if kind.__module__ == "cobotwire.protocol.errors"}
     assert branches == {type(error) for error in ERRORS}

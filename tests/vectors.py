@@ -1,4 +1,4 @@
-"""The spec's model and its vectors, as the generator reads them."""
+"""Load the spec's model and its vectors through the generator."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ def _editions() -> dict[str, Edition]:
 
 
 def edition(name: str = "mycobot") -> Edition:
-    """An edition, checked; left out: ``mycobot``."""
+    """Return the checked model of an edition."""
     return _editions()[name]
 
 
 def every() -> list[tuple[str, Vector]]:
-    """The vectors of all editions, each with its edition's name."""
+    """Return the vectors of all editions, each with its edition's name."""
     return [(name, vector) for name, found in _editions().items() for vector in found.vectors]
 
 
 def framed() -> list[tuple[str, Vector]]:
-    """The vectors that are frames."""
+    """Return the vectors that are legal frames."""
     return [(name, vector) for name, vector in every() if vector.frame is not None]
 
 
-def refused() -> list[tuple[str, Vector]]:
-    """The vectors whose printed bytes are no legal frame."""
-    return [(name, vector) for name, vector in every() if vector.refused is not None]
+def rejected() -> list[tuple[str, Vector]]:
+    """Return the vectors whose bytes are not a legal frame."""
+    return [(name, vector) for name, vector in every() if vector.rejected is not None]
 
 
 def fields(name: str, vector: Vector) -> dict[str, Any]:
-    """A vector's values by name, as the codecs give them."""
+    """Return a vector's values by name, in the form that the codecs return."""
     found = {key: plain(edition(name), vector, key, value) for key, value in vector.values}
     return {key: tuple(v) if isinstance(v, list) else v for key, v in found.items()}

@@ -1,4 +1,4 @@
-"""Models that are wrong in one place: whatever is made from one must be found to differ."""
+"""Models that are wrong in one place: every test of a target must detect its output."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WRONG: dict[str, Wrong] = {
 
 
 def with_wrong_angles(edition: Edition, wrong: Wrong) -> Edition:
-    """The edition, but what get_angles answers is read wrongly."""
+    """Return the edition with a fault in the fields of the reply to get_angles."""
 
     def field(old: Field) -> Field:
         assert isinstance(old.type, Value)
@@ -28,7 +28,7 @@ def with_wrong_angles(edition: Edition, wrong: Wrong) -> Edition:
     def command(old: Command) -> Command:
         if old.name != "get_angles":
             return old
-        return replace(old, replies=tuple(tuple(map(field, form)) for form in old.replies))
+        return replace(old, replies=tuple(tuple(map(field, variant)) for variant in old.replies))
 
     families = (
         replace(family, commands=tuple(map(command, family.commands)))

@@ -33,7 +33,7 @@ __all__ = [
 if TYPE_CHECKING:
     from cobotwire.codec import chosen as codec_in_use
     from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
-    from cobotwire.errors import (
+    from cobotwire.protocol.errors import (
         CaptureError,
         CobotwireError,
         LinkError,
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
         ReplyTimeout,
         UsageError,
     )
-    from cobotwire.limits import Limits
+    from cobotwire.protocol.limits import Limits
     from cobotwire.session.policy import RetryPolicy
     from cobotwire.session.sample import Sample, StreamReport
 else:
@@ -50,7 +50,7 @@ else:
     # loads no client of this one; and asyncio takes longer to import than all the rest.
     _PLACES = {
         "AsyncMyCobot": "editions.mycobot",
-        "Limits": "limits",
+        "Limits": "protocol.limits",
         "MyCobot": "editions.mycobot",
         "RetryPolicy": "session.policy",
         "Sample": "session.sample",
@@ -63,7 +63,7 @@ else:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         from importlib import import_module
 
-        module = import_module(f"{__name__}.{_PLACES.get(name, 'errors')}")
+        module = import_module(f"{__name__}.{_PLACES.get(name, 'protocol.errors')}")
         found = getattr(module, "chosen" if name == "codec_in_use" else name)
         globals()[name] = found
         return found

@@ -1,7 +1,7 @@
-"""The Rust codec's binary: what ``cobotwire.codec.native`` gives out.
+"""The binary of the Rust codec, which ``cobotwire.codec.native`` exports.
 
-It reads a table's objects once, when a codec is made, and converts; what is legal is decided in
-``rust/core``, and what an error says in ``cobotwire.codec.refusal``.
+It reads a table's objects once, when a codec is made. ``rust/core`` decides what is legal, and
+``cobotwire.protocol.rejection`` makes the sentences of the errors.
 """
 
 from collections.abc import Sequence
@@ -10,8 +10,8 @@ from typing import Any, Literal, final
 from typing_extensions import Buffer
 
 from cobotwire.codec.columns import Columns, Scan
-from cobotwire.codec.interface import Counters, Data, Event, Listening, Message
-from cobotwire.table import Direction, Table
+from cobotwire.codec.interface import Counters, Data, DecodedMessage, Event, Listening
+from cobotwire.protocol.table import Direction, Table
 
 __all__ = ["Memory", "NativeCodec", "NativeColumnReader", "NativeFrame", "NativeFramer"]
 
@@ -27,8 +27,8 @@ class NativeCodec:
                 wrong type or is far too large.
             ValueError: it cannot be interpreted: the header is not two bytes, the check is unknown,
                 the footer is not one byte where it is the check or not empty where it is not,
-                a form is longer than LEN can say, a number is not one to four bytes wide, a scale
-                or bound is beyond what a double holds exactly, or a field's cases do not fit.
+                a variant is longer than LEN can say, a number is not one to four bytes wide, a
+                scale or bound is beyond what a double holds exactly, or a field's cases do not fit.
         """
 
     @property
@@ -45,22 +45,22 @@ class NativeCodec:
         direction: Direction,
         values: Sequence[Any],
         *,
-        form: int | None = None,
+        variant: int | None = None,
         address: int | None = None,
     ) -> bytes:
-        """Build one whole frame, of the first form of that many fields that takes ``values``.
+        """Build one frame, of the first variant with that number of fields that allows ``values``.
 
-        ``form`` picks one by its index; ``address`` is only for formats with an address byte.
+        ``variant`` picks one by its index; ``address`` is only for formats with an address byte.
 
         Raises:
-            UsageError: no such command, address or form, or a value that the field does not allow.
+            UsageError: no such command, address or variant, or a value that its field rejects.
         """
 
-    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> Message:
-        """Read ``data``, which must be one whole frame and nothing else.
+    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> DecodedMessage:
+        """Read ``data``, which must be one frame and nothing else.
 
-        Calls that share an id and a size read as the first of them that allows the values, unless
-        ``of`` names the one that it must be.
+        If commands share an id and a size, the result is the first that allows the values; ``of``
+        names the only command that it may be.
 
         Raises:
             UsageError: ``of`` names no command.
@@ -69,7 +69,7 @@ class NativeCodec:
         """
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> NativeFramer:
-        """A new framer; ``accept_unknown`` also takes ids that the edition lacks as frames."""
+        """Return a new framer; with ``accept_unknown`` it accepts ids that the edition lacks."""
 
     def scan(
         self,
@@ -79,10 +79,10 @@ class NativeCodec:
         accept_unknown: bool = False,
         out: Scan | None = None,
     ) -> Scan:
-        """Where the frames of a whole stream are; see the interface.
+        """Return where the frames of a stream are; see the interface.
 
         Raises:
-            BufferError: ``out`` is still looked at, by a memoryview or an array.
+            BufferError: a memoryview or an array still uses ``out``.
         """
 
     def decode_columns(
@@ -93,16 +93,16 @@ class NativeCodec:
         raw: bool = False,
         out: Columns | None = None,
     ) -> Columns:
-        """The values of a whole stream, as columns; see the interface.
+        """Return the values of a stream as columns; see the interface.
 
         Raises:
-            BufferError: ``out`` is still looked at, by a memoryview or an array.
+            BufferError: a memoryview or an array still uses ``out``.
         """
 
     def column_reader(
         self, listening: Listening = "both", *, raw: bool = False
     ) -> NativeColumnReader:
-        """A reader for a stream that comes in pieces, or is larger than memory."""
+        """Return a reader for a stream that comes in pieces, or is larger than memory."""
 
 @final
 class NativeFramer:
@@ -112,25 +112,22 @@ class NativeFramer:
     """
 
     def feed(self, data: Data) -> list[Event]:
-        """Take bytes; give what is certain by now, in the order of the stream."""
+        """Take bytes; return what is certain by now, in the order of the stream."""
 
     def flush(self) -> list[Event]:
-        """Refute what still waits (the line has been idle): a true frame behind it comes now."""
+        """Refute what still waits, because the line is idle; return it and what follows it."""
 
     @property
     def pending(self) -> int:
-        """Bytes fed that no event covers yet; less than the longest frame."""
+        """How many fed bytes no event covers yet; fewer than the longest frame has."""
 
     @property
     def counters(self) -> Counters:
-        """What came so far, in numbers."""
+        """The counts since the framer was made."""
 
 @final
 class NativeFrame:
-    """A whole, legal frame; a kind of :class:`cobotwire.codec.events.Frame`.
-
-    It carries its bytes, and is decoded when it is first asked for its message or values.
-    """
+    """A legal frame; a virtual subclass of :class:`cobotwire.codec.events.Frame`."""
 
     @property
     def offset(self) -> int:
@@ -144,21 +141,33 @@ class NativeFrame:
     def command(self) -> int:
         """Its command id."""
 
-    @property
-    def message(self) -> Message:
-        """What it says, as the first message that allows its values.
+    def decode(
+        self, direction: Direction | None = None, *, of: str | None = None
+    ) -> DecodedMessage:
+        """Return what ``codec.decode(direction, frame.data, of=of)`` returns.
+
+        The frame is not judged again; see :meth:`cobotwire.codec.events.Frame.decode`.
 
         Raises:
-            ProtocolError: a field holds a value that the edition does not allow, or the edition
-                lacks its id.
+            ProtocolError: it is not a frame of that direction or command, or a field holds a value
+                that the edition does not allow, or the edition lacks its id.
+            UsageError: ``of`` names no command.
+        """
+
+    @property
+    def message(self) -> DecodedMessage:
+        """Its message: the first one that allows its values, requests first.
+
+        Raises:
+            ProtocolError: as :meth:`decode`.
         """
 
     @property
     def values(self) -> tuple[Any, ...]:
-        """The values of its message, one a field.
+        """The values of its message, one for each field.
 
         Raises:
-            ProtocolError: as ``message``.
+            ProtocolError: as :meth:`decode`.
         """
 
     def __eq__(self, value: object, /) -> bool: ...
@@ -172,14 +181,14 @@ class NativeColumnReader:
     """
 
     def feed(self, data: Data) -> Columns:
-        """Take bytes; give what is certain by now, and was not given before."""
+        """Take bytes; return what has become certain since the last call."""
 
     def flush(self) -> Columns:
-        """Refute what still waits, and give the rest."""
+        """Refute what still waits; return the rest."""
 
     @property
     def pending(self) -> int:
-        """Bytes fed that are not accounted for yet; less than the longest frame."""
+        """How many fed bytes are not accounted for yet; fewer than the longest frame has."""
 
 @final
 class Memory(Buffer):

@@ -1,6 +1,6 @@
-"""Runs every fuzz target for a while and prints what it covered: ``run.py SECONDS [TARGET...]``.
+"""Run every fuzz target for a while and print what it covered: ``run.py SECONDS [TARGET...]``.
 
-libFuzzer does the work; here stand only the build, the seeds, the bounds, and the report.
+libFuzzer does the fuzzing; this script builds, writes seeds, sets limits and reports.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from typing import NamedTuple
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 TOOLS = ROOT / ".cargo-tools" / "bin"
-# The largest input of each. A run is a stream, or a table with a stream; long enough for frames to
-# stand beside each other in every way, short enough for thousands of runs a second.
+# The largest input of each target: a stream, or a table with a stream. It is long enough for
+# several frames in any arrangement, and short enough for thousands of runs a second.
 LARGEST = {
     "framer": 1024,
     "chunks": 1024,
@@ -27,7 +27,7 @@ LARGEST = {
     "tables": 512,
     "linear": 256,
 }
-# Far above what any input takes: what takes longer hangs.
+# Far more than any input needs: an input that takes longer hangs.
 SECONDS_FOR_ONE_INPUT = 20
 SECONDS_TO_MINIMISE = 20
 MEGABYTES = 1024
@@ -48,7 +48,7 @@ class Outcome(NamedTuple):
 
 
 def main(seconds: int, targets: list[str]) -> int:
-    """Build, run and report; 1 if anything was found."""
+    """Build, run and report; return 1 if a target failed."""
     binaries = _build()
     _seeds()
     outcomes = [_run(target, binaries / target, seconds) for target in targets]
@@ -60,7 +60,7 @@ def main(seconds: int, targets: list[str]) -> int:
             f"{o.target:8} {o.seconds:8.0f} {o.runs:10,} {covered:>13} {o.features:9,} "
             f"{o.corpus:7,}   {verdict}"
         )
-    print("edges: of the whole program, the oracle and the reader of the tables among them")
+    print("edges: of the whole program, including the oracle and the reader of tables")
     for outcome in outcomes:
         for crash in outcome.crashes:
             _explain(outcome.target, binaries / outcome.target, crash)
@@ -68,19 +68,19 @@ def main(seconds: int, targets: list[str]) -> int:
 
 
 def _build() -> Path:
-    """The targets, instrumented; the core has no unsafe code that a sanitizer could watch."""
+    """Build the instrumented targets; without a sanitizer, since the core has no unsafe code."""
     path = f"{TOOLS}{os.pathsep}{os.environ['PATH']}"
     command = ["cargo", "fuzz", "build", "--fuzz-dir", str(HERE), "--sanitizer", "none"]
-    # cargo-fuzz looks for the package that is fuzzed around where it is started.
+    # cargo-fuzz searches for the fuzzed package from the folder in which it starts.
     _call(command, cwd=ROOT / "rust" / "core", env={**os.environ, "PATH": path})
     version = subprocess.run(
-        ["rustc", "-vV"],  # noqa: S607  (the compiler that PATH gives is the one meant)
+        ["rustc", "-vV"],  # noqa: S607  (the compiler on PATH is intended)
         check=True,
         capture_output=True,
         text=True,
     ).stdout
     host = re.search(r"^host: (\S+)", version, re.MULTILINE)
-    assert host is not None, "rustc tells its host"
+    assert host is not None, "rustc prints its host"
     return HERE / "target" / host[1] / "release"
 
 
@@ -146,7 +146,7 @@ def _outcome(target: str, took: float, log: str, crashes: list[Path], well: bool
 
 
 def _explain(target: str, binary: Path, crash: Path) -> None:
-    """How to repeat it, with less of it if less will do, and its line for tests/found."""
+    """Print how to repeat a crash, with a smaller input if one is found, and its test line."""
     small = crash.with_name(f"smaller-{crash.name}")
     if crash.name.startswith("crash-"):
         subprocess.run(  # noqa: S603
@@ -161,12 +161,12 @@ def _explain(target: str, binary: Path, crash: Path) -> None:
         )
     if small.exists():
         crash = small
-    said = subprocess.run([str(binary), str(crash)], capture_output=True, text=True)  # noqa: S603
-    words = re.search(r"panicked at .*\n(?:.*\n){0,3}", said.stderr)
+    done = subprocess.run([str(binary), str(crash)], capture_output=True, text=True)  # noqa: S603
+    words = re.search(r"panicked at .*\n(?:.*\n){0,3}", done.stderr)
     print(f"\n{target} failed: {words[0].strip() if words else 'see its log'}")
-    print(f"  again: {shlex.join([str(binary), str(crash)])}")
-    print("  for tests/found, where the last part is the oracle's word:", flush=True)
-    _call([*_example("tell"), target, str(crash)])
+    print(f"  repeat: {shlex.join([str(binary), str(crash)])}")
+    print("  for tests/found, with the oracle's result as the last part:", flush=True)
+    _call([*_example("describe"), target, str(crash)])
 
 
 if __name__ == "__main__":

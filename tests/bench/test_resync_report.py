@@ -1,4 +1,4 @@
-"""The resync report tells good readers from bad ones, and loses no loss."""
+"""The resync report distinguishes good readers from bad ones, and counts every loss."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _judged(line: Line, read: Sequence[Accepted]) -> Verdict:
     return judge(TABLE, "reply", line, read)
 
 
-def test_each_frame_that_the_codec_loses_is_explained_by_the_table() -> None:
+def test_every_frame_that_the_codec_loses_is_explained_by_the_table() -> None:
     line = _line()
     verdict = _judged(line, readers.ours(TABLE, "native", "reply")(line.data))
     assert verdict.covered
@@ -34,13 +34,13 @@ def test_each_frame_that_the_codec_loses_is_explained_by_the_table() -> None:
 
 
 @pytest.mark.parametrize("reader", [readers.textbook(TABLE), readers.pymycobot()])
-def test_a_reader_that_consumes_on_failure_has_no_such_excuse(reader: readers.Reader) -> None:
+def test_reader_that_consumes_on_failure_loses_unexplained_frames(reader: readers.Reader) -> None:
     line = _line()
     verdict = _judged(line, reader(line.data))
     assert len(verdict.unexplained) > len(verdict.covered)
 
 
-def test_a_perfect_reader_of_a_damaged_line_loses_nothing_and_one_frame_less_shows() -> None:
+def test_verdict_of_a_perfect_reader_has_no_loss_and_shows_one_missing_frame() -> None:
     line = _line("mixed")
     whole = [
         Accepted(start, end, line.data[start:end])
@@ -53,7 +53,7 @@ def test_a_perfect_reader_of_a_damaged_line_loses_nothing_and_one_frame_less_sho
     assert missing.unexplained == [whole[100].start]
 
 
-def test_wrong_frames_are_counted_by_what_they_were() -> None:
+def test_wrong_frames_are_counted_by_their_origin() -> None:
     frame = bytes.fromhex("FE FE 03 12 01 FA")
     clean = catalogue(TABLE, 4000, "reply")
     line = damage(TABLE, clean, "flip", 1e-2)
@@ -64,13 +64,13 @@ def test_wrong_frames_are_counted_by_what_they_were() -> None:
     assert _judged(line, [*read, nowhere]).phantoms == verdict.phantoms + 1
 
 
-def test_pymycobots_own_reader_reads_a_clean_line_whole() -> None:
+def test_pymycobots_reader_reads_a_clean_line_completely() -> None:
     line = catalogue(TABLE, 500, "reply")
     found = readers.pymycobot()(line.data)
     assert [frame.data for frame in found] == [line.original(i) for i in range(line.frames)]
 
 
-def test_pymycobot_asked_for_a_reply_throws_it_away_for_an_ack_in_front_of_it() -> None:
+def test_pymycobot_drops_a_reply_after_an_ack() -> None:
     line = _line("ack")
     verdict = _judged(line, readers.pymycobot_asked(line))
     assert verdict.undamaged - verdict.recovered == len(line.acks) > 0
@@ -84,7 +84,7 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("short")
-def test_the_report_ends_with_1_if_a_frame_is_lost_without_excuse(
+def test_report_exits_with_1_if_a_lost_frame_is_unexplained(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert resync.main() == 0
@@ -95,7 +95,7 @@ def test_the_report_ends_with_1_if_a_frame_is_lost_without_excuse(
 
 
 @pytest.mark.usefixtures("short")
-def test_the_report_ends_with_1_if_the_codecs_differ(
+def test_report_exits_with_1_if_the_codecs_differ(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     ours = readers.ours

@@ -1,4 +1,4 @@
-"""The streams of the benches: every frame legal, and the truth about each of them true."""
+"""The benches' streams contain only legal frames, and describe each of them correctly."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Frame, Listening
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
 
 BOTH = pytest.mark.parametrize("table", [TABLE, TABLE_280], ids=lambda table: table.edition)
 
 
 @BOTH
 @pytest.mark.parametrize("listening", ["request", "reply"])
-def test_a_catalogue_holds_every_form_and_each_frame_decodes(
+def test_catalogue_holds_every_variant_and_each_frame_decodes(
     table: Table, listening: Listening
 ) -> None:
     assert listening != "both"
     line = streams.catalogue(table, 3000, listening)
     codec = codecs.load(table, "native")
-    layouts = {
-        (message.command.id, message.layout.size)
+    variants = {
+        (message.command.id, message.variant.size)
         for message in (codec.decode(listening, line.original(i)) for i in range(line.frames))
     }
-    assert layouts == {(id, layout.size) for id, layout in streams.forms_of(table, listening)}
+    assert variants == {(id, variant.size) for id, variant in streams.variants_of(table, listening)}
 
 
 @BOTH
-def test_stream_a_is_mixed_as_it_says(table: Table) -> None:
+def test_stream_a_has_its_documented_shares(table: Table) -> None:
     line = streams.stream_a(table, 20_000)
     first = [line.original(index)[:4] for index in range(line.frames)]
     shares = [first.count(bytes([0xFE, 0xFE, 0x0E, id])) / line.frames for id in (0x20, 0x23)]
@@ -43,7 +43,7 @@ def test_stream_a_is_mixed_as_it_says(table: Table) -> None:
 
 @BOTH
 @pytest.mark.parametrize("kind", damage.KINDS)
-def test_the_truth_about_a_damaged_stream_is_true(table: Table, kind: str) -> None:
+def test_damaged_stream_describes_each_frame_correctly(table: Table, kind: str) -> None:
     clean = streams.catalogue(table, 3000, "both")
     line = damage.damage(table, clean, kind, 1e-2)
     assert line.data != clean.data
@@ -53,14 +53,14 @@ def test_the_truth_about_a_damaged_stream_is_true(table: Table, kind: str) -> No
     assert (line.starts[1:] >= line.ends[:-1]).all(), "frames do not overlap"
 
 
-@pytest.mark.parametrize("kind", damage.IN_FRONT)
-def test_what_stands_in_front_of_frames_damages_none(kind: str) -> None:
+@pytest.mark.parametrize("kind", damage.BEFORE_FRAMES)
+def test_noise_before_frames_damages_no_frame(kind: str) -> None:
     line = damage.damage(TABLE_280, streams.catalogue(TABLE_280, 3000, "both"), kind, 1e-2)
     assert line.whole.all()
     assert len(line.sites) > 0
 
 
-def test_acks_stand_where_the_truth_says() -> None:
+def test_acks_are_at_their_listed_offsets() -> None:
     for table, legal in [(TABLE, False), (TABLE_280, True)]:
         line = damage.damage(table, streams.stream_a(table, 3000), "ack", 1e-2)
         events = codecs.load(table, "native").framer("reply").feed(line.data)
@@ -71,7 +71,7 @@ def test_acks_stand_where_the_truth_says() -> None:
 
 @BOTH
 @pytest.mark.parametrize("share", [0.02, 0.1])
-def test_a_noisy_stream_holds_as_much_noise_as_asked_for(table: Table, share: float) -> None:
+def test_noisy_stream_holds_the_requested_share_of_noise(table: Table, share: float) -> None:
     clean = streams.stream_a(table, 20_000)
     line = damage.noisy(table, clean, share=share)
     assert 1 - len(clean.data) / len(line.data) == pytest.approx(share, rel=0.05)

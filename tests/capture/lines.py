@@ -1,4 +1,4 @@
-"""What tests record: streams of frames and noise, cut at will, and how a line's bytes come back."""
+"""Generate traffic to record, and read recordings back."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from cobotwire.capture import CaptureReader, CaptureWriter, Interface, Kind, Packet, Piece
 
-Way = Literal["sent", "heard"]
+Way = Literal["sent", "received"]
 
 
 class Chunk(NamedTuple):
-    """What a driver tells of one read or write."""
+    """One read or write of a client."""
 
     time: float
     direction: Way
@@ -35,16 +35,16 @@ SPANS = st.one_of(st.sampled_from(FRAMES), st.binary(max_size=40), st.just(b"\xf
 
 @st.composite
 def chunks(draw: st.DrawFn) -> list[Chunk]:
-    """Both directions of a line, cut anywhere; times never go back."""
+    """Generate traffic of both directions, cut anywhere; times do not decrease."""
     made = []
     time = 1000.0
     for _ in range(draw(st.integers(0, 12))):
         whole = b"".join(draw(st.lists(SPANS, max_size=3)))
-        way = draw(st.sampled_from(["sent", "heard"]))
+        way = draw(st.sampled_from(["sent", "received"]))
         cuts = sorted(draw(st.lists(st.integers(0, len(whole)), max_size=4)))
         for start, end in zip([0, *cuts], [*cuts, len(whole)]):
             time += draw(st.sampled_from([0.0, 1e-6, 0.003, 0.1, 0.7]))
-            made.append(Chunk(time, "sent" if way == "sent" else "heard", whole[start:end]))
+            made.append(Chunk(time, "sent" if way == "sent" else "received", whole[start:end]))
     return made
 
 
@@ -53,7 +53,7 @@ TIMES = st.integers(0, 2**64 - 1)
 
 @st.composite
 def packets(draw: st.DrawFn) -> Packet:
-    """Any packet that a capture of ours can hold."""
+    """Generate any packet that our captures can hold."""
     data = draw(st.binary(max_size=60))
     kinds: list[Kind] = ["frame", "noise", "bytes"]
     kind = draw(st.sampled_from(kinds))
@@ -63,7 +63,7 @@ def packets(draw: st.DrawFn) -> Packet:
     pieces = [Piece(b - a, start + draw(st.integers(0, 2**40)) * (a > 0)) for a, b in ends]
     return Packet(
         start,
-        draw(st.sampled_from(["sent", "heard", "unknown"])),
+        draw(st.sampled_from(["sent", "received", "unknown"])),
         data,
         kind,
         draw(st.sampled_from(["no-header", "truncated"])) if kind == "noise" else "",
@@ -72,7 +72,7 @@ def packets(draw: st.DrawFn) -> Packet:
 
 
 def written(packets: Iterable[Packet], *lines: str, finish: bool = True) -> bytes:
-    """A whole capture."""
+    """Return the bytes of a capture."""
     file = io.BytesIO()
     writer = CaptureWriter(file)
     for url in lines or ("/dev/ttyACM0",):
@@ -89,5 +89,5 @@ def reader(data: bytes) -> CaptureReader:
 
 
 def line_bytes(packets: Iterable[Packet], way: Way) -> bytes:
-    """Everything that went one way."""
+    """Return all bytes of one direction."""
     return b"".join(packet.data for packet in packets if packet.direction == way)

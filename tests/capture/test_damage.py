@@ -1,4 +1,4 @@
-"""Captures that end in the middle, or are no captures."""
+"""Read captures that are truncated or damaged, and files that are not captures."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 
 from capture.lines import packets, reader, written
 from cobotwire.capture import CaptureReader, Packet, is_capture, read
-from cobotwire.capture.parse import LARGEST_BLOCK
-from cobotwire.errors import CaptureError, UsageError
+from cobotwire.capture.block_parsing import LARGEST_BLOCK
+from cobotwire.protocol.errors import CaptureError, UsageError
 
-SAMPLE = [Packet(1_000, "sent", b"question"), Packet(2_000, "heard", b"answer!", "noise", "x")]
+SAMPLE = [Packet(1_000, "sent", b"request"), Packet(2_000, "received", b"reply!!", "noise", "x")]
 
 
 def read_all(data: bytes) -> tuple[list[Packet], CaptureError | None]:
-    """The packets, and the error behind which there must be nothing."""
+    """Return the packets and the error; check that iteration ends with the error."""
     capture = reader(data)
     found: list[Packet] = []
     try:
@@ -31,10 +31,10 @@ def read_all(data: bytes) -> tuple[list[Packet], CaptureError | None]:
 
 
 @given(st.lists(packets(), max_size=4), st.data())
-def test_what_is_cut_anywhere_reads_up_to_its_last_whole_block(
+def test_truncated_capture_is_read_up_to_its_last_complete_block(
     given_packets: list[Packet], data: st.DataObject
 ) -> None:
-    # A whole capture of the first few ends where the next packet begins.
+    # The next packet begins where a capture of the packets before it ends.
     whole = written(given_packets)
     ends = [len(written(given_packets[:n], finish=False)) for n in range(len(given_packets) + 1)]
     cut = data.draw(st.integers(0, len(whole) - 1))
@@ -44,7 +44,7 @@ def test_what_is_cut_anywhere_reads_up_to_its_last_whole_block(
     assert not capture.finished
     if capture.truncated_at is not None:
         assert capture.truncated_at < cut
-        # Up to there it is whole.
+        # Everything before that place is complete.
         again = reader(whole[: capture.truncated_at])
         assert list(again) == given_packets[:count]
         assert again.truncated_at is None
@@ -52,7 +52,7 @@ def test_what_is_cut_anywhere_reads_up_to_its_last_whole_block(
 
 @settings(max_examples=500)
 @given(st.data())
-def test_a_damaged_capture_is_read_or_refused_with_the_place(data: st.DataObject) -> None:
+def test_damaged_capture_is_read_or_rejected_with_the_offset(data: st.DataObject) -> None:
     whole = bytearray(written(SAMPLE))
     for _ in range(data.draw(st.integers(1, 4))):
         at = data.draw(st.integers(0, len(whole) - 1))
@@ -67,14 +67,14 @@ def test_a_damaged_capture_is_read_or_refused_with_the_place(data: st.DataObject
 
 @settings(max_examples=500)
 @given(st.binary(max_size=200))
-def test_any_bytes_are_read_or_refused(data: bytes) -> None:
+def test_arbitrary_bytes_are_read_or_rejected(data: bytes) -> None:
     found, error = read_all(data)
     assert found == []
     assert error is None or 0 <= error.offset <= len(data)
 
 
 @pytest.mark.parametrize("size", [0, 8, 11, 13, LARGEST_BLOCK + 4, 2**32 - 4])
-def test_a_length_that_cannot_be_is_refused_at_its_place(size: int) -> None:
+def test_block_with_an_impossible_length_is_rejected_at_its_offset(size: int) -> None:
     whole = written(SAMPLE)
     place = len(written(SAMPLE[:1], finish=False))
     damaged = whole[: place + 4] + size.to_bytes(4, "little") + whole[place + 8 :]
@@ -85,7 +85,7 @@ def test_a_length_that_cannot_be_is_refused_at_its_place(size: int) -> None:
     assert caught.value.offset == place
 
 
-def test_a_great_length_costs_neither_time_nor_memory() -> None:
+def test_block_with_a_large_length_costs_neither_time_nor_memory() -> None:
     whole = written(SAMPLE, finish=False)
     place = len(written(SAMPLE[:1], finish=False))
     damaged = whole[: place + 4] + LARGEST_BLOCK.to_bytes(4, "little") + whole[place + 8 :]
@@ -100,30 +100,32 @@ def test_a_great_length_costs_neither_time_nor_memory() -> None:
 
 
 @pytest.mark.parametrize("data", [b"FE FE 02 20 FA\n", b"\n\r\r\n" + bytes(30), b"\x0a"])
-def test_what_is_no_capture_is_not_taken_for_one(data: bytes) -> None:
+def test_other_files_are_not_detected_as_captures(data: bytes) -> None:
     assert not is_capture(data)
 
 
-def test_a_file_that_is_no_capture_says_so() -> None:
-    with pytest.raises(CaptureError, match=r"test.pcapng: no pcapng file.*\(at byte 0\)"):
+def test_reading_another_file_raises_capture_error() -> None:
+    with pytest.raises(
+        CaptureError, match=r"test.pcapng: the file is not a pcapng recording \(at byte 0\)"
+    ):
         list(reader(b"FE FE 02 20 FA\n"))
 
 
-def test_a_file_that_is_not_there_is_the_callers_fault() -> None:
-    with pytest.raises(UsageError, match="No such file"):
+def test_missing_file_raises_usage_error() -> None:
+    with pytest.raises(UsageError, match="no such file"):
         read("/no/such/file.pcapng")
-    with pytest.raises(UsageError, match="a file that can be read"):
+    with pytest.raises(UsageError, match="null byte"):
         read("a\0b")
 
 
-def test_an_empty_file_is_an_empty_capture_that_is_not_finished() -> None:
+def test_empty_file_is_an_unfinished_capture_without_packets() -> None:
     capture = reader(b"")
     assert list(capture) == []
     assert not capture.finished
 
 
 class Drip(io.RawIOBase):
-    """A file that gives a byte at a time, as a pipe may."""
+    """A file that returns one byte per read, as a pipe may."""
 
     def __init__(self, data: bytes) -> None:
         self._rest = data
@@ -133,5 +135,5 @@ class Drip(io.RawIOBase):
         return taken
 
 
-def test_a_pipe_that_gives_little_at_a_time_is_read_all_the_same() -> None:
+def test_capture_is_read_from_a_slow_pipe() -> None:
     assert list(CaptureReader(Drip(written(SAMPLE)))) == SAMPLE  # type: ignore[arg-type]

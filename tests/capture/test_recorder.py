@@ -1,4 +1,4 @@
-"""Chunks of a line to packets: every byte, both ways, at its time."""
+"""Record traffic: every byte of both directions, with its time."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from cobotwire import codec as codecs
 from cobotwire.capture import CaptureWriter, Packet, Recorder, Recording, read
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.errors import CaptureError, UsageError
-from cobotwire.sim import PtyServer
-from cobotwire.transport import TappedLink, open_link
+from cobotwire.protocol.errors import CaptureError, UsageError
+from cobotwire.simulator import PtyServer
+from cobotwire.transport import TappedTransport, open_transport
 
-ASK, ANGLES = FRAMES[0], FRAMES[1]
+QUERY, ANGLES = FRAMES[0], FRAMES[1]
 
 
 def recorded(codec: Codec | None, given_chunks: list[Chunk]) -> list[Packet]:
@@ -41,7 +41,7 @@ def recorded(codec: Codec | None, given_chunks: list[Chunk]) -> list[Packet]:
 
 
 def pieces_of(packets: list[Packet], way: str) -> list[tuple[int, int]]:
-    """Each byte's value and time, in the order of the line."""
+    """Return value and time of each byte of a direction, in order."""
     found: list[tuple[int, int]] = []
     for packet in packets:
         if packet.direction == way:
@@ -51,48 +51,50 @@ def pieces_of(packets: list[Packet], way: str) -> list[tuple[int, int]]:
 
 
 @given(given_chunks=chunks())
-def test_the_packets_of_a_direction_are_the_bytes_of_the_line(
+def test_packets_of_a_direction_hold_every_byte_with_its_time(
     given_chunks: list[Chunk],
 ) -> None:
     for codec in (None, codecs.load(TABLE)):
         packets = recorded(codec, given_chunks)
         start = time.time_ns() - time.monotonic_ns()
-        for way in ("sent", "heard"):
+        for way in ("sent", "received"):
             bytes_ = [
                 (b, round(c.time * 1e9)) for c in given_chunks if c.direction == way for b in c.data
             ]
             found = pieces_of(packets, way)
             assert [b for b, _ in found] == [b for b, _ in bytes_]
-            # The anchor is the recorder's own; what counts is that all times have the same.
+            # The recorder adds the same offset to all times.
             assert len({got - was for (_, got), (_, was) in zip(found, bytes_)}) <= 1
             assert all(abs(got - was - start) < 10**10 for (_, got), (_, was) in zip(found, bytes_))
         assert all(packet.data for packet in packets)
 
 
-def test_a_packet_is_a_frame_or_noise(codec: Codec) -> None:
+def test_frames_and_noise_become_separate_packets(codec: Codec) -> None:
     panic = b"Guru Meditation"
     packets = recorded(
         codec,
-        [Chunk(1.0, "sent", ASK + ASK), Chunk(1.01, "heard", FRAMES[2] + panic + ANGLES)],
+        [Chunk(1.0, "sent", QUERY + QUERY), Chunk(1.01, "received", FRAMES[2] + panic + ANGLES)],
     )
     assert [(p.direction, p.kind, p.data) for p in packets] == [
-        ("sent", "frame", ASK),
-        ("sent", "frame", ASK),
-        ("heard", "frame", FRAMES[2]),
-        ("heard", "noise", panic),
-        ("heard", "frame", ANGLES),
+        ("sent", "frame", QUERY),
+        ("sent", "frame", QUERY),
+        ("received", "frame", FRAMES[2]),
+        ("received", "noise", panic),
+        ("received", "frame", ANGLES),
     ]
     assert packets[3].reason == "no-header"
 
 
-def test_what_the_edition_lacks_is_one_span_with_its_first_reason(codec: Codec) -> None:
+def test_unknown_frame_is_one_packet_of_noise_with_its_first_reason(codec: Codec) -> None:
     unknown = bytes.fromhex("FE FE 03 10 01 FA")
-    (packet,) = recorded(codec, [Chunk(1.0, "heard", unknown)])
+    (packet,) = recorded(codec, [Chunk(1.0, "received", unknown)])
     assert (packet.kind, packet.reason, packet.data) == ("noise", "unknown-id", unknown)
 
 
-def test_a_frame_in_pieces_keeps_the_time_of_each(codec: Codec) -> None:
-    packets = recorded(codec, [Chunk(5.0, "heard", ANGLES[:8]), Chunk(5.1, "heard", ANGLES[8:])])
+def test_frame_in_pieces_keeps_the_time_of_each_piece(codec: Codec) -> None:
+    packets = recorded(
+        codec, [Chunk(5.0, "received", ANGLES[:8]), Chunk(5.1, "received", ANGLES[8:])]
+    )
     (packet,) = packets
     assert packet.data == ANGLES
     assert [piece.size for piece in packet.pieces] == [8, 9]
@@ -100,14 +102,14 @@ def test_a_frame_in_pieces_keeps_the_time_of_each(codec: Codec) -> None:
     assert packet.pieces[1].time_ns == packet.time_ns + 100_000_000
 
 
-def test_half_a_frame_is_not_kept_for_ever(codec: Codec) -> None:
-    # The rest never comes; what is asked later shows that time has passed.
-    packets = recorded(codec, [Chunk(5.0, "heard", ANGLES[:8]), Chunk(9.0, "sent", ASK)])
-    assert b"".join(p.data for p in packets if p.direction == "heard") == ANGLES[:8]
-    assert packets[0].direction == "heard"
+def test_incomplete_frame_is_written_after_a_pause(codec: Codec) -> None:
+    # The rest never arrives; the later request shows that time has passed.
+    packets = recorded(codec, [Chunk(5.0, "received", ANGLES[:8]), Chunk(9.0, "sent", QUERY)])
+    assert b"".join(p.data for p in packets if p.direction == "received") == ANGLES[:8]
+    assert packets[0].direction == "received"
 
 
-def test_a_drivers_traffic_is_recorded_as_it_goes(server: PtyServer, tmp_path: Path) -> None:
+def test_traffic_of_a_client_is_recorded(server: PtyServer, tmp_path: Path) -> None:
     traffic: list[Chunk] = []
     path = tmp_path / "arm.pcapng"
     codec = codecs.load(TABLE)
@@ -124,19 +126,19 @@ def test_a_drivers_traffic_is_recorded_as_it_goes(server: PtyServer, tmp_path: P
         packets = list(capture)
     assert capture.finished
     assert capture.interfaces == [(server.url, "mycobot", 115200)]
-    for way in ("sent", "heard"):
+    for way in ("sent", "received"):
         assert line_bytes(packets, way) == b"".join(t.data for t in traffic if t.direction == way)
     assert {packet.kind for packet in packets} == {"frame"}
     assert abs(packets[0].time_ns - time.time_ns()) < 60e9
 
 
-def test_a_recording_is_not_overwritten(tmp_path: Path) -> None:
+def test_existing_file_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "there.pcapng"
     path.write_bytes(b"mine")
-    with pytest.raises(UsageError, match="a file that is not there yet"):
+    with pytest.raises(UsageError, match="the file exists already"):
         Recording(path, None)
     assert path.read_bytes() == b"mine"
-    with pytest.raises(UsageError, match="No such file"):
+    with pytest.raises(UsageError, match="no such file"):
         Recording(tmp_path / "no" / "folder", None)
 
 
@@ -148,12 +150,12 @@ from cobotwire.capture import Recording
 from cobotwire.editions.mycobot import TABLE
 recording = Recording(sys.argv[1], codecs.load(TABLE))
 for i in range(100):
-    recording(Chunk(i / 100, "heard", FRAMES[1]))
+    recording(Chunk(i / 100, "received", FRAMES[1]))
 os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
-def test_a_killed_process_leaves_every_whole_frame(tmp_path: Path) -> None:
+def test_killed_process_leaves_every_complete_frame(tmp_path: Path) -> None:
     path = tmp_path / "killed.pcapng"
     tests = Path(__file__).parents[1]
     result = subprocess.run([sys.executable, "-c", KILLED, str(path)], cwd=tests, check=False)
@@ -164,7 +166,7 @@ def test_a_killed_process_leaves_every_whole_frame(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="only Linux has a disk always full")
-def test_a_full_disk_ends_the_recording_but_not_the_call(
+def test_full_disk_stops_the_recording_but_not_the_call(
     caplog: pytest.LogCaptureFixture, server: PtyServer
 ) -> None:
     with open("/dev/full", "wb", buffering=0) as full:
@@ -172,12 +174,12 @@ def test_a_full_disk_ends_the_recording_but_not_the_call(
         writer = CaptureWriter(good)
         recorder = Recorder(writer, codecs.load(TABLE), name="full.pcapng")
         writer._file = full
-        link = TappedLink(open_link(server.url, 115200), recorder.record)
+        link = TappedTransport(open_transport(server.url, 115200), recorder.record)
         with caplog.at_level(logging.ERROR), MyCobot(link) as arm:
             arm.power_on()
             arm.get_angles()
-        assert caplog.text.count("recording to full.pcapng ended") == 1
-        with pytest.raises(CaptureError, match="recording ended early") as caught:
+        assert caplog.text.count("recording to full.pcapng stopped") == 1
+        with pytest.raises(CaptureError, match="the recording is incomplete") as caught:
             recorder.close()
         assert caught.value.offset == len(good.getvalue())
         assert isinstance(caught.value.__cause__, OSError)

@@ -1,4 +1,4 @@
-"""Wireshark's own programs read what we write, and we read what they write."""
+"""Exchange captures with Wireshark's own programs, in both directions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from capture.lines import FRAMES, Chunk, written
 from cobotwire import codec as codecs
 from cobotwire.capture import Packet, Piece, Recording, read
-from cobotwire.capture.blocks import LINK_TYPE
+from cobotwire.capture.block_encoding import LINK_TYPE
 from cobotwire.editions.mycobot import TABLE
 
 pytestmark = pytest.mark.skipif(
@@ -39,7 +39,7 @@ def run(*words: str | Path) -> str:
 
 
 def fields(path: Path) -> list[dict[str, str]]:
-    """What tshark makes of each packet."""
+    """Return the fields that tshark shows of each packet."""
     wanted = [word for field in FIELDS for word in ("-e", field)]
     found = json.loads(run("tshark", "-r", path, "-T", "json", *wanted))
     return [
@@ -50,49 +50,49 @@ def fields(path: Path) -> list[dict[str, str]]:
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """A question, its answer in two reads, and a panic."""
+    """Record a request, its reply in two reads, and a panic."""
     path = tmp_path / "line.pcapng"
     with Recording(path, codecs.load(TABLE), url="/dev/ttyACM0", baudrate=115200) as recording:
         recording(Chunk(10.0, "sent", FRAMES[0]))
-        recording(Chunk(10.01, "heard", FRAMES[1][:8]))
-        recording(Chunk(10.11, "heard", FRAMES[1][8:] + TEXT))
+        recording(Chunk(10.01, "received", FRAMES[1][:8]))
+        recording(Chunk(10.11, "received", FRAMES[1][8:] + TEXT))
     return path
 
 
-def test_tshark_shows_each_frame_with_its_direction_and_our_words(path: Path) -> None:
-    ask, answer, panic = fields(path)
-    assert [bytes.fromhex(p["data.data"]) for p in (ask, answer, panic)] == [
+def test_tshark_shows_frames_directions_and_comments(path: Path) -> None:
+    request, reply, panic = fields(path)
+    assert [bytes.fromhex(p["data.data"]) for p in (request, reply, panic)] == [
         FRAMES[0],
         FRAMES[1],
         TEXT,
     ]
     # 1 is inbound, 2 is outbound.
-    directions = [int(p["frame.packet_flags_direction"], 0) for p in (ask, answer, panic)]
+    directions = [int(p["frame.packet_flags_direction"], 0) for p in (request, reply, panic)]
     assert directions == [2, 1, 1]
-    assert {p["frame.interface_name"] for p in (ask, answer, panic)} == {"/dev/ttyACM0"}
-    assert ask["frame.interface_description"] == "edition mycobot"
-    assert "frame.comment" not in ask
-    assert answer["frame.comment"] == "in pieces: 8 bytes at +0 ns, 9 bytes at +100000000 ns"
+    assert {p["frame.interface_name"] for p in (request, reply, panic)} == {"/dev/ttyACM0"}
+    assert request["frame.interface_description"] == "edition mycobot"
+    assert "frame.comment" not in request
+    assert reply["frame.comment"] == "in pieces: 8 bytes at +0 ns, 9 bytes at +100000000 ns"
     assert panic["frame.comment"] == "noise no-header"
 
 
-def test_tshark_has_our_nanoseconds(path: Path) -> None:
+def test_tshark_shows_nanoseconds(path: Path) -> None:
     shown = [packet["frame.time_epoch"] for packet in fields(path)]
     stamps = [packet.time_ns for packet in read(path)]
     assert [int(text.replace(".", "")) for text in shown] == stamps
 
 
-def test_capinfos_finds_nothing_wrong(path: Path) -> None:
-    said = run("capinfos", path)
-    assert "Wireshark/... - pcapng" in said
-    assert "Number of packets:   3" in said
-    assert "Capture application: cobotwire" in said
-    assert "Time precision = nanoseconds (9)" in said
-    assert f"USER {LINK_TYPE - 147}" in said
-    assert "Speed = 115200" in said
+def test_capinfos_reads_the_header(path: Path) -> None:
+    output = run("capinfos", path)
+    assert "Wireshark/... - pcapng" in output
+    assert "Number of packets:   3" in output
+    assert "Capture application: cobotwire" in output
+    assert "Time precision = nanoseconds (9)" in output
+    assert f"USER {LINK_TYPE - 147}" in output
+    assert "Speed = 115200" in output
 
 
-def test_several_lines_in_one_file(tmp_path: Path) -> None:
+def test_tshark_shows_several_interfaces(tmp_path: Path) -> None:
     path = tmp_path / "two.pcapng"
     packets = [Packet(10**18 + n, "sent", b"x", interface=n % 2) for n in range(4)]
     path.write_bytes(written(packets, "/dev/ttyUSB0", "socket://arm:9000"))
@@ -100,7 +100,7 @@ def test_several_lines_in_one_file(tmp_path: Path) -> None:
     assert names == ["/dev/ttyUSB0", "socket://arm:9000"] * 2
 
 
-def test_a_capture_that_breaks_off_is_read_up_to_there(path: Path) -> None:
+def test_tshark_reads_a_truncated_capture_up_to_the_same_packet(path: Path) -> None:
     whole = path.read_bytes()
     ends_within_last = path.with_name("cut.pcapng")
     ends_within_last.write_bytes(whole[: whole.index(TEXT) + 3])
@@ -115,12 +115,12 @@ def test_a_capture_that_breaks_off_is_read_up_to_there(path: Path) -> None:
     assert len(list(read(ends_within_last))) == 2
 
 
-def test_what_editcap_wrote_anew_is_read_as_before(path: Path) -> None:
+def test_capture_rewritten_by_editcap_is_read_unchanged(path: Path) -> None:
     again = path.with_name("again.pcapng")
     run("editcap", path, again)
     theirs, ours = read(again), read(path)
     packets = list(ours)
-    # It keeps the section's application, hence the kinds.
+    # editcap keeps the name of the application; the kinds of packets depend on it.
     assert list(theirs) == packets
     assert packets[1].pieces == (
         Piece(8, packets[1].time_ns),

@@ -1,4 +1,4 @@
-"""Words to values: every command of every edition can be called with what its method takes."""
+"""Parse the arguments of every command of every edition."""
 
 from __future__ import annotations
 
@@ -8,43 +8,47 @@ from typing import Any
 import pytest
 
 from cobotwire import editions
-from cobotwire.cli.arguments import framed, parse
-from cobotwire.errors import UsageError
-from cobotwire.table import Command, Field
+from cobotwire.cli.shared.call_arguments import parse, request_values
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command, Field
 from strategies import TABLES, codec_of
 
 CALLS = [(name, command) for name, table in TABLES.items() for command in table.commands]
 
 
 @pytest.mark.parametrize(("edition", "command"), CALLS, ids=lambda x: getattr(x, "name", x))
-def test_each_forms_words_are_the_methods_arguments(edition: str, command: Command) -> None:
+def test_parsed_arguments_fit_the_client_method_and_the_codec(
+    edition: str, command: Command
+) -> None:
     client: Any = editions.load(edition).CLIENT
     method = inspect.signature(getattr(client, command.name))
-    for number, form in enumerate(command.request):
-        given = [field for field in form.fields if len(field.choices) != 1 or field.labels]
+    for number, variant in enumerate(command.request):
+        given = [field for field in variant.fields if len(field.choices) != 1 or field.labels]
         words = [f"{field.name}={_word(field)}" for field in given]
         text = command.request_text.fields if command.request_text else ()
         values = parse(command, [*words, *(f"{name}=some {name}" for name in text)])
         method.bind(None, **values)
         codec_of(edition, "reference").encode(
-            command.name, "request", framed(command, values), form=number
+            command.name, "request", request_values(command, values), variant=number
         )
 
 
 def _word(field: Field) -> str:
     numbers = field.cases[0].numbers
     steps = [field.choices[0] if field.choices else number.minimum for number in numbers]
-    values = (step * n.multiply / n.divide if n.scaled else step for step, n in zip(steps, numbers))
+    values = (n.physical(step) for step, n in zip(steps, numbers))
     return ",".join(map(str, values))
 
 
-def test_words_in_order_and_what_may_be_left_out() -> None:
+def test_arguments_are_accepted_in_order_or_by_name() -> None:
     send_coords = TABLES["mycobot280"].command("send_coords")
     assert parse(send_coords, ["1,2,3,4,5,6", "speed=60"]) == {
         "coords": [1, 2, 3, 4, 5, 6],
         "speed": 60,
     }
-    with pytest.raises(UsageError, match="speed is None"):
+    with pytest.raises(
+        UsageError, match=r"send_coords\(\) is missing its argument speed; it takes"
+    ):
         parse(send_coords, ["1,2,3,4,5,6"])
-    with pytest.raises(UsageError, match="each once"):
+    with pytest.raises(UsageError, match=r"send_coords\(\) got its argument speed twice"):
         parse(send_coords, ["speed=60", "speed=70"])

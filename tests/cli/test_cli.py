@@ -1,4 +1,4 @@
-"""The command line as a person runs it: another process, its output, its exit code."""
+"""Run the command line in another process; check its output and exit code."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from cobotwire import __version__
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.sim import PtyServer
+from cobotwire.simulator import PtyServer, SimulatedArm
 
 COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
 
@@ -29,19 +29,19 @@ def run(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("codec", ["native", "reference"])
-def test_the_demo_gets_every_answer_right(codec: str) -> None:
+def test_demo_decodes_every_reply_correctly(codec: str) -> None:
     result = run("demo", "--codec", codec)
     assert result.returncode == 0, result.stderr
-    assert f"opened with the {codec} codec" in result.stdout
-    assert "8 of 8 answers right" in result.stdout
+    assert f"with the {codec} codec" in result.stdout
+    assert "8 of 8 replies are right" in result.stdout
     assert "FE FE 02 10 FA  power_on()" in result.stdout
     assert "moving: 100%" in result.stdout
-    assert "\x1b[" not in result.stdout, "no colour where there is no terminal"
+    assert "\x1b[" not in result.stdout, "there is no colour without a terminal"
 
 
-def test_the_demo_fails_when_an_answer_is_wrong() -> None:
+def test_demo_with_a_wrong_reply_fails() -> None:
     wrong = (
-        "import cobotwire.sim.state as s, cobotwire.demo as d; "
+        "import cobotwire.simulator.state as s, cobotwire.inspect.demo as d; "
         "d.OPENING = 55; d.TOOL = d.TOOL._replace(z=50.004); "
         "from cobotwire.cli import main; main()"
     )
@@ -50,10 +50,10 @@ def test_the_demo_fails_when_an_answer_is_wrong() -> None:
     )
     assert result.returncode == 1
     assert "WRONG  get_tool_reference" in result.stdout
-    assert "7 of 8 answers right" in result.stdout
+    assert "7 of 8 replies are right" in result.stdout
 
 
-def test_help_names_the_verbs_and_the_exit_codes() -> None:
+def test_help_lists_verbs_and_exit_codes() -> None:
     result = run("--help")
     assert result.returncode == 0
     verbs = ("demo", "ports", "doctor", "monitor", "call", "decode", "sim", "replay", "commands")
@@ -61,14 +61,14 @@ def test_help_names_the_verbs_and_the_exit_codes() -> None:
         assert word in result.stdout
 
 
-def test_the_version_says_which_codec_is_in_use() -> None:
+def test_version_names_the_codec_in_use() -> None:
     assert run("--version").stdout == f"cobotwire {__version__}, native codec\n"
     forced = run("--version", COBOTWIRE_CODEC="reference")
     assert forced.stdout == f"cobotwire {__version__}, reference codec\n"
     assert run("--version", COBOTWIRE_CODEC="quick").returncode == 2
 
 
-def test_a_call_prints_its_answer(server: PtyServer) -> None:
+def test_call_prints_the_result(server: PtyServer) -> None:
     result = run("call", "get_angles", "--port", server.url)
     assert (result.returncode, result.stdout) == (
         0,
@@ -78,41 +78,46 @@ def test_a_call_prints_its_answer(server: PtyServer) -> None:
     assert json.loads(as_json.stdout) == {"command": "get_reference_frame", "result": "BASE"}
 
 
-def test_a_call_takes_the_text_that_follows_its_frame(server: PtyServer) -> None:
+def test_call_accepts_text_arguments_after_the_frame(server: PtyServer) -> None:
     port = ("--port", server.url)
     call = ("--edition", "mycobot280", "call", "set_ssid_pwd")
     missing = run(*call, "home", *port)
     assert (missing.returncode, "Traceback" in missing.stderr) == (2, False)
-    assert "set_ssid_pwd takes account, password" in missing.stderr
+    assert (
+        "set_ssid_pwd() is missing its argument password; it takes account, password"
+        in missing.stderr
+    )
     done = run(*call, "home", "password=a=b", *port)
     assert done.returncode == 0, done.stderr
 
 
-def test_a_call_takes_lists_names_and_negative_numbers(server: PtyServer) -> None:
+def test_call_accepts_lists_enum_names_and_negative_numbers(
+    server: PtyServer, simulated: SimulatedArm
+) -> None:
     url = ("--port", server.url)
     assert run("call", "power_on", *url).returncode == 0
     moved = run("call", "send_angles", "-10,0,0,0,0,5.5", "speed=100", *url)
     assert moved.returncode == 0, moved.stderr
-    assert server.arm.state.angles.target(0.0) == pytest.approx((-10, 0, 0, 0, 0, 5.5), abs=0.044)
+    assert simulated.state.angles.target(0.0) == pytest.approx((-10, 0, 0, 0, 0, 5.5), abs=0.044)
     assert run("call", "set_end_type", "tool", *url).returncode == 0
-    assert server.arm.state.end_type == 1
+    assert simulated.state.end_type == 1
     assert run("call", "set_digital_output", "23", "on", *url).returncode == 0
-    assert server.arm.state.pins == {23: True}
+    assert simulated.state.pins == {23: True}
 
 
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
         (["get_angels"], 2, "did you mean get_angles?"),
-        (["send_angle", "1", "10"], 2, "speed is None; allowed: a value"),
+        (["send_angle", "1", "10"], 2, "send_angle() is missing its argument speed"),
         (["send_angle", "7", "10", "20"], 2, "joint is 7; allowed: a whole number 1..6"),
         (["send_angle", "1", "ten", "20"], 2, "angle is 'ten'; allowed: a number"),
-        (["get_angles", "5"], 2, "no values"),
-        (["set_end_type", "FLANG"], 2, "one of FLANGE, TOOL"),
-        (["set_free_mode", "maybe"], 2, "on or off"),
+        (["get_angles", "5"], 2, "get_angles() has no argument for '5'; it takes no arguments"),
+        (["set_end_type", "FLANG"], 2, "allowed: FLANGE (0), TOOL (1)"),
+        (["set_free_mode", "maybe"], 2, "allowed: on, off"),
     ],
 )
-def test_a_wrong_call_says_what_is_wrong(
+def test_call_with_wrong_arguments_names_the_mistake(
     server: PtyServer, words: list[str], code: int, message: str
 ) -> None:
     result = run("call", *words, "--port", server.url)
@@ -121,7 +126,7 @@ def test_a_wrong_call_says_what_is_wrong(
     assert "Traceback" not in result.stderr
 
 
-def test_a_missing_port_and_a_silent_arm_have_their_own_codes() -> None:
+def test_missing_port_and_silent_arm_have_different_exit_codes() -> None:
     assert run("call", "get_angles", "--port", "/dev/nosuchport").returncode == 3
     master, slave = pty.openpty()
     try:
@@ -130,10 +135,10 @@ def test_a_missing_port_and_a_silent_arm_have_their_own_codes() -> None:
         os.close(master)
         os.close(slave)
     assert silent.returncode == 4
-    assert "no answer to get_angles" in silent.stderr
+    assert "no reply to get_angles" in silent.stderr
 
 
-def test_decode_explains_each_byte() -> None:
+def test_decode_of_hex_explains_each_byte() -> None:
     result = run("decode", "FE FE 06 21 01 00 1D 14 FA")
     assert result.returncode == 0
     for line in (
@@ -145,13 +150,13 @@ def test_decode_explains_each_byte() -> None:
         assert line in result.stdout
 
 
-def test_decode_tells_why_a_frame_is_none() -> None:
+def test_decode_of_an_illegal_frame_gives_the_reason() -> None:
     result = run("decode", "fefe06320101", "14", "0xFA")
     assert result.returncode == 1
-    assert "LEN 06 is not legal for the request 32 (jog_coord): it is 05" in result.stdout
+    assert "LEN of the request 32 (jog_coord) is 06; allowed: 05" in result.stdout
 
 
-def test_decode_speaks_json() -> None:
+def test_decode_prints_json() -> None:
     lines = run("decode", "--json", "FF FE FE 03 86 01 FA").stdout.splitlines()
     noise, frame = (json.loads(line) for line in lines)
     assert (noise["kind"], noise["reason"]) == ("noise", "no-header")
@@ -160,19 +165,19 @@ def test_decode_speaks_json() -> None:
     ]
 
 
-def test_decode_refuses_what_is_no_hex() -> None:
+def test_decode_rejects_arguments_that_are_not_hex() -> None:
     assert run("decode", "FE F").returncode == 2
     assert run("decode", "hello").returncode == 2
 
 
-def test_the_examples_in_the_help_of_call_keep_their_lines() -> None:
+def test_help_of_call_keeps_the_lines_of_its_examples() -> None:
     lines = [line.strip() for line in run("call", "--help").stdout.splitlines()]
     assert "cobotwire call get_angles --port /dev/ttyACM0" in lines
     assert "cobotwire call set_reference_frame WORLD --port /dev/ttyACM0" in lines
     assert "\\b" not in "".join(lines)
 
 
-def test_what_the_spec_says_is_no_markup() -> None:
+def test_commands_prints_text_of_the_spec_without_markup() -> None:
     script = (
         "import dataclasses, cobotwire.editions.mycobot as e\n"
         "word = 'the [bold]first[/] of :warning: [/nothing]'\n"
@@ -188,13 +193,13 @@ def test_what_the_spec_says_is_no_markup() -> None:
         assert "the [bold]first[/] of :warning: [/nothing]" in result.stdout
 
 
-def test_commands_lists_all_of_them() -> None:
+def test_commands_lists_every_command() -> None:
     result = run("commands")
     assert len(result.stdout.splitlines()) == len(TABLE.commands) + 1
     assert "0x2A  is_in_position" in result.stdout
 
 
-def test_commands_tells_all_about_one() -> None:
+def test_commands_describes_one_command_byte_by_byte() -> None:
     result = run("commands", "send_coord")
     for words in ("0x24  motion", "5-6   coord", "-3253.5..3300 millimetre (x 10)", "1 X, 2 Y"):
         assert words in result.stdout
@@ -203,7 +208,7 @@ def test_commands_tells_all_about_one() -> None:
     assert json.loads(run("commands", "stop", "--json").stdout)[0]["id"] == 0x29
 
 
-def test_an_unknown_edition_is_named() -> None:
+def test_unknown_edition_gets_a_suggestion() -> None:
     result = run("--edition", "mycobt", "commands")
     assert result.returncode == 2
     assert "did you mean mycobot?" in result.stderr

@@ -1,4 +1,4 @@
-"""``cobotwire decode`` of files and pipes, as another process."""
+"""Run ``cobotwire decode`` on files and pipes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def capture(tmp_path: Path) -> str:
     return capture_in(tmp_path)
 
 
-def test_a_file_is_shown_an_event_a_line(capture: str) -> None:
+def test_decode_prints_a_line_for_each_frame_and_finding(capture: str) -> None:
     code, out, err = run(capture)
     assert (code, err) == (1, "")
     lines = out.splitlines()
@@ -35,7 +35,7 @@ def test_a_file_is_shown_an_event_a_line(capture: str) -> None:
     assert "\x1b[" not in out
 
 
-def test_json_holds_every_byte_once(capture: str) -> None:
+def test_json_output_holds_every_byte_once(capture: str) -> None:
     _, out, _ = run(capture, "--json")
     events = [json.loads(line) for line in out.splitlines()]
     assert b"".join(bytes.fromhex(event["data"]) for event in events) == FIELD
@@ -46,7 +46,7 @@ def test_json_holds_every_byte_once(capture: str) -> None:
     assert events[0]["readings"][0]["command"] == "is_power_on"
 
 
-def test_the_exit_code_says_whether_all_was_legal(tmp_path: Path) -> None:
+def test_exit_code_is_1_if_a_byte_is_not_in_a_legal_frame(tmp_path: Path) -> None:
     path = tmp_path / "clean.bin"
     path.write_bytes(ANGLES * 3)
     assert run(str(path))[0] == 0
@@ -54,7 +54,7 @@ def test_the_exit_code_says_whether_all_was_legal(tmp_path: Path) -> None:
     assert run("-", stdin=b"")[0] == 0
 
 
-def test_direction_and_unknown_ids(tmp_path: Path) -> None:
+def test_direction_and_accept_unknown_choose_what_is_a_frame(tmp_path: Path) -> None:
     path = tmp_path / "some.bin"
     path.write_bytes(bytes.fromhex("FE FE 02 20 FA FE FE 04 E0 01 02 FA"))
     assert "a request, get_angles: an echo" in run(str(path), "--direction", "reply")[1]
@@ -63,13 +63,13 @@ def test_direction_and_unknown_ids(tmp_path: Path) -> None:
     assert [line.split()[1] for line in accepted] == ["frame", "frame"]
 
 
-def test_each_byte_of_a_file_on_request(capture: str) -> None:
+def test_bytes_option_explains_each_byte_of_a_file(capture: str) -> None:
     _, out, _ = run(capture, "--bytes")
     assert "LEN            14: 14 bytes follow" in out
     assert "noise   FF FF 01 04 02 38 02 BE   no-header\n  servo bus: read 2 bytes" in out
 
 
-def test_the_summary_counts(capture: str) -> None:
+def test_summary_counts_frames_noise_and_findings(capture: str) -> None:
     code, out, _ = run(capture, "--quiet", "--summary", "--json")
     counts = json.loads(out)
     noise = len(FIELD) - len(ANGLES) - 2 * len(FRAME)
@@ -87,7 +87,7 @@ def test_the_summary_counts(capture: str) -> None:
     assert f"{len(FIELD)} bytes, 3 frames, 2 resyncs" in words
 
 
-def test_a_reader_that_goes_away_is_no_failure(tmp_path: Path) -> None:
+def test_closed_output_ends_decode_with_141_and_no_message(tmp_path: Path) -> None:
     path = tmp_path / "long.bin"
     path.write_bytes(FIELD * 2000)
     process = subprocess.Popen(
@@ -102,7 +102,7 @@ def test_a_reader_that_goes_away_is_no_failure(tmp_path: Path) -> None:
     process.stderr.close()
 
 
-def test_ctrl_c_ends_with_the_counts_so_far() -> None:
+def test_ctrl_c_prints_the_counts_so_far() -> None:
     process = subprocess.Popen(
         [*COMMAND, "-", "--summary"],
         stdin=subprocess.PIPE,
@@ -113,7 +113,7 @@ def test_ctrl_c_ends_with_the_counts_so_far() -> None:
     assert process.stdout is not None
     process.stdin.write(ANGLES * 2)
     process.stdin.flush()
-    # A live line is shown as it comes, though the pipe stays open.
+    # Live input is shown as it arrives, although the pipe stays open.
     assert b"get_angles" in process.stdout.readline()
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
@@ -122,13 +122,13 @@ def test_ctrl_c_ends_with_the_counts_so_far() -> None:
     assert b"Traceback" not in err
 
 
-def test_memory_does_not_grow_with_the_file(tmp_path: Path) -> None:
+def test_memory_use_does_not_depend_on_the_file_size(tmp_path: Path) -> None:
     peaks = []
     for times in (1, 40):
         path = tmp_path / f"{times}.bin"
         with path.open("wb") as file:
             file.write((FIELD * 80 + b"~" * 5000) * times)
-            # A hole: NULs that take no room on the disk.
+            # A sparse file: NULs that take no space on the disk.
             file.truncate(file.tell() + times * 500_000)
         script = (
             "import resource, sys\n"
@@ -149,7 +149,7 @@ def test_memory_does_not_grow_with_the_file(tmp_path: Path) -> None:
 
 
 def _on_a_terminal(command: list[str], stdout: int | None) -> str:
-    """What a command writes to a terminal, its errors or (``stdout`` None) all it says."""
+    """Return what a command writes to a terminal; ``stdout`` None includes its output."""
     master, slave = pty.openpty()
     with subprocess.Popen(
         command,
@@ -159,17 +159,19 @@ def _on_a_terminal(command: list[str], stdout: int | None) -> str:
         env={**os.environ, "TERM": "xterm", "COLUMNS": "80"},
     ):
         os.close(slave)
-        said = b""
+        output = b""
         try:
             while block := os.read(master, 4096):
-                said += block
+                output += block
         except OSError:
-            pass  # this is how a pty says that the other side is closed
+            pass  # reading from a pty fails when the other side is closed
         os.close(master)
-    return said.decode()
+    return output.decode()
 
 
-def test_a_terminal_gets_colour_and_a_bar_for_long_files_only(tmp_path: Path, capture: str) -> None:
+def test_terminal_gets_colour_and_a_progress_bar_for_long_files(
+    tmp_path: Path, capture: str
+) -> None:
     path = tmp_path / "long.bin"
     with path.open("wb") as file:
         file.truncate(8_000_000)

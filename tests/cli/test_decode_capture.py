@@ -1,4 +1,4 @@
-"""``call --record``, and ``decode`` of that: each frame with its time, in its direction."""
+"""Record with ``call --record``, and decode the recording with times and directions."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from cobotwire.capture import CaptureWriter, Interface, Packet, read
-from cobotwire.sim import PtyServer
+from cobotwire.simulator import PtyServer, SimulatedArm
 from scripted_peer import ScriptedPeer
 
 COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
-ASK = bytes.fromhex("FE FE 02 20 FA")
+QUERY = bytes.fromhex("FE FE 02 20 FA")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
 
@@ -27,22 +27,22 @@ def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def recorded(tmp_path: Path) -> Path:
-    """A call on a bad line: an echo, a servo leak, and a reply with a pause inside."""
+    """Record a call on a bad line: an echo, a servo leak, and a reply with a pause inside."""
     path = tmp_path / "arm.pcapng"
-    with ScriptedPeer([ASK, LEAK + ANGLES[:8], 0.1, ANGLES[8:]]) as peer:
+    with ScriptedPeer([QUERY, LEAK + ANGLES[:8], 0.1, ANGLES[8:]]) as peer:
         result = run("call", "get_angles", "--port", peer.url, "--record", path)
     assert (result.returncode, result.stderr) == (0, "")
     return path
 
 
-def test_frames_have_times_and_directions(recorded: Path) -> None:
+def test_decode_prints_times_and_directions_of_a_recording(recorded: Path) -> None:
     result = run("decode", recorded)
     assert (result.returncode, result.stderr) == (1, "")
-    asked, echo, leak, reply = (line.split() for line in result.stdout.splitlines())
-    assert asked[:4] == ["0.000000", ">", "0", "frame"]
-    assert " ".join(asked[9:]) == "request: get_angles()"
-    assert echo[1:4] == ["<", "0", "other-way"]
-    assert " ".join(echo[9:]) == "echo of our own get_angles"
+    request, echo, leak, reply = (line.split() for line in result.stdout.splitlines())
+    assert request[:4] == ["0.000000", ">", "0", "frame"]
+    assert " ".join(request[9:]) == "request: get_angles()"
+    assert echo[1:4] == ["<", "0", "opposite-frame"]
+    assert " ".join(echo[9:]) == "echo of our request get_angles"
     assert leak[1:4] == ["<", "5", "servo"]
     assert reply[1:4] == ["<", "13", "frame"]
     assert "reply:" in reply
@@ -50,20 +50,20 @@ def test_frames_have_times_and_directions(recorded: Path) -> None:
     assert 0 <= float(echo[0]) <= float(leak[0]) <= float(reply[0]) < 10
 
 
-def test_json_says_when_and_which_way(recorded: Path) -> None:
+def test_json_output_holds_times_and_directions(recorded: Path) -> None:
     result = run("decode", recorded, "--json", "--summary")
     *entries, summary = map(json.loads, result.stdout.splitlines())
     packets = list(read(recorded))
     assert entries[0]["time_ns"] == packets[0].time_ns
-    assert [entry["direction"] for entry in entries] == ["sent", "heard", "heard", "heard"]
+    assert [entry["direction"] for entry in entries] == ["sent", "received", "received", "received"]
     assert [entry["kind"] for entry in entries] == ["frame", "noise", "noise", "frame"]
     assert entries[2]["finding"] == "servo"
     assert [reading["command"] for reading in entries[3]["readings"]] == ["get_angles"]
     assert summary["bytes"] == sum(len(packet.data) for packet in packets)
-    assert sum(summary["noise"].values()) == len(ASK + LEAK)
+    assert sum(summary["noise"].values()) == len(QUERY + LEAK)
 
 
-def test_a_capture_that_breaks_off_says_so(recorded: Path, tmp_path: Path) -> None:
+def test_truncated_recording_is_decoded_with_a_warning(recorded: Path, tmp_path: Path) -> None:
     whole = recorded.read_bytes()
     cut = tmp_path / "cut.pcapng"
     cut.write_bytes(whole[: whole.rindex(ANGLES[:8]) + 12])
@@ -72,7 +72,7 @@ def test_a_capture_that_breaks_off_says_so(recorded: Path, tmp_path: Path) -> No
     assert "request: get_angles()" in result.stdout
 
 
-def test_packets_without_a_direction_are_read_as_the_caller_says(tmp_path: Path) -> None:
+def test_direction_option_applies_to_packets_of_unknown_direction(tmp_path: Path) -> None:
     path = tmp_path / "other.pcapng"
     with path.open("wb") as file:
         writer = CaptureWriter(file, "another program")
@@ -85,13 +85,13 @@ def test_packets_without_a_direction_are_read_as_the_caller_says(tmp_path: Path)
     assert result.stdout.split()[:4] == ["0.000000", "?", "0", "frame"]
 
 
-def test_a_recording_is_not_overwritten_and_nothing_is_sent(
-    server: PtyServer, tmp_path: Path
+def test_existing_file_is_not_overwritten_and_nothing_is_sent(
+    server: PtyServer, simulated: SimulatedArm, tmp_path: Path
 ) -> None:
     path = tmp_path / "there.pcapng"
     path.write_bytes(b"precious")
     result = run("call", "power_on", "--port", server.url, "--record", path)
     assert result.returncode == 2
-    assert "a file that is not there yet" in result.stderr
+    assert "the file exists already" in result.stderr
     assert path.read_bytes() == b"precious"
-    assert not server.arm.state.powered
+    assert not simulated.state.powered

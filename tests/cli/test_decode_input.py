@@ -1,4 +1,4 @@
-"""What ``cobotwire decode`` takes: hex words, files, pipes; raw bytes or hex text."""
+"""Check the input of ``cobotwire decode``: hex arguments, files and pipes; raw or hex text."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ def capture(tmp_path: Path) -> str:
     return capture_in(tmp_path)
 
 
-@pytest.mark.parametrize("form", [["--raw"], []])
-def test_the_standard_input_reads_as_a_file_does(capture: str, form: list[str]) -> None:
-    assert run("-", *form, stdin=FIELD) == run(capture, *form)
+@pytest.mark.parametrize("variant", [["--raw"], []])
+def test_standard_input_is_decoded_like_a_file(capture: str, variant: list[str]) -> None:
+    assert run("-", *variant, stdin=FIELD) == run(capture, *variant)
 
 
 @pytest.mark.parametrize(
@@ -31,16 +31,16 @@ def test_the_standard_input_reads_as_a_file_does(capture: str, form: list[str]) 
         "".join(f"0x{byte:02x}" for byte in FIELD),
     ],
 )
-def test_hex_text_reads_as_the_bytes_do(tmp_path: Path, capture: str, text: str) -> None:
+def test_hex_text_is_decoded_like_raw_bytes(tmp_path: Path, capture: str, text: str) -> None:
     path = tmp_path / "capture.hex"
     path.write_text(text)
-    guessed, said = run(str(path)), run(str(path), "--hex")
-    assert guessed[:2] == said[:2] == run(capture)[:2]
-    assert "as hex text" in guessed[2]
-    assert said[2] == ""
+    detected, forced = run(str(path)), run(str(path), "--hex")
+    assert detected[:2] == forced[:2] == run(capture)[:2]
+    assert "as hex text" in detected[2]
+    assert forced[2] == ""
 
 
-def test_hex_text_of_many_blocks(tmp_path: Path) -> None:
+def test_long_hex_text_is_decoded_block_by_block(tmp_path: Path) -> None:
     path = tmp_path / "long.hex"
     data = (ANGLES + READ) * 8000
     path.write_text(" 0x".join(["", *(f"{byte:02x}" for byte in data)]))
@@ -52,8 +52,8 @@ def test_hex_text_of_many_blocks(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "words", "message"),
     [
-        (b"12:30:01 RX fe fe 02 20 fa\n", [], "this is other text"),
-        (b"fe fe 02 20 f", [], "pairs of hex digits"),
+        (b"12:30:01 RX fe fe 02 20 fa\n", [], "is text, but not hex"),
+        (b"fe fe 02 20 f", [], "is not a pair of hex digits"),
         (b"fe fe 02 20 fa zz", ["--hex"], "byte 15 of"),
         (FIELD, ["--hex"], "byte 0 of"),
         (b"fe " * 400 + b"xx", [], "byte 1200 of"),
@@ -61,7 +61,7 @@ def test_hex_text_of_many_blocks(tmp_path: Path) -> None:
         ("fe fe 02 20 fa".encode("utf-16"), [], "Unicode"),
     ],
 )
-def test_what_may_be_misread_is_refused(
+def test_text_that_is_not_plain_hex_is_rejected(
     tmp_path: Path, content: bytes, words: list[str], message: str
 ) -> None:
     path = tmp_path / "odd"
@@ -72,7 +72,7 @@ def test_what_may_be_misread_is_refused(
     assert run(str(path), "--raw")[0] in (0, 1)
 
 
-def test_a_word_that_is_hex_and_a_file_is_refused(tmp_path: Path) -> None:
+def test_argument_that_is_hex_and_a_file_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "FEFE0220FA").write_bytes(ANGLES)
     code, _, err = run("FEFE0220FA", cwd=tmp_path)
     assert code == 2
@@ -85,5 +85,5 @@ def test_a_word_that_is_hex_and_a_file_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "words", [["nosuch.bin"], ["a.bin", "b.bin"], ["FE", "F"], ["."], ["-", "FE"]]
 )
-def test_what_is_neither_hex_nor_a_file_is_refused(words: list[str]) -> None:
+def test_argument_that_is_neither_hex_nor_a_file_is_rejected(words: list[str]) -> None:
     assert run(*words)[0] == 2

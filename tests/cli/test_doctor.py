@@ -1,4 +1,4 @@
-"""``cobotwire doctor`` as a process: on the simulated arm, and on lines that are ill."""
+"""Run ``cobotwire doctor`` on the simulated arm, and on bad lines."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ import pytest
 
 from cobotwire.capture import read
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.health.latency import latency_timer
-from cobotwire.sim import PtyServer
+from cobotwire.simulator import PtyServer, SimulatedArm
 from scripted_peer import ScriptedPeer, ScriptedTcpPeer, Step
 
 COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "doctor"]
@@ -45,70 +44,72 @@ def examined(scripts: list[list[Step]], *words: str) -> tuple[int, dict[str, Any
 
 
 def kinds(report: dict[str, Any]) -> list[str]:
-    return [complaint["kind"] for complaint in report["complaints"]]
+    return [problem["kind"] for problem in report["problems"]]
 
 
-def in_front(noise: bytes) -> list[list[Step]]:
-    """A line on which noise comes before one of the answers."""
+def with_noise(noise: bytes) -> list[list[Step]]:
+    """Return the scripts of a healthy arm with noise before one reply."""
     return [*HEALTHY[:2], [noise, *HEALTHY[2]], *HEALTHY[3:]]
 
 
-def test_a_healthy_arm_is_healthy_and_only_queries_were_sent() -> None:
+def test_doctor_of_a_healthy_arm_sends_only_queries() -> None:
     with ScriptedPeer(*HEALTHY) as peer:
         result = run(peer.url, "--count", "2")
-        asked = peer.heard
+        requests = peer.received
     assert (result.returncode, result.stderr) == (0, "")
-    assert "6 of 6 questions answered" in result.stdout
+    assert "6 replies to 6 requests" in result.stdout
     assert "round trip" in result.stdout
     assert result.stdout.endswith("healthy\n")
-    sent = {asked[place + 3] for place in range(0, len(asked), 5)}
+    sent = {requests[place + 3] for place in range(0, len(requests), 5)}
     by_id = {command.id: command.safety for command in TABLE.commands if command.id in sent}
     assert set(by_id.values()) == {"query"}
 
 
-def test_the_simulated_arm_has_no_power_and_is_not_ill(server: PtyServer) -> None:
+def test_doctor_of_an_arm_without_power_reports_it_but_exits_with_0(
+    server: PtyServer, simulated: SimulatedArm
+) -> None:
     result = run(server.url)
     assert result.returncode == 0
-    assert "no-power: the arm has no power" in result.stdout
-    assert not server.arm.state.powered
+    assert "no-power: the arm is switched off" in result.stdout
+    assert not simulated.state.powered
 
 
 @pytest.mark.parametrize(
-    ("noise", "kind", "said"),
+    ("noise", "kind", "diagnosis"),
     [
         (PANIC, "panic", "the controller rebooted: panic LoadProhibited"),
         (LEAK, "servo", "servo bus leak"),
-        (b"cmd_len error\r\n", "cmd-len-error", "the firmware said cmd_len error"),
-        (bytes.fromhex("78 80 78 80 78 80 F8 00 78 78 80 80"), "garbage", "another baud rate"),
+        (b"cmd_len error\r\n", "cmd-len-error", "the firmware reported cmd_len error"),
+        (bytes.fromhex("78 80 78 80 78 80 F8 00 78 78 80 80"), "garbage", "a wrong baud rate"),
     ],
 )
-def test_noise_is_diagnosed_and_advice_is_given(noise: bytes, kind: str, said: str) -> None:
-    code, report = examined(in_front(noise))
+def test_doctor_diagnoses_noise_and_gives_advice(noise: bytes, kind: str, diagnosis: str) -> None:
+    code, report = examined(with_noise(noise))
     assert code == 1
     assert kind in kinds(report)
-    assert said in report["diagnosis"]
-    assert report["answered"] == report["asked"] == 6
+    assert diagnosis in report["diagnosis"]
+    assert report["replies"] == report["requests"] == 6
     assert report["noise"] == len(noise)
-    assert all(complaint["advice"] for complaint in report["complaints"])
+    assert all(problem["advice"] for problem in report["problems"])
 
 
-def test_silence_is_told_soon_and_nothing_more_is_asked() -> None:
+def test_doctor_of_a_silent_arm_stops_after_three_requests() -> None:
     started = time.monotonic()
     code, report = examined([])
     assert (code, kinds(report)) == (1, ["silence"])
-    assert (report["asked"], report["answered"], report["healthy"]) == (3, 0, False)
+    assert (report["requests"], report["replies"], report["healthy"]) == (3, 0, False)
     assert time.monotonic() - started < 20
 
 
-def test_a_lost_and_an_illegal_reply_are_told() -> None:
+def test_doctor_reports_lost_and_illegal_replies() -> None:
     illegal = bytes.fromhex("FE FE 03 2B 07 FA")
     code, report = examined([[], [illegal], *HEALTHY[2:]])
     assert code == 1
     assert kinds(report) == ["illegal-reply", "lost-replies"]
-    assert report["complaints"][1]["says"].startswith("1 of 6")
+    assert report["problems"][1]["text"] == "no reply in time to 1 of 6 requests"
 
 
-def test_without_a_link_the_code_is_3_and_what_was_found_is_told() -> None:
+def test_doctor_without_a_port_exits_with_3_and_reports_what_it_found() -> None:
     result = run("/dev/nosuchport", "--json")
     assert result.returncode == 3
     assert kinds(json.loads(result.stdout)) == ["link"]
@@ -116,40 +117,31 @@ def test_without_a_link_the_code_is_3_and_what_was_found_is_told() -> None:
     assert code == 3
     assert kinds(report)[0] == "link"
     assert "servo" in kinds(report)
-    assert report["answered"] == 2
+    assert report["replies"] == 2
 
 
-def test_it_works_over_tcp_and_records(tmp_path: Path) -> None:
+def test_doctor_works_over_tcp_and_records(tmp_path: Path) -> None:
     path = tmp_path / "doctor.pcapng"
     with ScriptedTcpPeer(*HEALTHY) as peer:
         result = run(peer.url, "--count", "2", "--record", path)
     assert result.returncode == 0, result.stdout
     capture = read(path)
-    assert [packet.direction for packet in capture] == ["sent", "heard"] * 6
+    assert [packet.direction for packet in capture] == ["sent", "received"] * 6
     assert capture.finished
 
 
-def test_noise_on_a_quiet_line_is_heard_before_anything_is_asked() -> None:
+def test_doctor_diagnoses_noise_before_the_first_request() -> None:
     with ScriptedPeer(*HEALTHY) as peer:
-        telling = threading.Event()
+        stopping = threading.Event()
 
-        def tell() -> None:
-            while not telling.wait(0.05) and not peer.heard:
-                peer.say(LEAK)
+        def send() -> None:
+            while not stopping.wait(0.05) and not peer.received:
+                peer.send(LEAK)
 
-        thread = threading.Thread(target=tell)
+        thread = threading.Thread(target=send)
         thread.start()
         result = run(peer.url, "--count", "2")
-        telling.set()
+        stopping.set()
         thread.join()
     assert result.returncode == 1
     assert "servo bus leak" in result.stdout
-
-
-def test_the_latency_timer_is_read_where_the_system_tells_it(tmp_path: Path) -> None:
-    folder = tmp_path / "class" / "tty" / "ttyUSB7" / "device"
-    folder.mkdir(parents=True)
-    (folder / "latency_timer").write_text("16\n")
-    assert latency_timer("/dev/ttyUSB7", tmp_path) == (16, folder / "latency_timer")
-    assert latency_timer("/dev/ttyACM0", tmp_path) is None
-    assert latency_timer("socket://ttyUSB7:1", tmp_path) is None

@@ -1,4 +1,4 @@
-"""``cobotwire monitor`` as a process: lines, JSON, a table on a terminal, and its end."""
+"""Run ``cobotwire monitor``: lines, JSON, a table on a terminal, and how it ends."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from cobotwire import MyCobot
 from cobotwire.capture import read
-from cobotwire.sim import PtyServer
+from cobotwire.simulator import PtyServer
 from scripted_peer import ScriptedPeer
 
 COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "monitor"]
@@ -26,7 +26,7 @@ def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_lines_where_there_is_no_terminal(server: PtyServer) -> None:
+def test_monitor_prints_lines_without_a_terminal(server: PtyServer) -> None:
     result = run(server.url, "--count", "3", "--rate", "50")
     assert (result.returncode, result.stderr) == (0, "")
     lines = result.stdout.splitlines()
@@ -35,7 +35,7 @@ def test_lines_where_there_is_no_terminal(server: PtyServer) -> None:
     assert "\x1b" not in result.stdout
 
 
-def test_json_tells_values_errors_and_noise() -> None:
+def test_json_output_holds_values_errors_and_noise() -> None:
     with ScriptedPeer([LEAK + ANGLES]) as peer:
         result = run(peer.url, "--count", "2", "--json")
     first, second = map(json.loads, result.stdout.splitlines())
@@ -44,10 +44,10 @@ def test_json_tells_values_errors_and_noise() -> None:
     assert (first["unanswered"], second["unanswered"]) == (1, 3)
     assert first["noise"] == len(LEAK)
     assert first["diagnosis"].startswith("servo bus leak")
-    assert "no answer to" in second["error"]
+    assert "no reply to" in second["error"]
 
 
-def test_the_rate_is_kept(server: PtyServer) -> None:
+def test_monitor_keeps_the_rate(server: PtyServer) -> None:
     result = run(server.url, "--count", "11", "--rate", "20", "--json")
     samples = [json.loads(line) for line in result.stdout.splitlines()]
     assert samples[-1]["time"] >= 0.5 - 0.05
@@ -55,7 +55,9 @@ def test_the_rate_is_kept(server: PtyServer) -> None:
     assert run(server.url, "--rate", "0").returncode == 2
 
 
-def test_ctrl_c_leaves_port_arm_and_recording_in_order(server: PtyServer, tmp_path: Path) -> None:
+def test_ctrl_c_closes_the_port_and_finishes_the_recording(
+    server: PtyServer, tmp_path: Path
+) -> None:
     path = tmp_path / "watched.pcapng"
     process = subprocess.Popen(
         [*COMMAND, server.url, "--rate", "100", "--record", str(path)],
@@ -77,14 +79,14 @@ def test_ctrl_c_leaves_port_arm_and_recording_in_order(server: PtyServer, tmp_pa
         assert arm.is_power_on() is False
 
 
-def test_a_link_that_goes_has_its_own_code() -> None:
+def test_lost_port_ends_monitor_with_its_exit_code() -> None:
     with ScriptedPeer([ANGLES, None]) as peer:
         result = run(peer.url)
     assert result.returncode == 3
     assert "Traceback" not in result.stderr
 
 
-def test_a_table_on_a_terminal(server: PtyServer) -> None:
+def test_monitor_shows_a_table_on_a_terminal(server: PtyServer) -> None:
     terminal, inner = pty.openpty()
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}
     process = subprocess.Popen(

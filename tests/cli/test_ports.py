@@ -1,4 +1,4 @@
-"""``cobotwire ports``."""
+"""Run ``cobotwire ports`` with made-up serial ports."""
 
 from __future__ import annotations
 
@@ -7,39 +7,40 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from cobotwire.cli import ports as verb
+from cobotwire.cli.ports import ports
+from cobotwire.transport.serial import ports as serial_ports
 from cobotwire.transport.serial.ports import Port
 
 ARM = Port("/dev/ttyACM0", True, "CH9102, a bridge", True, "USB Single Serial", "1A86:55D4", "54")
-SHUT = Port("/dev/ttyUSB3", False, "nothing speaks for it", False)
+CLOSED = Port("/dev/ttyUSB3", False, "no known adapter", False)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, found: list[Port], *words: str) -> tuple[int, str]:
-    # What ports a machine has, no test can say.
-    monkeypatch.setattr(verb, "ports", lambda: found)
-    result = CliRunner().invoke(verb.ports_, words)
+    # The ports of the machine are unknown.
+    monkeypatch.setattr(serial_ports, "ports", lambda: found)
+    result = CliRunner().invoke(ports, words)
     return result.exit_code, result.output
 
 
-def test_a_likely_port_is_told_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    code, said = run(monkeypatch, [ARM, SHUT])
+def test_likely_port_is_listed_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = run(monkeypatch, [ARM, CLOSED])
     assert code == 0
-    lines = said.splitlines()
+    lines = output.splitlines()
     assert lines[0].split() == ["/dev/ttyACM0", "likely", "CH9102,", "a", "bridge", "(1A86:55D4)"]
     assert lines[1].strip() == "USB Single Serial, serial number 54"
     assert lines[2].split()[:2] == ["/dev/ttyUSB3", "unlikely"]
     assert "you may not open it" in lines[3]
 
 
-def test_without_a_likely_port_the_answer_is_no(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert run(monkeypatch, [SHUT])[0] == 1
-    code, said = run(monkeypatch, [])
+def test_exit_code_is_1_without_a_likely_port(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert run(monkeypatch, [CLOSED])[0] == 1
+    code, output = run(monkeypatch, [])
     assert code == 1
-    assert "is the arm's cable plugged in" in said
+    assert "is the arm's cable plugged in" in output
 
 
-def test_json_says_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    code, said = run(monkeypatch, [ARM, SHUT], "--json")
+def test_json_output_holds_every_attribute(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = run(monkeypatch, [ARM, CLOSED], "--json")
     assert code == 0
-    assert [Port(**entry) for entry in json.loads(said)] == [ARM, SHUT]
+    assert [Port(**entry) for entry in json.loads(output)] == [ARM, CLOSED]
     assert json.loads(run(monkeypatch, [], "--json")[1]) == []

@@ -1,4 +1,4 @@
-"""``cobotwire replay``: a real conversation, recorded, shown and held again."""
+"""Record traffic with a simulated arm; print and serve it with ``cobotwire replay``."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from cobotwire import MyCobot, ReplyTimeout
 from cobotwire import codec as codecs
 from cobotwire.capture import Recording, read
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.sim import PtyServer
-from cobotwire.transport import TappedLink, open_link
+from cobotwire.simulator import PtyServer
+from cobotwire.transport import TappedTransport, open_transport
 
 COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "replay"]
 ANGLES = (10.0, -20.0, 30.0, 0.0, 5.5, 0.0)
@@ -29,27 +29,27 @@ def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
 
 
 def converse(url: str, tap: Recording | None = None) -> list[object]:
-    """A conversation, and its answers."""
-    link = open_link(url, 115200)
-    with MyCobot(link if tap is None else TappedLink(link, tap.record)) as arm:
-        said: list[object] = [arm.is_power_on()]
+    """Exchange some requests and replies; return the results."""
+    link = open_transport(url, 115200)
+    with MyCobot(link if tap is None else TappedTransport(link, tap.record)) as arm:
+        results: list[object] = [arm.is_power_on()]
         arm.power_on()
-        said.append(arm.is_power_on())
+        results.append(arm.is_power_on())
         arm.set_digital_output(23, True)
-        said.append(arm.get_angles())
-        return said
+        results.append(arm.get_angles())
+        return results
 
 
 @pytest.fixture
 def recorded(server: PtyServer, tmp_path: Path) -> tuple[Path, list[object]]:
-    """A capture, and what the arm answered in it."""
+    """Record an exchange; return the file and the results."""
     path = tmp_path / "arm.pcapng"
     with Recording(path, codecs.load(TABLE), url=server.url, baudrate=115200) as recording:
-        answers = converse(server.url, recording)
-    return path, answers
+        results = converse(server.url, recording)
+    return path, results
 
 
-def test_a_timeline_says_what_went_over_the_line(recorded: tuple[Path, list[object]]) -> None:
+def test_replay_prints_a_timeline(recorded: tuple[Path, list[object]]) -> None:
     result = run(recorded[0])
     assert result.returncode == 0
     assert result.stderr == ""
@@ -62,7 +62,7 @@ def test_a_timeline_says_what_went_over_the_line(recorded: tuple[Path, list[obje
     assert len(lines) == len(list(read(recorded[0])))
 
 
-def test_json_is_an_object_a_packet(recorded: tuple[Path, list[object]]) -> None:
+def test_json_output_is_an_object_per_packet(recorded: tuple[Path, list[object]]) -> None:
     result = run(recorded[0], "--json")
     entries = [json.loads(line) for line in result.stdout.splitlines()]
     packets = list(read(recorded[0]))
@@ -72,59 +72,59 @@ def test_json_is_an_object_a_packet(recorded: tuple[Path, list[object]]) -> None
     assert entries[0]["kind"] == "frame"
 
 
-def test_the_recorded_arm_gives_the_same_answers(recorded: tuple[Path, list[object]]) -> None:
-    path, answers = recorded
+def test_served_recording_gives_the_recorded_replies(recorded: tuple[Path, list[object]]) -> None:
+    path, results = recorded
     process = subprocess.Popen(
         [*COMMAND, str(path), "--serve"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
         assert process.stdout is not None
         url = process.stdout.readline().strip()
-        assert converse(url) == answers
-        # A second time, from the beginning.
-        assert converse(url) == answers
+        assert converse(url) == results
+        # A second client gets the same replies from the beginning.
+        assert converse(url) == results
         with MyCobot(url, timeout=0.2) as arm, pytest.raises(ReplyTimeout):
             arm.get_coords()
         process.send_signal(signal.SIGTERM)
         output, errors = process.communicate(timeout=10)
         assert process.returncode == 0
         assert errors == ""
-        assert "FE FE 02 12 FA   answered by 6 bytes" in output
+        assert "FE FE 02 12 FA   replied with 6 bytes" in output
         assert "FE FE 02 23 FA   was not recorded" in output
     finally:
         process.kill()
         process.communicate()
 
 
-def test_a_recording_that_breaks_off_says_where(recorded: tuple[Path, list[object]]) -> None:
+def test_truncated_recording_is_printed_with_a_warning(recorded: tuple[Path, list[object]]) -> None:
     path, _ = recorded
     whole = path.read_bytes()
     path.write_bytes(whole[:-70])
     result = run(path)
     assert result.returncode == 0
     assert "> FE FE 02 12 FA" in result.stdout
-    assert "ends in the middle of a packet; what comes before byte" in result.stderr
+    assert "ends in the middle of a packet; everything before byte" in result.stderr
 
 
-def test_a_recording_that_was_not_ended_says_so(tmp_path: Path) -> None:
+def test_unfinished_recording_is_printed_with_a_warning(tmp_path: Path) -> None:
     path = tmp_path / "open.pcapng"
     recording = Recording(path, codecs.load(TABLE))
     recording.record("sent", bytes.fromhex("FE FE 02 12 FA"), time.monotonic())
     result = run(path)
     assert "is_power_on()" in result.stdout
-    assert "was not ended in order" in result.stderr
+    assert "was not finished" in result.stderr
     recording.close()
 
 
 @pytest.mark.parametrize(
     ("content", "code", "words"),
     [
-        (None, 2, "No such file"),
-        (b"FE FE 02 12 FA", 6, "no pcapng file"),
+        (None, 2, "file: no such file"),
+        (b"FE FE 02 12 FA", 6, "the file is not a pcapng recording"),
         (b"\n\r\r\n" + bytes(40), 6, "at byte 0"),
     ],
 )
-def test_what_is_no_recording_is_told(
+def test_file_that_is_not_a_recording_is_rejected(
     tmp_path: Path, content: bytes | None, code: int, words: str
 ) -> None:
     path = tmp_path / "file"
@@ -137,12 +137,12 @@ def test_what_is_no_recording_is_told(
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
-    [(["--line", "7"], "line is 7; allowed: 0..0"), (["--speed", "0"], "speed is 0.0")],
+    ("words", "message"),
+    [(["--interface", "7"], "interface is 7; allowed: 0..0"), (["--speed", "0"], "speed is 0.0")],
 )
-def test_wrong_options_are_told(
-    recorded: tuple[Path, list[object]], words: list[str], said: str
+def test_wrong_options_are_rejected(
+    recorded: tuple[Path, list[object]], words: list[str], message: str
 ) -> None:
     result = run(recorded[0], "--serve", *words)
     assert result.returncode == 2
-    assert said in result.stderr
+    assert message in result.stderr

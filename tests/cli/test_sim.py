@@ -1,4 +1,4 @@
-"""``cobotwire sim`` and whoever reads, or does not read, what it prints and answers."""
+"""Run ``cobotwire sim`` with well-behaved clients, and with some that never read."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def sim(request: pytest.FixtureRequest) -> Iterator[subprocess.Popen[str]]:
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_sim_serves_a_port_shows_the_frames_and_ends_cleanly(
+def test_sim_serves_a_port_prints_the_traffic_and_ends_on_a_signal(
     sim: subprocess.Popen[str], how: signal.Signals
 ) -> None:
     assert sim.stdout is not None
@@ -48,12 +48,12 @@ def test_sim_serves_a_port_shows_the_frames_and_ends_cleanly(
     with MyCobot(url) as arm:
         assert arm.is_power_on() is False
     line = sim.stdout.readline()
-    assert line == "heard   FE FE 02 12 FA   is_power_on()   answered FE FE 03 12 00 FA\n"
+    assert line == "received FE FE 02 12 FA   is_power_on()   reply FE FE 03 12 00 FA\n"
     sim.send_signal(how)
     assert sim.wait(timeout=10) == 0
 
 
-def test_it_goes_on_when_nobody_reads_its_output_any_more(sim: subprocess.Popen[str]) -> None:
+def test_sim_continues_when_its_output_is_closed(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None
     assert sim.stderr is not None
     url = sim.stdout.readline().strip()
@@ -70,14 +70,14 @@ def test_it_goes_on_when_nobody_reads_its_output_any_more(sim: subprocess.Popen[
 
 @pytest.mark.parametrize("sim", [["--quiet"]], indirect=True)
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_it_ends_while_a_client_does_not_read(
+def test_sim_ends_while_a_client_does_not_read(
     sim: subprocess.Popen[str], how: signal.Signals
 ) -> None:
     assert sim.stdout is not None
     client = os.open(sim.stdout.readline().strip(), os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
     try:
         for _ in range(400):
-            assert select.select([], [client], [], 10.0)[1], "the arm still listens"
+            assert select.select([], [client], [], 10.0)[1], "the arm still reads"
             os.write(client, bytes.fromhex("FE FE 02 20 FA") * 20)
         sim.send_signal(how)
         assert sim.wait(timeout=10) == 0
@@ -92,7 +92,7 @@ def _run(*words: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("sim", [["--tcp", ":0"]], indirect=True)
-def test_it_serves_tcp_and_says_which_client_said_what(sim: subprocess.Popen[str]) -> None:
+def test_sim_over_tcp_numbers_the_clients(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None
     assert sim.stderr is not None
     url = sim.stdout.readline().strip()
@@ -101,15 +101,15 @@ def test_it_serves_tcp_and_says_which_client_said_what(sim: subprocess.Popen[str
         assert one.is_power_on() is False
         with MyCobot(url) as two:
             assert two.is_power_on() is False
-    said = "heard   FE FE 02 12 FA   is_power_on()   answered FE FE 03 12 00 FA\n"
-    assert [sim.stdout.readline() for _ in range(2)] == [f"  1 {said}", f"  2 {said}"]
+    line = "received FE FE 02 12 FA   is_power_on()   reply FE FE 03 12 00 FA\n"
+    assert [sim.stdout.readline() for _ in range(2)] == [f"  1 {line}", f"  2 {line}"]
     sim.send_signal(signal.SIGTERM)
     assert sim.wait(timeout=10) == 0
     assert sim.stderr.read() == ""
 
 
 @pytest.mark.parametrize("sim", [["--tcp", "0.0.0.0:0", "--json"]], indirect=True)
-def test_json_lines_and_a_warning_where_others_can_reach_it(sim: subprocess.Popen[str]) -> None:
+def test_sim_on_all_interfaces_prints_json_and_a_warning(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None
     assert sim.stderr is not None
     serving = json.loads(sim.stdout.readline())
@@ -117,23 +117,23 @@ def test_json_lines_and_a_warning_where_others_can_reach_it(sim: subprocess.Pope
     with MyCobot(serving["url"]) as arm:
         arm.set_color(1, 2, 3)
         assert arm.is_power_on() is False
-    heard = [json.loads(sim.stdout.readline()) for _ in range(2)]
-    assert heard[0]["command"] == "set_color"
-    assert heard[0]["fields"] == {"red": 1, "green": 2, "blue": 3}
-    assert "answer" not in heard[0]
-    assert heard[1] == {
+    events = [json.loads(sim.stdout.readline()) for _ in range(2)]
+    assert events[0]["command"] == "set_color"
+    assert events[0]["fields"] == {"red": 1, "green": 2, "blue": 3}
+    assert "reply" not in events[0]
+    assert events[1] == {
         "client": 1,
-        "event": "heard",
+        "event": "received",
         "data": "FE FE 02 12 FA",
         "command": "is_power_on",
         "fields": {},
-        "answer": "FE FE 03 12 00 FA",
+        "reply": "FE FE 03 12 00 FA",
     }
-    assert "whoever can reach 0.0.0.0" in sim.stderr.readline()
+    assert "everybody who can reach 0.0.0.0" in sim.stderr.readline()
 
 
 @pytest.mark.parametrize("sim", [["--json"]], indirect=True)
-def test_why_an_order_is_ignored_is_told(sim: subprocess.Popen[str]) -> None:
+def test_sim_prints_why_a_request_is_ignored(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None
     url = json.loads(sim.stdout.readline())["url"]
     with MyCobot(url) as arm:
@@ -146,7 +146,7 @@ def test_why_an_order_is_ignored_is_told(sim: subprocess.Popen[str]) -> None:
 
 
 @pytest.mark.parametrize("sim", [["--speed", "100"]], indirect=True)
-def test_the_arms_time_can_run_faster(sim: subprocess.Popen[str]) -> None:
+def test_speed_option_makes_the_arm_faster(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None
     with MyCobot(sim.stdout.readline().strip()) as arm:
         arm.power_on()
@@ -155,7 +155,7 @@ def test_the_arms_time_can_run_faster(sim: subprocess.Popen[str]) -> None:
         assert time.monotonic() - started < 5
 
 
-def test_a_terminal_gets_a_table_of_the_joints() -> None:
+def test_sim_shows_a_table_of_the_joints_on_a_terminal() -> None:
     master, slave = os.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", 24, 120, 0, 0))
     process = subprocess.Popen(COMMAND, stdout=slave, stderr=slave, text=True)
@@ -190,27 +190,27 @@ def _until(descriptor: int, wanted: bytes) -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["--tcp", "9000"], "HOST:PORT"),
         (["--tcp", ":70000"], "70000"),
-        (["--pty", "--tcp", ":0"], "one of --pty and --tcp"),
+        (["--pty", "--tcp", ":0"], "use one of --pty and --tcp"),
         (["--speed", "0"], "speed"),
         (["--speed", "nan"], "speed"),
     ],
 )
-def test_a_wrong_call_is_told(words: list[str], said: str) -> None:
+def test_wrong_options_are_rejected(words: list[str], message: str) -> None:
     result = _run(*words)
     assert result.returncode == 2
-    assert said in result.stderr
+    assert message in result.stderr
     assert "Traceback" not in result.stderr
 
 
-def test_a_taken_port_is_a_failure_of_the_link() -> None:
+def test_tcp_port_in_use_has_the_exit_code_of_a_failed_port() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         result = _run("--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
     assert result.returncode == 3
-    assert "cannot be listened on" in result.stderr
+    assert "cannot listen" in result.stderr
 
 
 SLOW = """\
@@ -220,7 +220,7 @@ faults:
 """
 
 
-def test_faults_are_done_on_every_line_and_told(tmp_path: Path) -> None:
+def test_faults_are_injected_for_every_client_and_printed(tmp_path: Path) -> None:
     path = tmp_path / "slow.yaml"
     path.write_text(SLOW)
     process = subprocess.Popen(
@@ -235,23 +235,23 @@ def test_faults_are_done_on_every_line_and_told(tmp_path: Path) -> None:
             with MyCobot(url) as arm:
                 assert arm.is_power_on() is False
         process.send_signal(signal.SIGTERM)
-        told = [json.loads(line) for line in process.stdout]
+        events = [json.loads(line) for line in process.stdout]
     finally:
         process.kill()
         process.communicate()
-    assert [(line["client"], line["event"]) for line in told] == [
-        (1, "heard"),
+    assert [(line["client"], line["event"]) for line in events] == [
+        (1, "received"),
         (1, "fault"),
-        (2, "heard"),
+        (2, "received"),
         (2, "fault"),
     ]
 
 
 @pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="needs /proc, as Linux has it")
-def test_an_arm_that_is_up_for_a_while_has_imported_what_slow_answers_need(
+def test_sim_imports_scipy_before_the_first_slow_request(
     sim: subprocess.Popen[str],
 ) -> None:
-    """Or its first solve_inv_kinematics comes later than its deadline."""
+    """Otherwise the reply to the first solve_inv_kinematics exceeds its deadline."""
     assert sim.stdout is not None
     assert sim.stdout.readline()
     maps, end = Path(f"/proc/{sim.pid}/maps"), time.monotonic() + 30

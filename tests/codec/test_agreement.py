@@ -1,4 +1,4 @@
-"""Reference and native agree: bytes, events, values, errors and offsets."""
+"""The reference and the native codec agree on bytes, events, values, errors and offsets."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import strategies
 from cobotwire.codec.interface import Codec, Listening, Noise
-from cobotwire.errors import CobotwireError, UsageError
-from cobotwire.table import Direction
+from cobotwire.protocol.errors import CobotwireError, UsageError
+from cobotwire.protocol.table import Direction
 from strategies import TABLES, codec_of
 
 DIRECTIONS = st.sampled_from(["request", "reply"])
@@ -25,7 +25,7 @@ def _both(edition: str) -> tuple[Codec, Codec]:
 
 
 def _outcome(action: Callable[[], Any]) -> Any:
-    """The result, or everything that a caller can see of the error."""
+    """Return the result, or everything that a caller can see of the error."""
     try:
         return action()
     except CobotwireError as error:
@@ -40,29 +40,30 @@ def _same(edition: str, action: Callable[[Codec], Any]) -> None:
 
 @EACH_EDITION
 @given(data=st.data())
-def test_a_legal_message_survives_the_round_trip(edition: str, data: st.DataObject) -> None:
-    form, values = data.draw(strategies.messages(TABLES[edition]))
+def test_legal_message_survives_encode_and_decode(edition: str, data: st.DataObject) -> None:
+    variant, values = data.draw(strategies.messages(TABLES[edition]))
     for codec in _both(edition):
-        frame = strategies.frame_of(codec, form, values)
-        read = codec.decode(form.direction, frame, of=form.command.name)
-        assert read.command is form.command
-        assert read.layout is form.layout
+        frame = strategies.frame_of(codec, variant, values)
+        read = codec.decode(variant.direction, frame, of=variant.command.name)
+        assert read.command is variant.command
+        assert read.variant is variant.variant
         assert read.values == values
 
 
 @EACH_EDITION
 @given(data=st.data(), chosen=st.booleans())
-def test_both_build_the_same_bytes(edition: str, data: st.DataObject, chosen: bool) -> None:
-    form, values = data.draw(strategies.messages(TABLES[edition]))
-    index = form.number if chosen else None
+def test_both_codecs_encode_the_same_bytes(edition: str, data: st.DataObject, chosen: bool) -> None:
+    variant, values = data.draw(strategies.messages(TABLES[edition]))
+    index = variant.number if chosen else None
     _same(
-        edition, lambda codec: codec.encode(form.command.name, form.direction, values, form=index)
+        edition,
+        lambda codec: codec.encode(variant.command.name, variant.direction, values, variant=index),
     )
 
 
 @EACH_EDITION
 @given(data=st.data())
-def test_both_refuse_the_same_arguments_in_the_same_words(
+def test_both_codecs_reject_the_same_arguments_with_the_same_message(
     edition: str, data: st.DataObject
 ) -> None:
     arguments = data.draw(strategies.any_arguments(TABLES[edition]))
@@ -71,7 +72,7 @@ def test_both_refuse_the_same_arguments_in_the_same_words(
 
 @EACH_EDITION
 @given(DIRECTIONS, st.data())
-def test_both_read_the_same_frame_or_refuse_it_at_the_same_byte(
+def test_both_codecs_decode_a_frame_alike_or_reject_it_at_the_same_byte(
     edition: str, direction: Direction, data: st.DataObject
 ) -> None:
     table = TABLES[edition]
@@ -83,14 +84,14 @@ def test_both_read_the_same_frame_or_refuse_it_at_the_same_byte(
 
 @EACH_EDITION
 @given(LISTENING, st.booleans(), st.data())
-def test_both_cut_the_same_events(
+def test_both_framers_return_the_same_events(
     edition: str, listening: Listening, accept_unknown: bool, data: st.DataObject
 ) -> None:
     chunks = data.draw(strategies.chunked(data.draw(strategies.streams(TABLES[edition]))))
     flushes = data.draw(st.lists(st.booleans(), min_size=len(chunks), max_size=len(chunks)))
     framers = [codec.framer(listening, accept_unknown=accept_unknown) for codec in _both(edition)]
     for chunk, flush in zip(chunks, flushes):
-        # Flushing in the middle is what a driver does at a deadline.
+        # Flushing in the middle is what a client does at a deadline.
         events = [f.feed(chunk) + (f.flush() if flush else []) for f in framers]
         assert events[0] == events[1]
         assert framers[0].pending == framers[1].pending
@@ -99,11 +100,11 @@ def test_both_cut_the_same_events(
 
 @EACH_EDITION
 @pytest.mark.parametrize("name", ["send_angels", "", "SEND_ANGLES"])
-def test_a_name_of_no_command_is_the_same_error(edition: str, name: str) -> None:
+def test_unknown_command_raises_the_same_error_in_both_codecs(edition: str, name: str) -> None:
     _same(edition, lambda codec: codec.encode(name, "request", ()))
 
 
-def test_feeding_takes_any_bytes_like() -> None:
+def test_feed_accepts_any_bytes_like_object() -> None:
     frame = bytes.fromhex("FEFE0220FA")
     for kind in (bytes, bytearray, memoryview):
         for codec in _both("mycobot"):
@@ -112,7 +113,7 @@ def test_feeding_takes_any_bytes_like() -> None:
             assert event.data == frame
 
 
-def test_a_word_that_is_no_direction_is_named(codec: Codec) -> None:
+def test_wrong_direction_is_named_in_the_error(codec: Codec) -> None:
     sideways: Any = "sideways"
     actions: list[Callable[[], Any]] = [
         lambda: codec.encode("stop", sideways, ()),

@@ -1,4 +1,4 @@
-"""Columns: what framer and decoder give, in bulk; the same from both codecs and in any pieces."""
+"""Columns equal the results of framer and decoder, for both codecs and any chunking."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import strategies
 from cobotwire.codec.interface import Codec, Columns, Frame, Listening, Noise
-from cobotwire.errors import ProtocolError, UsageError
+from cobotwire.protocol.errors import ProtocolError, UsageError
 from strategies import TABLES, codec_of
 
 CODECS = ["reference", "native"]
@@ -22,17 +22,17 @@ FLAG = bytes.fromhex("FE FE 03 12 01 FA")
 
 
 def plain(columns: Columns) -> Any:
-    """The angles, as lists."""
+    """Return the angles, as lists."""
     return columns.rows("get_angles")["angles"].tolist()
 
 
 def contents(columns: Columns) -> Any:
-    """Everything that columns hold, as plain Python values."""
+    """Return everything that columns hold, as plain Python values."""
     rows = [
         (
             rows.command.name,
             rows.direction,
-            rows.form,
+            rows.variant,
             rows.offset.tolist(),
             {
                 name: (rows[name].format, rows[name].shape, rows[name].tolist())
@@ -42,31 +42,31 @@ def contents(columns: Columns) -> Any:
         for rows in columns
     ]
     noise = columns.noise
-    refused = columns.refused.tolist()
-    return rows, sorted(refused), noise.offset.tolist(), noise.size.tolist(), columns.counters
+    rejected = columns.rejected.tolist()
+    return rows, sorted(rejected), noise.offset.tolist(), noise.size.tolist(), columns.counters
 
 
 def joined(parts: list[Columns]) -> Any:
-    """The contents of columns that came one after the other, as of one."""
+    """Join the contents of consecutive columns as if they were one."""
     rows: dict[Any, Any] = {}
-    refused: list[int] = []
+    rejected: list[int] = []
     noise: tuple[list[int], list[int]] = ([], [])
     for part in parts:
         for found in part:
-            key = found.command.name, found.direction, found.form
+            key = found.command.name, found.direction, found.variant
             offsets, fields = rows.setdefault(key, ([], {name: [] for name in found.names}))
             offsets += found.offset.tolist()
             for name in found.names:
                 fields[name] += found[name].tolist()
-        refused += part.refused.tolist()
+        rejected += part.rejected.tolist()
         noise[0].extend(part.noise.offset.tolist())
         noise[1].extend(part.noise.size.tolist())
-    return rows, sorted(refused), noise, parts[-1].counters
+    return rows, sorted(rejected), noise, parts[-1].counters
 
 
 @EACH_EDITION
 @given(listening=LISTENING, raw=st.booleans(), data=st.data())
-def test_both_codecs_give_the_same_columns(
+def test_both_codecs_return_the_same_columns(
     edition: str, listening: Listening, raw: bool, data: st.DataObject
 ) -> None:
     stream = data.draw(strategies.streams(TABLES[edition]))
@@ -77,7 +77,7 @@ def test_both_codecs_give_the_same_columns(
 @EACH_EDITION
 @pytest.mark.parametrize("name", CODECS)
 @given(listening=LISTENING, raw=st.booleans(), data=st.data())
-def test_pieces_give_the_rows_of_the_whole(
+def test_stream_in_pieces_has_the_same_rows(
     edition: str, name: Any, listening: Listening, raw: bool, data: st.DataObject
 ) -> None:
     codec = codec_of(edition, name)
@@ -92,21 +92,21 @@ def test_pieces_give_the_rows_of_the_whole(
 @EACH_EDITION
 @pytest.mark.parametrize("name", CODECS)
 @given(listening=LISTENING, data=st.data())
-def test_columns_hold_what_framer_and_messages_say(
+def test_columns_equal_the_decoded_frames_of_a_framer(
     edition: str, name: Any, listening: Listening, data: st.DataObject
 ) -> None:
     codec = codec_of(edition, name)
     stream = data.draw(strategies.streams(TABLES[edition]))
     framer = codec.framer(listening)
     rows: dict[Any, list[Any]] = {}
-    refused = []
+    rejected = []
     for event in framer.feed(stream) + framer.flush():
         if isinstance(event, Noise):
             continue
         try:
             message = event.message
         except ProtocolError:
-            refused.append(event.offset)
+            rejected.append(event.offset)
         else:
             key = message.command.name, message.direction
             values = [list(v) if isinstance(v, tuple) else v for v in message.values]
@@ -119,13 +119,13 @@ def test_columns_hold_what_framer_and_messages_say(
         all_rows = list(zip(each.offset.tolist(), values))
         found.setdefault((each.command.name, each.direction), []).extend(all_rows)
     assert {key: sorted(all_rows) for key, all_rows in found.items()} == rows
-    assert sorted(columns.refused.tolist()) == refused
+    assert sorted(columns.rejected.tolist()) == rejected
     assert columns.counters == framer.counters
 
 
 @EACH_EDITION
 @given(listening=LISTENING, unknown=st.booleans(), data=st.data())
-def test_a_scan_gives_the_frames_and_accounts_for_the_rest(
+def test_scan_finds_the_frames_and_accounts_for_every_other_byte(
     edition: str, listening: Listening, unknown: bool, data: st.DataObject
 ) -> None:
     stream = data.draw(strategies.streams(TABLES[edition]))
@@ -142,7 +142,7 @@ def test_a_scan_gives_the_frames_and_accounts_for_the_rest(
 
 
 @pytest.mark.parametrize("kind", [bytes, bytearray, memoryview])
-def test_any_buffer_will_do(codec: Codec, kind: Any) -> None:
+def test_columns_are_read_from_any_buffer(codec: Codec, kind: Any) -> None:
     for times in (1, 30_000):
         columns = codec.decode_columns(kind(ANGLES * times), "reply")
         assert len(columns.rows("get_angles")) == times
@@ -151,7 +151,7 @@ def test_any_buffer_will_do(codec: Codec, kind: Any) -> None:
         codec.decode_columns(memoryview(ANGLES)[::2])
 
 
-def test_a_flush_in_the_middle_of_a_stream_shows_in_the_spans_and_nowhere_else(
+def test_flush_within_a_stream_splits_only_spans_of_noise(
     codec: Codec,
 ) -> None:
     for pieces, spans in [((b"\0", FLAG), [(0, 1)]), ((b"\0", b"\0" + FLAG), [(0, 1), (1, 1)])]:
@@ -171,7 +171,7 @@ def test_a_flush_in_the_middle_of_a_stream_shows_in_the_spans_and_nowhere_else(
         assert framer.counters.resyncs == 1
 
 
-def test_what_is_no_buffer_is_refused(codec: Codec) -> None:
+def test_object_without_buffer_is_rejected(codec: Codec) -> None:
     wrong: Any = "FE FE"
     with pytest.raises(TypeError):
         codec.decode_columns(wrong)
@@ -179,7 +179,7 @@ def test_what_is_no_buffer_is_refused(codec: Codec) -> None:
         codec.scan(wrong)
 
 
-def test_raw_columns_have_the_smallest_type_that_holds_what_is_allowed() -> None:
+def test_raw_column_has_the_smallest_type_for_the_allowed_values() -> None:
     for edition, format, least in [("mycobot", "i", -32535), ("mycobot280", "h", -32768)]:
         for name in CODECS:
             stream = ANGLES[:4] + b"\x80\xe9" * 6 + b"\xfa" + FLAG
@@ -190,16 +190,16 @@ def test_raw_columns_have_the_smallest_type_that_holds_what_is_allowed() -> None
             assert columns.rows("is_power_on")[columns.rows("is_power_on").names[0]].format == "B"
 
 
-def test_a_frame_with_a_value_that_is_not_allowed_is_told_apart(codec: Codec) -> None:
+def test_frame_with_illegal_value_is_listed_as_rejected(codec: Codec) -> None:
     bad = bytes.fromhex("FE FE 03 12 07 FA")
     columns = codec.decode_columns(FLAG + bad + FLAG, "reply")
-    assert columns.refused.tolist() == [6]
+    assert columns.rejected.tolist() == [6]
     assert columns.rows("is_power_on").offset.tolist() == [0, 12]
     with pytest.raises(ProtocolError, match="7"):
         codec.decode("reply", bad)
 
 
-def test_a_message_that_did_not_come_has_no_rows(codec: Codec) -> None:
+def test_message_that_did_not_occur_has_no_rows(codec: Codec) -> None:
     columns = codec.decode_columns(FLAG, "reply")
     assert len(columns) == 1
     rows = columns.rows("get_angles")
@@ -207,46 +207,46 @@ def test_a_message_that_did_not_come_has_no_rows(codec: Codec) -> None:
     assert rows["angles"].tolist() == []
     with pytest.raises(UsageError, match="get_angles"):
         columns.rows("get_angels")
-    with pytest.raises(UsageError, match="none"):
+    with pytest.raises(UsageError, match="power_on has no reply in a frame"):
         columns.rows("power_on", "reply")
     with pytest.raises(UsageError, match="angles"):
         rows["angels"]
 
 
-def test_one_of_several_forms_must_be_named_if_several_came() -> None:
+def test_variant_must_be_chosen_if_several_occurred() -> None:
     for name in CODECS:
         codec = codec_of("mycobot280", name)
-        frames = [codec.encode("power_on", "request", (), form=0)]
+        frames = [codec.encode("power_on", "request", (), variant=0)]
         table = codec.table
         several = next(
             command
             for command in table.commands
-            if len(command.reply) > 1 and len({form.size for form in command.reply}) > 1
+            if len(command.reply) > 1 and len({variant.size for variant in command.reply}) > 1
         )
         frames = [
-            codec.encode(several.name, "reply", _zeros(form), form=index)
-            for index, form in enumerate(several.reply)
+            codec.encode(several.name, "reply", _zeros(variant), variant=index)
+            for index, variant in enumerate(several.reply)
         ]
         columns = codec.decode_columns(b"".join(frames), "reply")
-        with pytest.raises(UsageError, match="all of them came"):
+        with pytest.raises(UsageError, match="occurred: choose variant="):
             columns.rows(several.name)
-        assert [len(columns.rows(several.name, form=index)) for index, _ in enumerate(frames)] == [
-            1 for _ in frames
-        ]
+        assert [
+            len(columns.rows(several.name, variant=index)) for index, _ in enumerate(frames)
+        ] == [1 for _ in frames]
 
 
-def _zeros(form: Any) -> list[Any]:
+def _zeros(variant: Any) -> list[Any]:
     return [
         tuple(0 for _ in field.cases[0].numbers) if field.many else (field.choices or (0,))[0]
-        for field in form.fields
+        for field in variant.fields
     ]
 
 
-def test_out_gives_its_memory_unless_it_is_looked_at() -> None:
+def test_out_is_reused_unless_a_view_exists() -> None:
     codec = codec_of("mycobot", "native")
     first = codec.decode_columns(ANGLES * 3, "reply")
     view = first.rows("get_angles")["angles"]
-    with pytest.raises(BufferError, match="looked at"):
+    with pytest.raises(BufferError, match="still used"):
         codec.decode_columns(ANGLES, "reply", out=first)
     assert len(first.rows("get_angles")) == 3, "who gets the error still has what there was"
     view.release()
@@ -258,7 +258,7 @@ def test_out_gives_its_memory_unless_it_is_looked_at() -> None:
     assert codec.scan(ANGLES, out=scan).offset.tolist() == [0]
 
 
-def test_out_of_other_columns_is_no_danger() -> None:
+def test_out_of_another_edition_is_handled() -> None:
     codec = codec_of("mycobot", "native")
     raw = codec.decode_columns(ANGLES * 3 + FLAG, "reply", raw=True)
     columns = codec.decode_columns(ANGLES, "reply", out=raw)

@@ -1,4 +1,4 @@
-"""Columns in other people's tools: NumPy and all that takes Arrow, on the same memory."""
+"""NumPy and tools that accept Arrow use columns without copying their memory."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def rows(codec: Codec) -> Rows:
     return codec.decode_columns(b"\0" + ANGLES * 3, "reply").rows("get_angles")
 
 
-def test_numpy_looks_at_the_same_memory(rows: Rows) -> None:
+def test_numpy_shares_the_memory(rows: Rows) -> None:
     arrays = rows.to_numpy()
     assert arrays["angles"].dtype == np.float64
     assert arrays["angles"].shape == (3, 6)
@@ -35,7 +35,7 @@ def test_numpy_looks_at_the_same_memory(rows: Rows) -> None:
     assert np.shares_memory(arrays["angles"], np.asarray(rows["angles"]))
 
 
-def test_arrow_looks_at_the_same_memory(rows: Rows) -> None:
+def test_arrow_shares_the_memory(rows: Rows) -> None:
     table = pa.table(rows)
     assert table.column_names == ["offset", "angles"]
     assert table["angles"].to_pylist() == [VALUES] * 3
@@ -45,39 +45,39 @@ def test_arrow_looks_at_the_same_memory(rows: Rows) -> None:
     assert address == rows.to_numpy()["angles"].__array_interface__["data"][0]
 
 
-def test_polars_duckdb_and_pandas_take_rows_as_they_are(rows: Rows) -> None:
+def test_polars_duckdb_and_pandas_read_rows_directly(rows: Rows) -> None:
     frame = pl.DataFrame(rows)
     assert frame["angles"].to_list() == [VALUES] * 3
     assert frame["offset"].to_list() == [1, 18, 35]
-    messages = rows  # DuckDB finds it by its name
+    messages = rows  # DuckDB finds the variable by its name
     query: Any = duckdb.sql('select "offset", angles[6] from messages order by 1 desc')
     assert messages is rows
     assert query.fetchall() == [(35, 6.5), (18, 6.5), (1, 6.5)]
     assert pd.DataFrame.from_arrow(rows)["offset"].tolist() == [1, 18, 35]
 
 
-def test_what_did_not_come_is_an_empty_table(codec: Codec) -> None:
+def test_message_that_did_not_occur_is_an_empty_table(codec: Codec) -> None:
     rows = codec.decode_columns(ANGLES, "reply").rows("get_coords")
     assert pa.table(rows).num_rows == 0
     assert rows.to_numpy()["offset"].tolist() == []
 
 
-def test_memory_outlives_everything_else(codec: Codec) -> None:
+def test_memory_outlives_columns_and_codec(codec: Codec) -> None:
     array = codec.decode_columns(ANGLES * 1000, "reply").rows("get_angles").to_numpy()["angles"]
     others = [codec.decode_columns(ANGLES * 1000, "reply") for _ in range(20)]
     assert array.tolist() == [VALUES] * 1000
     assert len(others) == 20
 
 
-def test_a_mapped_file_is_read_without_being_loaded(codec: Codec, tmp_path: Path) -> None:
+def test_mapped_file_is_read_without_being_loaded(codec: Codec, tmp_path: Path) -> None:
     path = tmp_path / "capture.bin"
     path.write_bytes(ANGLES * 20_000)
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as mapped:
         assert len(codec.decode_columns(mapped, "reply").rows("get_angles")) == 20_000
 
 
-def test_another_thread_may_write_to_the_buffer_meanwhile() -> None:
-    """What it writes may be seen or not; nothing else can come of it."""
+def test_other_thread_may_write_to_the_buffer_during_the_read() -> None:
+    """The result may contain the written bytes or not; nothing else happens."""
     from cobotwire import codec as codecs
     from cobotwire.editions.mycobot import TABLE
 
@@ -102,7 +102,7 @@ def test_another_thread_may_write_to_the_buffer_meanwhile() -> None:
         thread.join()
 
 
-def test_the_extras_are_imported_when_they_are_used_and_not_before() -> None:
+def test_extras_are_imported_only_when_used() -> None:
     import subprocess
 
     script = (

@@ -1,4 +1,4 @@
-"""The guide to columns is true: its examples run as they stand."""
+"""The examples of the guide to columns run unchanged."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
 
 
-def test_the_examples_of_the_guide_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_examples_of_the_columns_guide_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "capture.bin").write_bytes(b"\0" + ANGLES * 3)
     monkeypatch.chdir(tmp_path)
     used: list[Any] = []

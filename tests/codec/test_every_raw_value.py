@@ -1,4 +1,4 @@
-"""All 65,536 words of every scaled 16-bit field survive decode and encode, or are refused."""
+"""All 65,536 raw values of every scaled 16-bit field survive decode and encode, or are rejected."""
 
 from __future__ import annotations
 
@@ -9,16 +9,15 @@ import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
-from cobotwire.codec.reference.decode import whole
 from cobotwire.editions import mycobot, mycobot280
-from cobotwire.errors import ProtocolError, UsageError
-from cobotwire.table import Case, Command, Direction, Layout, Number, Table
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import Case, Command, Direction, Number, Table, Variant
 
 WORDS = 65_536
 
 
 class Slot(NamedTuple):
-    """A scaled word of a form, while its selector (if any) holds the case's first value."""
+    """A scaled 16-bit number of a variant; its selector, if any, holds the case's first value."""
 
     field: int
     element: int
@@ -30,39 +29,41 @@ class Slot(NamedTuple):
         return self.case.numbers[self.element]
 
 
-class Form(NamedTuple):
-    """A form of a message with one case for each of its fields."""
+class CommandVariant(NamedTuple):
+    """A variant of a message with one case for each of its fields."""
 
     table: Table
     command: Command
     direction: Direction
-    layout: Layout
+    variant: Variant
     frame: bytes
     slots: tuple[Slot, ...]
 
     def __str__(self) -> str:
-        return f"{self.command.name}-{self.direction}-{len(self.layout.fields)}"
+        return f"{self.command.name}-{self.direction}-{len(self.variant.fields)}"
 
 
-def _forms(table: Table) -> Iterator[Form]:
+def _variants(table: Table) -> Iterator[CommandVariant]:
     for command in table.commands:
         for direction in ("request", "reply"):
             way: Direction = "request" if direction == "request" else "reply"
-            for layout in command.layouts(way):
-                most = max((len(field.cases) for field in layout.fields), default=0)
+            for variant in command.variants(way):
+                most = max((len(field.cases) for field in variant.fields), default=0)
                 for index in range(most):
-                    form = _form(table, command, way, layout, index)
-                    if form.slots:
-                        yield form
+                    found = _variant(table, command, way, variant, index)
+                    if found.slots:
+                        yield found
 
 
-def _form(table: Table, command: Command, way: Direction, layout: Layout, index: int) -> Form:
-    """A legal frame of the form in which each selected field takes its case ``index``."""
+def _variant(
+    table: Table, command: Command, way: Direction, variant: Variant, index: int
+) -> CommandVariant:
+    """Return the variant with case ``index`` of each selected field, and a legal frame of it."""
     data = bytearray(table.frame.header)
-    data += bytes([table.frame.length(layout.size), command.id])
-    picked = {f.selector: f.cases[index].when[0] for f in layout.fields if f.selector >= 0}
+    data += bytes([table.frame.length(variant.size), command.id])
+    picked = {f.selector: f.cases[index].when[0] for f in variant.fields if f.selector >= 0}
     slots = []
-    for number, field in enumerate(layout.fields):
+    for number, field in enumerate(variant.fields):
         case = field.cases[index if field.selector >= 0 else 0]
         for element, part in enumerate(case.numbers):
             if part.scaled and part.width == 2:
@@ -70,87 +71,93 @@ def _form(table: Table, command: Command, way: Direction, layout: Layout, index:
             start = field.choices[0] if field.choices else min(max(0, part.minimum), part.maximum)
             start = picked.get(number, start) % 256**part.width
             data += start.to_bytes(part.width, part.order)
-    return Form(table, command, way, layout, bytes(data) + table.frame.footer, tuple(slots))
+    return CommandVariant(
+        table, command, way, variant, bytes(data) + table.frame.footer, tuple(slots)
+    )
 
 
-def _narrowed(form: Form) -> bool:
-    return any(slot.number.maximum - slot.number.minimum + 1 < WORDS for slot in form.slots)
+def _narrowed(variant: CommandVariant) -> bool:
+    return any(slot.number.maximum - slot.number.minimum + 1 < WORDS for slot in variant.slots)
 
 
-EVERY = [*_forms(mycobot.TABLE), *_forms(mycobot280.TABLE)]
-WIDE = [form for form in EVERY if not _narrowed(form)]
-NARROW = [form for form in EVERY if _narrowed(form)]
+EVERY = [*_variants(mycobot.TABLE), *_variants(mycobot280.TABLE)]
+WIDE = [variant for variant in EVERY if not _narrowed(variant)]
+NARROW = [variant for variant in EVERY if _narrowed(variant)]
 
 
-def test_there_are_slots_in_both_editions_and_directions() -> None:
-    places = {(form.table.edition, form.direction) for form in EVERY}
+def test_slots_cover_both_editions_and_directions() -> None:
+    places = {(variant.table.edition, variant.direction) for variant in EVERY}
     assert places == {(e, d) for e in ("mycobot", "mycobot280") for d in ("request", "reply")}
-    assert {form.table.edition for form in NARROW} == {"mycobot280"}
+    assert {variant.table.edition for variant in NARROW} == {"mycobot280"}
 
 
-def _codec_of(form: Form, codec: Codec) -> Codec:
-    return codecs.load(form.table, codec.name)
+def _codec_of(variant: CommandVariant, codec: Codec) -> Codec:
+    return codecs.load(variant.table, codec.name)
 
 
-@pytest.mark.parametrize("form", WIDE, ids=str)
-def test_every_word_of_every_field_survives(codec: Codec, form: Form) -> None:
-    """One pass over all words: each slot of the form holds another one at the same time."""
-    codec = _codec_of(form, codec)
-    name, way = form.command.name, form.direction
-    step = WORDS // len(form.slots)
-    frame = bytearray(form.frame)
-    # A native pass is cheap; of the reference's, every edition needs the forms of the first only.
-    words = range(0, WORDS, 1 if codec.name == "native" or form.table is mycobot.TABLE else 97)
+@pytest.mark.parametrize("variant", WIDE, ids=str)
+def test_every_raw_value_of_every_field_survives(codec: Codec, variant: CommandVariant) -> None:
+    """Run through all raw values; at each step, each slot of the variant holds another one."""
+    codec = _codec_of(variant, codec)
+    name, way = variant.command.name, variant.direction
+    step = WORDS // len(variant.slots)
+    frame = bytearray(variant.frame)
+    # The native codec is fast. The reference is slow, so it runs all values of one edition only.
+    words = range(0, WORDS, 1 if codec.name == "native" or variant.table is mycobot.TABLE else 97)
     for word in words:
-        for order, slot in enumerate(form.slots):
+        for order, slot in enumerate(variant.slots):
             raw = (word + order * step) % WORDS
             frame[slot.position : slot.position + 2] = raw.to_bytes(2, slot.number.order)
         data = bytes(frame)
         values = codec.decode(way, data, of=name).values
-        for slot in form.slots:
+        for slot in variant.slots:
             number = slot.number
             value = values[slot.field]
-            value = value[slot.element] if form.layout.fields[slot.field].many else value
+            value = value[slot.element] if variant.variant.fields[slot.field].many else value
             # The float nearest to the exact quotient.
-            assert value == whole(number, data, slot.position) * number.multiply / number.divide
+            assert value == number.unpack(data, slot.position) * number.multiply / number.divide
         assert codec.encode(name, way, values) == data
 
 
-@pytest.mark.parametrize("form", NARROW, ids=str)
-def test_every_word_of_a_limited_field_survives_or_is_refused(form: Form) -> None:
-    """The limits of the 280: beyond them decoding is an error that names field and limits."""
-    codec = codecs.load(form.table, "native")
-    for slot in form.slots:
+@pytest.mark.parametrize("variant", NARROW, ids=str)
+def test_raw_value_of_a_limited_field_survives_or_is_rejected(
+    variant: CommandVariant,
+) -> None:
+    """Beyond the limits of the 280, decoding raises an error that names the field and limits."""
+    codec = codecs.load(variant.table, "native")
+    for slot in variant.slots:
         number = slot.number
-        frame = bytearray(form.frame)
-        said = 0
+        frame = bytearray(variant.frame)
+        legal = 0
         for word in range(WORDS):
             frame[slot.position : slot.position + 2] = word.to_bytes(2, number.order)
             data = bytes(frame)
-            if not number.minimum <= whole(number, data, slot.position) <= number.maximum:
-                with pytest.raises(ProtocolError, match=form.layout.fields[slot.field].name):
-                    codec.decode(form.direction, data, of=form.command.name)
+            if not number.minimum <= number.unpack(data, slot.position) <= number.maximum:
+                with pytest.raises(ProtocolError, match=variant.variant.fields[slot.field].name):
+                    codec.decode(variant.direction, data, of=variant.command.name)
                 continue
-            values = codec.decode(form.direction, data, of=form.command.name).values
-            said += 1
-            assert codec.encode(form.command.name, form.direction, values) == data
-        assert said == number.maximum - number.minimum + 1
+            values = codec.decode(variant.direction, data, of=variant.command.name).values
+            legal += 1
+            assert codec.encode(variant.command.name, variant.direction, values) == data
+        assert legal == number.maximum - number.minimum + 1
 
 
-@pytest.mark.parametrize("form", EVERY, ids=str)
-def test_what_the_rule_cannot_say_is_refused(codec: Codec, form: Form) -> None:
-    codec = _codec_of(form, codec)
-    for slot in form.slots:
-        number, field = slot.number, form.layout.fields[slot.field]
+@pytest.mark.parametrize("variant", EVERY, ids=str)
+def test_value_beyond_the_wire_is_rejected(codec: Codec, variant: CommandVariant) -> None:
+    codec = _codec_of(variant, codec)
+    for slot in variant.slots:
+        number, field = slot.number, variant.variant.fields[slot.field]
         for steps in (number.minimum - 1, number.maximum + 1):
             value = steps * number.multiply / number.divide
-            values = list(codec.decode(form.direction, form.frame, of=form.command.name).values)
+            values = list(
+                codec.decode(variant.direction, variant.frame, of=variant.command.name).values
+            )
             values[slot.field] = value
             if field.many:
                 row = [min(max(0, n.minimum), n.maximum) / n.divide for n in slot.case.numbers]
                 row[slot.element] = value
                 values[slot.field] = row
             with pytest.raises(UsageError, match=field.name) as caught:
-                codec.encode(form.command.name, form.direction, values)
+                codec.encode(variant.command.name, variant.direction, values)
             assert caught.value.value == value
             assert ".." in caught.value.allowed

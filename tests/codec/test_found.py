@@ -1,6 +1,6 @@
-"""What was hard once stays right: the inputs of ``tests/found``.
+"""Both codecs handle the inputs of ``tests/found``, which once revealed faults.
 
-Fuzzing found them, or people made them. The Rust core's own tests read the same files
+Fuzzing found them, or people wrote them. The Rust core's own tests read the same files
 (``rust/core/tests/found.rs``).
 """
 
@@ -12,8 +12,8 @@ from typing import NamedTuple, cast
 import pytest
 
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise, NoiseReason
-from cobotwire.errors import ProtocolError
-from cobotwire.table import Direction
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Direction
 from json_tables import codec_of
 from vectors import ROOT
 
@@ -21,7 +21,7 @@ FOUND = ROOT / "tests" / "found"
 
 
 class Stream(NamedTuple):
-    """A line of streams.txt: chunks with whether silence follows, and what must come of them."""
+    """A line of streams.txt: chunks, each with whether silence follows, and the expected events."""
 
     table: str
     listening: Listening
@@ -69,7 +69,7 @@ def _stream(what: list[str], data: str, outcome: str) -> Stream:
             else Noise(at, part, cast(NoiseReason, word))
         )
         at += int(size)
-    assert at == len(stream.data), "the file tells every byte"
+    assert at == len(stream.data), "the file accounts for every byte"
     return stream
 
 
@@ -84,7 +84,7 @@ SINGLES = [_single(*line) for line in _lines("frames.txt")]
 
 
 def _cut(codec: Codec, stream: Stream, chunks: list[tuple[bytes, bool]]) -> list[Event]:
-    """The events, adjacent noise of one reason joined."""
+    """Return the events, with adjacent noise of one reason joined."""
     framer = codec.framer(stream.listening, accept_unknown=stream.unknown)
     joined: list[Event] = []
     for chunk, silence in [*chunks, (b"", True)]:
@@ -100,7 +100,7 @@ def _cut(codec: Codec, stream: Stream, chunks: list[tuple[bytes, bool]]) -> list
 @pytest.mark.parametrize(
     "stream", STREAMS, ids=lambda stream: f"{stream.table} {stream.data[:8]!r}"
 )
-def test_a_found_stream_gives_its_events_however_it_is_cut(codec: Codec, stream: Stream) -> None:
+def test_found_stream_has_its_events_in_any_chunks(codec: Codec, stream: Stream) -> None:
     codec = codec_of(stream.table, codec.name)
     assert _cut(codec, stream, stream.chunks) == stream.events
     if any(silence for _, silence in stream.chunks):
@@ -112,16 +112,16 @@ def test_a_found_stream_gives_its_events_however_it_is_cut(codec: Codec, stream:
 
 
 @pytest.mark.parametrize("single", SINGLES, ids=lambda single: f"{single.table} {single.data!r}")
-def test_a_found_frame_is_read_or_refused_as_told(codec: Codec, single: Single) -> None:
+def test_found_frame_is_decoded_or_rejected_as_recorded(codec: Codec, single: Single) -> None:
     codec = codec_of(single.table, codec.name)
     assert _outcome(codec, single) == single.outcome
 
 
 def _outcome(codec: Codec, single: Single) -> tuple[str, int]:
-    """The command and its form's index, or the reason of the refusal and its offset."""
+    """Return the command and its variant's index, or the reason of the rejection and its offset."""
     try:
         message = codec.decode(single.direction, single.data, of=single.of)
     except ProtocolError as error:
         return error.reason, error.offset
-    forms = message.command.layouts(single.direction)
-    return message.command.name, [form is message.layout for form in forms].index(True)
+    variants = message.command.variants(single.direction)
+    return message.command.name, [variant is message.variant for variant in variants].index(True)

@@ -1,4 +1,4 @@
-"""The law of framing, as properties of both codecs."""
+"""The framing laws, as properties of both codecs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LONGEST = TABLE.frame.maximum_length + TABLE.frame.overhead
 
 
 def _joined(events: list[Event]) -> list[Event]:
-    """Adjacent noise of one reason as one span."""
+    """Join adjacent noise of one reason to one span."""
     joined: list[Event] = []
     for event in events:
         last = joined[-1] if joined else None
@@ -37,7 +37,7 @@ def _cut(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[Event]
 
 
 @given(CODECS, LISTENING, st.data())
-def test_every_byte_is_accounted_for(
+def test_every_byte_is_in_exactly_one_event(
     codec: Codec, listening: Listening, data: st.DataObject
 ) -> None:
     stream = data.draw(strategies.streams())
@@ -57,38 +57,40 @@ def test_every_byte_is_accounted_for(
 
 
 @given(CODECS, LISTENING, st.data())
-def test_chunking_does_not_matter(codec: Codec, listening: Listening, data: st.DataObject) -> None:
+def test_events_do_not_depend_on_chunking(
+    codec: Codec, listening: Listening, data: st.DataObject
+) -> None:
     stream = data.draw(strategies.streams())
     chunks = data.draw(strategies.chunked(stream))
     assert _joined(_cut(codec, listening, chunks)) == _joined(_cut(codec, listening, [stream]))
 
 
 @given(CODECS, st.data())
-def test_an_undamaged_frame_is_found_unless_a_legal_one_covers_it(
+def test_undamaged_frame_is_found_unless_a_legal_one_covers_it(
     codec: Codec, data: st.DataObject
 ) -> None:
-    before, frame, behind = (
+    before, frame, after = (
         data.draw(strategies.line_noise() | strategies.near_frames()),
         data.draw(strategies.real_frames()),
         data.draw(strategies.line_noise()),
     )
-    events = _cut(codec, "both", [before, frame, behind])
+    events = _cut(codec, "both", [before, frame, after])
     start = len(before)
     if Frame(start, frame, frame[3]) in events:
         return
-    # Then a frame that is legal by the table reaches into it, from before.
+    # If it is missing, a legal frame that starts earlier overlaps it.
     covers = [e for e in events if isinstance(e, Frame) and e.offset < start]
     assert covers
     assert covers[-1].offset + len(covers[-1].data) > start
 
 
 @given(CODECS, strategies.real_frames(), st.integers(1, 40))
-def test_frames_in_a_row_are_all_found(codec: Codec, frame: bytes, times: int) -> None:
+def test_adjacent_frames_are_all_found(codec: Codec, frame: bytes, times: int) -> None:
     events = _cut(codec, "both", [frame * times])
     assert events == [Frame(index * len(frame), frame, frame[3]) for index in range(times)]
 
 
-def test_every_split_of_a_noisy_stream(codec: Codec) -> None:
+def test_every_split_of_a_noisy_stream_has_the_same_events(codec: Codec) -> None:
     stream = bytes.fromhex("FF FE FE FE 0E 20 FE FE 03 12 01 FA FE FE 99 FE FE 0E 20") + bytes(13)
     whole = _joined(_cut(codec, "reply", [stream]))
     for cut in range(len(stream) + 1):
@@ -109,26 +111,26 @@ def test_every_split_of_a_noisy_stream(codec: Codec) -> None:
         ("FE", "truncated"),
     ],
 )
-def test_the_first_byte_of_noise_says_why(codec: Codec, stream: str, reason: str) -> None:
+def test_first_byte_of_noise_has_the_reason(codec: Codec, stream: str, reason: str) -> None:
     first = _cut(codec, "reply", [bytes.fromhex(stream)])[0]
     assert isinstance(first, Noise)
     assert first.reason == reason
 
 
-def test_a_bogus_header_is_dead_after_its_fourth_byte(codec: Codec) -> None:
+def test_false_header_is_refuted_by_its_fourth_byte(codec: Codec) -> None:
     framer = codec.framer("reply")
     assert framer.feed(bytes.fromhex("FE FE 0E")) == []
     assert framer.feed(b"\x12") != [], "0x12 has no reply with LEN 0E"
 
 
-def test_a_frame_behind_a_false_header_comes_with_the_flush(codec: Codec) -> None:
+def test_frame_after_a_false_header_is_returned_by_flush(codec: Codec) -> None:
     framer = codec.framer("reply")
     frame = bytes.fromhex("FE FE 03 12 01 FA")
     assert framer.feed(bytes.fromhex("FE FE 0E 20") + frame) == []
     assert Frame(4, frame, 0x12) in framer.flush()
 
 
-def test_an_unknown_id_is_a_frame_on_request(codec: Codec) -> None:
+def test_unknown_id_is_accepted_on_request(codec: Codec) -> None:
     frame = bytes.fromhex("FE FE 04 E0 01 02 FA")
     assert all(isinstance(event, Noise) for event in codec.framer("reply").feed(frame))
     assert codec.framer("reply", accept_unknown=True).feed(frame) == [Frame(0, frame, 0xE0)]

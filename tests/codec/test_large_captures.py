@@ -1,4 +1,4 @@
-"""Captures of some size: the memory that they take, and input that is made to be slow."""
+"""Memory use for large captures, and decoding time for adversarial input."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from strategies import codec_of
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
 LONGEST = 32
 MIB = 1 << 20
-# What the patterns of an adversary are: none holds a frame, each keeps hope alive.
+# Adversarial patterns: none contains a frame, and each looks like the start of one.
 HARD = {
     "all FE": b"\xfe",
     "FE FE FF": b"\xfe\xfe\xff",
@@ -45,7 +45,7 @@ def _run(script: str) -> int:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak from Linux's /proc")
 @pytest.mark.parametrize("raw", [False, True])
-def test_the_peak_is_input_and_output_and_a_tenth(raw: bool) -> None:
+def test_peak_memory_is_input_plus_output_plus_a_tenth(raw: bool) -> None:
     taken = _run(f"""
 data = frame * 1_000_000
 rows = native.decode_columns(data, "reply", raw={raw})[0]
@@ -57,7 +57,7 @@ print(round((peak() - before) * 1000 / (len(data) + output)))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak from Linux's /proc")
-def test_a_stream_larger_than_its_pieces_takes_the_memory_of_a_piece() -> None:
+def test_stream_in_pieces_needs_the_memory_of_one_piece() -> None:
     grown = _run("""
 reader = native.column_reader("reply")
 piece = frame * (1 << 16)
@@ -74,7 +74,7 @@ print(peak() - before)
 
 
 @pytest.mark.parametrize("name", HARD)
-def test_between_calls_no_more_is_kept_than_a_frame(codec: Codec, name: str) -> None:
+def test_reader_keeps_at_most_a_frame_between_calls(codec: Codec, name: str) -> None:
     size = MIB if codec.name == "native" else 20_000
     data = HARD[name] * (size // len(HARD[name]))
     reader, framer = codec.column_reader("reply"), codec.framer("reply")
@@ -87,7 +87,7 @@ def test_between_calls_no_more_is_kept_than_a_frame(codec: Codec, name: str) -> 
 
 
 @pytest.mark.parametrize("name", HARD)
-def test_hard_input_takes_time_in_proportion(name: str) -> None:
+def test_hard_input_takes_time_in_proportion_to_its_size(name: str) -> None:
     codec = codec_of("mycobot280", "native")
 
     def seconds(size: int) -> float:
@@ -99,5 +99,5 @@ def test_hard_input_takes_time_in_proportion(name: str) -> None:
             turns.append(time.thread_time() - started)
         return min(turns)
 
-    # Quadratic work would take 64 times as long; what a busy machine adds is far less.
+    # Quadratic work would take 64 times as long; a busy machine adds far less.
     assert seconds(16 * MIB) < 20 * seconds(2 * MIB)

@@ -1,6 +1,6 @@
-"""Resync on lines as the field has them: the three laws, with the truth about every frame sent.
+"""The three laws of resync on realistic bad lines, where every frame sent is known.
 
-What is legal is asked of the table here, not of a codec.
+These tests decide from the table, not with a codec, which frames are legal.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import line
 import strategies
 from cobotwire.codec import CodecName
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
+from cobotwire.simulator.faults.noise import COMMAND_ERROR, PANIC
 from strategies import TABLES, codec_of
 
 EACH_CODEC = pytest.mark.parametrize("name", ["reference", "native"])
@@ -31,22 +31,22 @@ def _cut(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[Event]
 
 
 def _byte_by_byte(events: list[Event]) -> list[object]:
-    """Frames, and the reason of each byte of noise: how spans are cut does not matter."""
-    told: list[object] = []
+    """Return frames, and the reason of each byte of noise, so that spans may be cut anywhere."""
+    pieces: list[object] = []
     for event in events:
         if isinstance(event, Noise):
-            told += [(event.offset + at, event.reason) for at in range(len(event.data))]
+            pieces += [(event.offset + at, event.reason) for at in range(len(event.data))]
         else:
-            told.append((event.offset, event.data, event.command))
-    return told
+            pieces.append((event.offset, event.data, event.command))
+    return pieces
 
 
 def _legal(table: Table, listening: Listening, data: bytes) -> bool:
     sizes = {
-        (command.id, table.frame.length(layout.size))
+        (command.id, table.frame.length(variant.size))
         for command in table.commands
         for direction in ("request", "reply")
-        for layout in command.layouts(direction)
+        for variant in command.variants(direction)
         if listening in (direction, "both")
     }
     size = 3 + data[2]
@@ -60,15 +60,15 @@ def _legal(table: Table, listening: Listening, data: bytes) -> bool:
 
 @EACH_CODEC
 @given(EDITIONS, LISTENING, st.data())
-def test_an_undamaged_frame_is_recovered_unless_a_legal_false_one_covers_it(
+def test_undamaged_frame_is_recovered_unless_a_legal_false_one_covers_it(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
     table = TABLES[edition]
-    heard = data.draw(strategies.received(table, listening))
-    events = _cut(codec_of(edition, name), listening, [heard.data])
+    line = data.draw(strategies.received(table, listening))
+    events = _cut(codec_of(edition, name), listening, [line.data])
     frames = [event for event in events if isinstance(event, Frame)]
     found = {(frame.offset, bytes(frame.data)) for frame in frames}
-    for start, sent in heard.whole:
+    for start, sent in line.whole:
         if (start, sent) not in found:
             over = [f for f in frames if f.offset < start < f.offset + len(f.data)]
             assert over, f"the frame at {start} is lost, and no frame covers it"
@@ -77,12 +77,12 @@ def test_an_undamaged_frame_is_recovered_unless_a_legal_false_one_covers_it(
 
 @EACH_CODEC
 @given(EDITIONS, LISTENING, st.data())
-def test_what_is_accepted_is_legal_by_the_table_and_stood_there(
+def test_accepted_frame_is_legal_and_is_part_of_the_stream(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
-    heard = data.draw(strategies.received(TABLES[edition], listening))
-    for event in _cut(codec_of(edition, name), listening, [heard.data]):
-        assert heard.data[event.offset : event.offset + len(event.data)] == event.data
+    line = data.draw(strategies.received(TABLES[edition], listening))
+    for event in _cut(codec_of(edition, name), listening, [line.data]):
+        assert line.data[event.offset : event.offset + len(event.data)] == event.data
         if isinstance(event, Frame):
             assert _legal(TABLES[edition], listening, event.data)
             assert event.command == event.data[3]
@@ -90,29 +90,29 @@ def test_what_is_accepted_is_legal_by_the_table_and_stood_there(
 
 @EACH_CODEC
 @given(EDITIONS, LISTENING, st.data())
-def test_every_byte_of_a_bad_line_is_in_just_one_event(
+def test_every_byte_of_a_bad_line_is_in_exactly_one_event(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
-    heard = data.draw(strategies.received(TABLES[edition], listening))
-    events = _cut(codec_of(edition, name), listening, data.draw(strategies.chunked(heard.data)))
-    assert b"".join(event.data for event in events) == heard.data
+    line = data.draw(strategies.received(TABLES[edition], listening))
+    events = _cut(codec_of(edition, name), listening, data.draw(strategies.chunked(line.data)))
+    assert b"".join(event.data for event in events) == line.data
     assert all(a.offset + len(a.data) == b.offset for a, b in pairwise(events))
 
 
 @given(EDITIONS, LISTENING, st.data())
-def test_both_codecs_tell_the_same_however_the_line_is_cut(
+def test_both_codecs_return_the_same_events_in_any_chunks(
     edition: str, listening: Listening, data: st.DataObject
 ) -> None:
-    heard = data.draw(strategies.received(TABLES[edition], listening))
-    chunks = data.draw(strategies.chunked(heard.data))
-    whole = _byte_by_byte(_cut(codec_of(edition, "reference"), listening, [heard.data]))
+    line = data.draw(strategies.received(TABLES[edition], listening))
+    chunks = data.draw(strategies.chunked(line.data))
+    whole = _byte_by_byte(_cut(codec_of(edition, "reference"), listening, [line.data]))
     for name in ("reference", "native"):
         assert _byte_by_byte(_cut(codec_of(edition, name), listening, chunks)) == whole
 
 
 @EACH_CODEC
 @given(EDITIONS, st.data())
-def test_header_bytes_in_front_of_a_frame_never_cost_it(
+def test_header_bytes_before_a_frame_do_not_hide_it(
     name: CodecName, edition: str, data: st.DataObject
 ) -> None:
     # FE is no legal LEN, so that FE FE FE is refuted at its first byte.
@@ -135,7 +135,7 @@ POWERED = bytes.fromhex("FE FE 03 12 01 FA")
         "ff ff fe 0a 82 38 0f 01 02 03 04 05 06 19",
         "ff ff 07 02 01 f5",
         "ff ff 01 04 02 38 c2 fe",  # its checksum is FE
-        line.ACK.hex(),  # this edition knows no acknowledgements
+        "fe fe 03 10 01 fa",  # this edition knows no acknowledgements
         "78 80 78",
         "fe",
         "fe fe fe",
@@ -144,10 +144,12 @@ POWERED = bytes.fromhex("FE FE 03 12 01 FA")
         "fe fe 77 20",
         "fe fe fe 0e",
         bytes(277).hex(),
-        *(text.hex() for text in line.TEXTS),
+        COMMAND_ERROR.hex(),
+        PANIC.hex(),
+        PANIC[PANIC.index(b"Backtrace") :].hex(),
     ],
 )
-def test_no_noise_of_the_field_costs_a_frame(codec: Codec, noise: str) -> None:
+def test_noise_seen_in_the_field_hides_no_frame(codec: Codec, noise: str) -> None:
     piece = bytes.fromhex(noise)
     stream, sent = b"", []
     for frame in [ANGLES, POWERED] * 3:
@@ -159,16 +161,16 @@ def test_no_noise_of_the_field_costs_a_frame(codec: Codec, noise: str) -> None:
         assert [(e.offset, e.data) for e in events if isinstance(e, Frame)] == sent
 
 
-def test_the_price_a_false_frame_that_the_table_allows_takes_what_it_covers(codec: Codec) -> None:
-    # A header of get_angles, and an FA where that frame would end: nothing on the line tells.
+def test_false_frame_that_the_table_allows_hides_what_it_covers(codec: Codec) -> None:
+    # A header of get_angles, and an FA where that frame would end: the frame is false but legal.
     whole = bytes.fromhex("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA FA")
     assert _cut(codec, "reply", [whole]) == [Frame(0, whole, 0x20)]
-    # One byte less, and it is refuted: both frames that stand in it are found.
+    # With one byte less it is refuted, and both frames inside it are found.
     events = _cut(codec, "reply", [whole[:-1] + b"\x00"])
     assert [e.offset for e in events if isinstance(e, Frame)] == [4, 10]
 
 
-def test_a_packet_in_a_packet_is_data_until_the_outer_one_breaks(codec: Codec) -> None:
+def test_frame_within_a_frame_is_found_only_if_the_outer_one_is_damaged(codec: Codec) -> None:
     outer = bytes.fromhex("FE FE 0E 20 00 00 FE FE 03 12 01 FA 00 00 00 00 FA")
     assert _cut(codec, "reply", [outer]) == [Frame(0, outer, 0x20)]
     broken = outer[:-1] + b"\xfb"
@@ -176,9 +178,9 @@ def test_a_packet_in_a_packet_is_data_until_the_outer_one_breaks(codec: Codec) -
     assert found == [Frame(6, broken[6:12], 0x12)]
 
 
-def test_a_known_id_alone_is_no_header(codec: Codec) -> None:
+def test_known_id_alone_is_not_a_header(codec: Codec) -> None:
     assert TABLE.command("get_angles").id == 0x20
-    heard = bytes.fromhex("FE FE 0D 20") + POWERED
+    line = bytes.fromhex("FE FE 0D 20") + POWERED
     framer = codec.framer("reply")
-    events = framer.feed(heard)
+    events = framer.feed(line)
     assert Frame(4, POWERED, 0x12) in events, "refuted by LEN at once, so nothing waits"

@@ -1,4 +1,4 @@
-"""The frames of every edition's spec, on both codecs."""
+"""Both codecs encode and decode the vectors of every edition's spec."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import pytest
 
 import vectors
 from cobotwire.codec.interface import Codec, Frame
-from cobotwire.errors import ProtocolError
-from cobotwire.table import Direction
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Direction
 from cobotwire_codegen.model import Vector
 from strategies import TABLES, codec_of
 
@@ -18,27 +18,27 @@ def _named(found: list[tuple[str, Vector]]) -> pytest.MarkDecorator:
 
 
 FRAMED = _named(vectors.framed())
-REFUSED = _named(vectors.refused())
+REJECTED = _named(vectors.rejected())
 
 
 def test_every_edition_has_vectors() -> None:
     assert {edition for edition, _ in vectors.framed()} == set(TABLES)
 
 
-def test_all_of_the_documents_examples_are_there() -> None:
+def test_all_examples_of_the_document_are_vectors() -> None:
     numbers = [vector.example for vector in vectors.edition().vectors if vector.example]
     assert numbers == list(range(1, 89))
 
 
 @FRAMED
-def test_stated_values_build_the_frame(codec: Codec, edition: str, vector: Vector) -> None:
+def test_stated_values_encode_to_the_frame(codec: Codec, edition: str, vector: Vector) -> None:
     codec = codec_of(edition, codec.name)
     fields = vectors.fields(edition, vector)
     assert codec.encode(vector.command, vector.direction, tuple(fields.values())) == vector.frame
 
 
 @FRAMED
-def test_the_frame_decodes_to_its_stated_values(codec: Codec, edition: str, vector: Vector) -> None:
+def test_frame_decodes_to_its_stated_values(codec: Codec, edition: str, vector: Vector) -> None:
     assert vector.frame is not None
     codec = codec_of(edition, codec.name)
     message = codec.decode(vector.direction, vector.frame, of=vector.command)
@@ -47,7 +47,7 @@ def test_the_frame_decodes_to_its_stated_values(codec: Codec, edition: str, vect
 
 
 @FRAMED
-def test_without_its_calls_name_the_frame_reads_as_the_first_call_that_allows_it(
+def test_frame_decodes_without_a_name_as_the_first_command_that_allows_it(
     codec: Codec, edition: str, vector: Vector
 ) -> None:
     frame = vector.frame
@@ -68,16 +68,14 @@ def test_without_its_calls_name_the_frame_reads_as_the_first_call_that_allows_it
 
 
 @FRAMED
-def test_the_framer_finds_the_frame_behind_noise(
-    codec: Codec, edition: str, vector: Vector
-) -> None:
+def test_framer_finds_the_frame_after_noise(codec: Codec, edition: str, vector: Vector) -> None:
     assert vector.frame is not None
     framer = codec_of(edition, codec.name).framer(vector.direction)
     found = [e for e in framer.feed(b"\xff\xfe\xfe" + vector.frame) if isinstance(e, Frame)]
     assert found == [Frame(3, vector.frame, vector.frame[3])]
 
 
-def test_five_examples_have_an_illegal_length_whichever_way_they_go(codec: Codec) -> None:
+def test_five_examples_have_an_illegal_length_in_both_directions(codec: Codec) -> None:
     def legal(printed: bytes, direction: Direction) -> bool:
         try:
             codec.decode(direction, printed)
@@ -92,27 +90,25 @@ def test_five_examples_have_an_illegal_length_whichever_way_they_go(codec: Codec
         and not (legal(vector.printed, "request") or legal(vector.printed, "reply"))
     ]
     assert illegal == [26, 32, 37, 74, 75]
-    # Example 57 prints a reply where a request should stand: refused as a request, too.
-    refused = [vector.example for edition, vector in vectors.refused() if edition == "mycobot"]
-    assert refused == [26, 32, 37, 57, 74, 75]
+    # Example 57 prints a reply in place of a request, so it is rejected as a request, too.
+    rejected = [vector.example for edition, vector in vectors.rejected() if edition == "mycobot"]
+    assert rejected == [26, 32, 37, 57, 74, 75]
 
 
-@REFUSED
-def test_an_illegal_length_is_refused_with_its_reason(
+@REJECTED
+def test_illegal_length_is_rejected_with_its_reason(
     codec: Codec, edition: str, vector: Vector
 ) -> None:
     assert vector.printed is not None
-    assert vector.refused is not None
+    assert vector.rejected is not None
     with pytest.raises(ProtocolError, match="LEN") as caught:
         codec_of(edition, codec.name).decode(vector.direction, vector.printed)
-    assert (caught.value.reason, caught.value.offset) == vector.refused
+    assert (caught.value.reason, caught.value.offset) == vector.rejected
     assert caught.value.data == vector.printed
 
 
 @pytest.mark.parametrize("edition", TABLES)
-def test_the_older_form_of_a_reply_says_that_its_echo_is_missing(
-    codec: Codec, edition: str
-) -> None:
+def test_older_variant_of_a_reply_has_no_echo(codec: Codec, edition: str) -> None:
     codec = codec_of(edition, codec.name)
     full = codec.decode("reply", bytes.fromhex("FEFE04500101FA"))
     short = codec.decode("reply", bytes.fromhex("FEFE035001FA"))
@@ -121,6 +117,6 @@ def test_the_older_form_of_a_reply_says_that_its_echo_is_missing(
 
 
 @pytest.mark.parametrize("edition", TABLES)
-def test_degrees_are_rounded_to_the_nearest_step(codec: Codec, edition: str) -> None:
+def test_degrees_are_rounded_to_the_nearest_raw_value(codec: Codec, edition: str) -> None:
     frame = codec_of(edition, codec.name).encode("send_angle", "request", (1, 0.29, 20))
     assert frame == bytes.fromhex("FEFE06210100 1D14FA"), "0.29 degrees is 29 steps, not 28"

@@ -1,4 +1,4 @@
-"""``cobotwire-gen build``: what a person can get wrong is said in a line, and nothing is lost."""
+"""``cobotwire-gen build`` reports a user's mistake in one line and overwrites nothing."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
 
 
-def test_a_package_its_reference_and_its_c_are_written_and_stay_fresh(folder: Path) -> None:
+def test_build_writes_package_reference_and_c_and_finds_them_fresh(folder: Path) -> None:
     words = ("build", "lamp.yaml", "--out", "lamp", "--docs", "docs", "--c", "c")
     assert run(folder, *words).returncode == 0
     assert (folder / "lamp" / "py.typed").is_file()
@@ -31,7 +31,7 @@ def test_a_package_its_reference_and_its_c_are_written_and_stay_fresh(folder: Pa
     assert (again.returncode, again.stdout) == (0, "fresh\n")
 
 
-def test_a_dissector_is_written_beside_what_else_is_there(folder: Path) -> None:
+def test_build_writes_a_dissector_into_a_folder_with_other_files(folder: Path) -> None:
     (folder / "plugins").mkdir()
     (folder / "plugins" / "other.lua").write_text("-- of somebody else\n")
     words = ("build", "lamp.yaml", "--out", "lamp", "--wireshark", "plugins")
@@ -41,31 +41,29 @@ def test_a_dissector_is_written_beside_what_else_is_there(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
-        (("--out", "o", "--docs", "o"), "must be folders apart"),
-        (("--out", "o", "--docs", "o/docs"), "must be folders apart"),
-        (("--out", "o/inner", "--docs", "o"), "must be folders apart"),
-        (("--out", "o", "--docs", "d", "--c", "d"), "--docs and --c must be folders apart"),
-        (("--out", "o", "--wireshark", "o/w"), "must be folders apart"),
-        (("--out", "my-pkg"), "my-pkg cannot be a package's name"),
-        (("--out", "class"), "class cannot be a package's name"),
-        (("--out", "cobotwire"), "cobotwire cannot be a package's name"),
+        (("--out", "o", "--docs", "o"), "must be separate folders"),
+        (("--out", "o", "--docs", "o/docs"), "must be separate folders"),
+        (("--out", "o/inner", "--docs", "o"), "must be separate folders"),
+        (("--out", "o", "--docs", "d", "--c", "d"), "--docs and --c must be separate folders"),
+        (("--out", "o", "--wireshark", "o/w"), "must be separate folders"),
+        (("--out", "my-pkg"), "my-pkg is not a valid package name"),
+        (("--out", "class"), "class is not a valid package name"),
+        (("--out", "cobotwire"), "cobotwire is not a valid package name"),
         (("--out", "lamp.yaml/x"), "cannot write"),
     ],
 )
-def test_folders_that_cannot_work_are_refused(
-    folder: Path, words: tuple[str, ...], said: str
-) -> None:
+def test_build_rejects_invalid_folders(folder: Path, words: tuple[str, ...], message: str) -> None:
     result = run(folder, "build", "lamp.yaml", *words)
     assert result.returncode == 2
-    assert said in result.stderr
+    assert message in result.stderr
     assert "Traceback" not in result.stderr
     assert sorted(path.name for path in folder.iterdir()) == ["lamp.yaml"]
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "said"),
+    ("name", "text", "message"),
     [
         ("python/enums.py.j2", "{% bad %}", "enums.py.j2:1: Encountered unknown tag 'bad'"),
         (
@@ -81,8 +79,8 @@ def test_folders_that_cannot_work_are_refused(
         ),
     ],
 )
-def test_a_mistake_in_a_template_of_ones_own_has_its_place(
-    folder: Path, name: str, text: str, said: str
+def test_mistake_in_a_users_template_is_reported_with_its_place(
+    folder: Path, name: str, text: str, message: str
 ) -> None:
     path = folder / "templates" / name
     path.parent.mkdir(parents=True)
@@ -90,11 +88,11 @@ def test_a_mistake_in_a_template_of_ones_own_has_its_place(
     words = ("build", "lamp.yaml", "--out", "lamp", "--templates", "templates")
     result = run(folder, *words)
     assert result.returncode == 2
-    assert said in result.stderr
+    assert message in result.stderr
     assert not (folder / "lamp").exists()
 
 
-def test_a_model_that_cannot_be_written_is_said_in_a_line(folder: Path) -> None:
+def test_model_reports_an_unwritable_file_in_one_line(folder: Path) -> None:
     result = run(folder, "model", "lamp.yaml", "--out", "nowhere/lamp.json")
     assert result.returncode == 2
     assert "cannot write nowhere/lamp.json: No such file" in result.stderr

@@ -1,4 +1,4 @@
-"""Byte diagrams: every message of every edition fits, and shows each of its bytes once."""
+"""The byte diagram of every message of every edition is aligned and shows each byte once."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from strategies import TABLES
 
 
 @pytest.mark.parametrize("name", sorted(TABLES))
-def test_boxes_line_up_and_show_every_byte(name: str) -> None:
+def test_boxes_of_the_diagram_align_and_show_every_byte(name: str) -> None:
     edition = vectors.edition(name)
     for command in edition.commands:
-        for form in (*command.requests, *command.replies):
-            rows = list(byte_rows(edition, command, form))
+        for variant in (*command.requests, *command.replies):
+            rows = list(byte_rows(edition, command, variant))
             lines = byte_diagram(rows).splitlines()
             for above, top, inside, below in zip(*(lines[start::4] for start in range(4))):
                 assert len(top) == len(inside) == len(below) <= WIDTH + 1
@@ -29,7 +29,7 @@ def test_boxes_line_up_and_show_every_byte(name: str) -> None:
             assert shown == [position for position, _, _ in rows]
 
 
-def test_a_reply_as_it_looks() -> None:
+def test_diagram_of_a_reply_labels_each_byte() -> None:
     edition = vectors.edition("mycobot")
     command = next(command for command in edition.commands if command.name == "is_power_on")
     assert byte_diagram(byte_rows(edition, command, command.replies[0])) == (

@@ -1,4 +1,4 @@
-"""The maker's other frame variants, as editions: frames of real arms decode under them."""
+"""Editions with the maker's other frame formats decode frames of real arms."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Frame
-from cobotwire.sim import PtyServer, SimulatedArm
-from cobotwire.table import Table
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
@@ -23,7 +23,7 @@ from cobotwire_codegen.render.vectors_json import plain
 HERE = Path(__file__).parent / "families"
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 
-# What pymycobot 4.0.7's MyBuddy writes: the limb, the call, its frame.
+# Frames that pymycobot 4.0.7's MyBuddy writes: the limb, the call, its frame.
 BUDDY = [
     (0, "power_on", (), "FE FE 00 02 10 10"),
     (1, "power_on", (), "FE FE 01 02 10 10"),
@@ -46,7 +46,7 @@ def _edition(name: str) -> Edition:
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Generates an edition's package and imports it."""
+    """Return a function that generates an edition's package and imports it."""
     folder = tmp_path_factory.mktemp("families")
     sys.path.insert(0, str(folder))
 
@@ -61,7 +61,9 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.mark.parametrize("codec", CODECS)
 @pytest.mark.parametrize("name", ["mercury", "mybuddy"])
-def test_their_frames_decode_and_build(package: Any, name: str, codec: codecs.CodecName) -> None:
+def test_frames_of_other_families_are_decoded_and_encoded(
+    package: Any, name: str, codec: codecs.CodecName
+) -> None:
     edition, table = _edition(name), package(name).TABLE
     used = codecs.load(table, codec)
     real = [vector for vector in edition.vectors if vector.name.startswith("real")]
@@ -77,7 +79,7 @@ def test_their_frames_decode_and_build(package: Any, name: str, codec: codecs.Co
 
 @pytest.mark.parametrize("codec", CODECS)
 @pytest.mark.parametrize(("limb", "name", "values", "frame"), BUDDY)
-def test_an_address_is_sent_and_read(
+def test_frame_with_an_address_is_encoded_and_decoded(
     package: Any, codec: codecs.CodecName, limb: int, name: str, values: Any, frame: str
 ) -> None:
     table: Table = package("mybuddy").TABLE
@@ -91,7 +93,7 @@ def test_an_address_is_sent_and_read(
 
 
 @pytest.mark.parametrize("name", ["mercury", "mybuddy"])
-def test_their_clients_talk_to_their_simulated_arms(package: Any, name: str) -> None:
+def test_clients_of_other_families_talk_to_their_simulated_arms(package: Any, name: str) -> None:
     edition = package(name)
     with PtyServer(SimulatedArm(edition.TABLE)) as server, edition.CLIENT(server.url) as arm:
         assert arm.get_angles() == (0.0,) * 6

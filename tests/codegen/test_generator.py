@@ -1,4 +1,4 @@
-"""Writing and checking generated files, through the command ``cobotwire-gen``."""
+"""``cobotwire-gen`` writes and checks the generated files."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 import vectors
+from cobotwire_codegen.render.vectors_json import vectors_json
 
-GENERATED = ("python/cobotwire/editions/mycobot", "docs/reference", "rust/core/tests/data")
+GENERATED = ("python/cobotwire/editions/mycobot", "docs/reference", "docs/_static/decoder/tables")
 
 
 def run(root: Path, *words: str, seed: str = "0") -> subprocess.CompletedProcess[str]:
@@ -23,7 +24,7 @@ def run(root: Path, *words: str, seed: str = "0") -> subprocess.CompletedProcess
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A project that holds the spec and nothing that was generated from it."""
+    """Copy the spec into a project without generated files."""
     shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
     return tmp_path
 
@@ -34,13 +35,13 @@ def _files(root: Path) -> dict[str, bytes]:
     return {str(path.relative_to(root)): path.read_bytes() for path in found}
 
 
-def test_what_is_generated_is_what_is_committed(project: Path) -> None:
+def test_committed_files_are_fresh(project: Path) -> None:
     assert run(project).returncode == 0
     assert _files(project) == _files(vectors.ROOT)
     assert len(_files(project)) > 30
 
 
-def test_the_output_does_not_depend_on_chance(project: Path) -> None:
+def test_output_does_not_depend_on_the_hash_seed(project: Path) -> None:
     run(project, seed="1")
     first = _files(project)
     shutil.rmtree(project / "python")
@@ -48,13 +49,13 @@ def test_the_output_does_not_depend_on_chance(project: Path) -> None:
     assert _files(project) == first
 
 
-def test_a_second_run_changes_nothing(project: Path) -> None:
+def test_second_run_of_the_generator_changes_nothing(project: Path) -> None:
     run(project)
     assert "0 file(s) changed" in run(project).stdout
     assert run(project, "--check").stdout == "fresh\n"
 
 
-def test_check_shows_a_diff_of_what_is_stale(project: Path) -> None:
+def test_check_prints_a_diff_of_stale_files(project: Path) -> None:
     run(project)
     path = project / GENERATED[0] / "values.py"
     path.write_text(path.read_text().replace("class Angles", "class Angels"))
@@ -66,28 +67,42 @@ def test_check_shows_a_diff_of_what_is_stale(project: Path) -> None:
     assert path.read_bytes() == before, "--check writes nothing"
 
 
-def test_check_tells_what_is_missing_or_left_over(project: Path) -> None:
+def test_check_reports_missing_and_left_over_files(project: Path) -> None:
     run(project)
     (project / GENERATED[0] / "enums.py").unlink()
-    (project / GENERATED[0] / "table" / "old.py").write_text("")
+    (project / GENERATED[0] / "messages" / "old.py").write_text("")
     result = run(project, "--check")
     assert result.returncode == 1
     assert "missing: " in result.stdout
     assert "left over: " in result.stdout
-    assert "2 generated file(s) not fresh" in result.stdout
+    assert "2 generated file(s) are stale" in result.stdout
     run(project)
     assert run(project, "--check").returncode == 0
-    assert not (project / GENERATED[0] / "table" / "old.py").exists()
+    assert not (project / GENERATED[0] / "messages" / "old.py").exists()
 
 
-def test_other_line_ends_are_stale_too(project: Path) -> None:
+def test_products_are_written_only_with_their_option(project: Path) -> None:
+    run(project)
+    assert not (project / "targets").exists()
+    assert not (project / "rust").exists()
+    assert run(project, "--products").returncode == 0
+    for product in ("c/mycobot280/mycobot280.h", "vectors/schema.json", "wireshark/mycobot.lua"):
+        assert (project / "targets" / product).stat().st_size > 1000
+    assert (project / "rust/core/tests/data/mycobot280.json").exists()
+    assert run(project, "--products", "--check").stdout == "fresh\n"
+    (project / "targets/construct/mycobot.py").unlink()
+    assert run(project, "--check").returncode == 0
+    assert run(project, "--products", "--check").returncode == 1
+
+
+def test_file_with_other_line_ends_is_stale(project: Path) -> None:
     run(project)
     path = project / "docs/reference/mycobot/README.md"
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
     assert run(project, "--check").returncode == 1
 
 
-def test_a_bad_spec_writes_nothing_and_exits_with_2(project: Path) -> None:
+def test_generator_with_bad_spec_writes_nothing_and_exits_with_2(project: Path) -> None:
     path = project / "spec/commands/jog.yaml"
     path.write_text(path.read_text().replace("safety: motion", "safety: moton", 1))
     result = run(project)
@@ -97,8 +112,8 @@ def test_a_bad_spec_writes_nothing_and_exits_with_2(project: Path) -> None:
     assert _files(project) == {}
 
 
-def test_a_new_command_needs_yaml_and_nothing_else(project: Path) -> None:
-    """The promise of the whole: a few lines of YAML become a method, a table entry and a page."""
+def test_command_added_in_yaml_works_without_other_changes(project: Path) -> None:
+    """A few lines of YAML become a method, a table entry and a page."""
     commands = project / "spec/commands/gripper.yaml"
     commands.write_text(
         commands.read_text()
@@ -109,10 +124,10 @@ def test_a_new_command_needs_yaml_and_nothing_else(project: Path) -> None:
     doc: Reads how hard the gripper presses.
     safety: query
     request:
-      - {name: channel, is: joint}
+      - {name: channel, type: joint}
     reply:
-      - {name: channel, is: joint, echo: required}
-      - {name: load, is: angle, doc: The load.}
+      - {name: channel, type: joint, echo: required}
+      - {name: load, type: angle, doc: The load.}
 """
     )
     missing = project / "spec/vectors/missing.yaml"
@@ -138,7 +153,7 @@ def test_a_new_command_needs_yaml_and_nothing_else(project: Path) -> None:
     script = (
         "import sys; sys.path.insert(0, sys.argv[1])\n"
         "from mycobot import TABLE, MyCobot\n"
-        "from cobotwire.sim import PtyServer, SimulatedArm\n"
+        "from cobotwire.simulator import PtyServer, SimulatedArm\n"
         "with PtyServer(SimulatedArm(TABLE)) as server, MyCobot(server.url) as arm:\n"
         "    print(arm.codec, arm.get_gripper_load(3))\n"
     )
@@ -150,7 +165,7 @@ def test_a_new_command_needs_yaml_and_nothing_else(project: Path) -> None:
     assert "## get_gripper_load" in (project / "docs/reference/mycobot/gripper.md").read_text()
 
 
-def test_the_table_for_other_languages_is_the_table_of_python() -> None:
+def test_table_as_json_equals_the_table_of_python() -> None:
     from dataclasses import asdict
 
     from cobotwire.editions.mycobot import TABLE
@@ -159,8 +174,8 @@ def test_the_table_for_other_languages_is_the_table_of_python() -> None:
         if isinstance(value, bytes):
             return list(value)
         if isinstance(value, dict):
-            return {key: listed(part) for key, part in value.items()}
+            # The module path of the message classes is only useful in Python.
+            return {k: listed(part) for k, part in value.items() if k not in ("package", "_types")}
         return [listed(part) for part in value] if isinstance(value, tuple) else value
 
-    path = vectors.ROOT / "rust/core/tests/data/mycobot.json"
-    assert json.loads(path.read_text())["table"] == listed(asdict(TABLE))
+    assert json.loads(vectors_json(vectors.edition()))["table"] == listed(asdict(TABLE))

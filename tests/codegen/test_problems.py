@@ -1,4 +1,4 @@
-"""Every bad spec is refused in the exact words that stand beside it: place, code, message."""
+"""Every bad spec is rejected with exactly the expected place, code and message."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ def _problems(path: Path) -> list[str]:
     return []
 
 
-def test_the_base_of_all_is_good(tmp_path: Path) -> None:
+def test_unchanged_lamp_has_no_problem(tmp_path: Path) -> None:
     (tmp_path / "lamp.yaml").write_text(LAMP)
     assert _problems(tmp_path / "lamp.yaml") == []
 
 
 @pytest.mark.parametrize("case", BAD["one_file"], ids=_name)
-def test_a_bad_file_is_refused_in_these_words(tmp_path: Path, case: dict[str, Any]) -> None:
-    assert LAMP.count(case["replace"]) >= 1, "the case must spoil something"
+def test_bad_file_is_reported_with_exact_problems(tmp_path: Path, case: dict[str, Any]) -> None:
+    assert LAMP.count(case["replace"]) >= 1, "the case must change something"
     path = tmp_path / "lamp.yaml"
     path.write_text(LAMP.replace(case["replace"], case["by"], 1))
     assert case["problems"]
@@ -48,14 +48,14 @@ def test_a_bad_file_is_refused_in_these_words(tmp_path: Path, case: dict[str, An
 
 
 @pytest.mark.parametrize("case", BAD["delta"], ids=_name)
-def test_a_bad_delta_is_refused_in_these_words(tmp_path: Path, case: dict[str, Any]) -> None:
+def test_bad_delta_is_reported_with_exact_problems(tmp_path: Path, case: dict[str, Any]) -> None:
     (tmp_path / "lamp.yaml").write_text(LAMP)
     (tmp_path / "lantern.yaml").write_text(case["text"])
     assert bool(case["problems"]) == (not case["name"].startswith("good"))
     assert _problems(tmp_path / "lantern.yaml") == case["problems"]
 
 
-def test_every_code_has_its_bad_spec() -> None:
+def test_every_code_is_shown_by_a_bad_spec() -> None:
     shown = {
         line.split(": ")[1]
         for case in (*BAD["one_file"], *BAD["delta"])
@@ -66,7 +66,7 @@ def test_every_code_has_its_bad_spec() -> None:
     assert set(CODES) - elsewhere == shown
 
 
-def test_files_that_cannot_be_read_are_problems_too(tmp_path: Path) -> None:
+def test_unreadable_and_empty_files_are_reported_as_problems(tmp_path: Path) -> None:
     binary = tmp_path / "lamp.yaml"
     binary.write_bytes(b"\xff\xfe\x00")
     [problem] = _problems(binary)
@@ -78,15 +78,15 @@ def test_files_that_cannot_be_read_are_problems_too(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("form", ["text", "json", "github"])
-def test_the_checker_tells_all_at_once_in_three_formats(tmp_path: Path, form: str) -> None:
+@pytest.mark.parametrize("variant", ["text", "json", "github"])
+def test_check_reports_all_problems_in_three_formats(tmp_path: Path, variant: str) -> None:
     path = tmp_path / "lamp.yaml"
     path.write_text(LAMP.replace("id: 0x30", "id: 0x130").replace("range: [1, 4]", "range: [4, 1]"))
-    command = [sys.executable, "-m", "cobotwire_codegen", "check", "lamp.yaml", "--format", form]
+    command = [sys.executable, "-m", "cobotwire_codegen", "check", "lamp.yaml", "--format", variant]
     result = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
     assert result.returncode == 2
     first = "range of the quantity channel must be [lowest, highest]"
-    if form == "json":
+    if variant == "json":
         problems = json.loads(result.stdout)
         assert problems[0]["code"] == "bad-range"
         assert (problems[0]["file"], problems[0]["line"], problems[0]["column"]) == (
@@ -94,14 +94,14 @@ def test_the_checker_tells_all_at_once_in_three_formats(tmp_path: Path, form: st
             23,
             34,
         )
-    elif form == "github":
+    elif variant == "github":
         line = f"::error file=lamp.yaml,line=23,col=34,title=bad-range::{first}"
         assert line in result.stdout
     else:
         assert f"lamp.yaml:23:34: bad-range: {first}" in result.stderr
 
 
-def test_a_folder_without_an_edition_is_a_problem(tmp_path: Path) -> None:
+def test_folder_without_an_edition_is_reported_as_no_edition(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "cobotwire_codegen", "--root", str(tmp_path)]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 2

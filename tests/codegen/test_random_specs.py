@@ -1,4 +1,4 @@
-"""Random protocols go the whole way: check, generate, import, encode, decode, simulate."""
+"""Check, generate, import, encode, decode and simulate random protocols."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import random_specs
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Frame, Noise
-from cobotwire.sim import SimulatedArm
+from cobotwire.simulator import SimulatedArm
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.model import Edition
@@ -48,7 +48,9 @@ def _values(edition: Edition, vector: Any) -> tuple[Any, ...]:
 
 @EXAMPLES
 @given(st.data())
-def test_a_random_protocol_goes_the_whole_way(tmp_path: Path, data: st.DataObject) -> None:
+def test_random_protocol_is_generated_and_agrees_in_all_codecs(
+    tmp_path: Path, data: st.DataObject
+) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path))
     check(edition)
     table = _package(edition, tmp_path, f"rnd{next(NUMBERS)}").TABLE
@@ -58,7 +60,7 @@ def test_a_random_protocol_goes_the_whole_way(tmp_path: Path, data: st.DataObjec
         assert vector.frame is not None
         values = _values(edition, vector)
         for codec in (reference, native):
-            # The vector's frame comes from the generator's own, exact encoder.
+            # The generator's own, exact encoder computed the vector's frame.
             assert codec.encode(vector.command, vector.direction, values) == vector.frame
             message = codec.decode(vector.direction, vector.frame, of=vector.command)
             assert message.values == values
@@ -73,7 +75,9 @@ def test_a_random_protocol_goes_the_whole_way(tmp_path: Path, data: st.DataObjec
 
 @EXAMPLES
 @given(st.data())
-def test_its_simulated_arm_answers_legally(tmp_path: Path, data: st.DataObject) -> None:
+def test_simulated_arm_of_a_random_protocol_sends_legal_replies(
+    tmp_path: Path, data: st.DataObject
+) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path))
     table = _package(edition, tmp_path, f"rnd{next(NUMBERS)}").TABLE
     codec = codecs.load(table)
@@ -86,15 +90,15 @@ def test_its_simulated_arm_answers_legally(tmp_path: Path, data: st.DataObject) 
         if table.command(vector.command).answers:
             message = codec.decode("reply", answer, of=vector.command)
             given_values = dict(zip((n for n, _ in vector.values), _values(edition, vector)))
-            for field in message.layout.fields:
+            for field in message.variant.fields:
                 if field.echo:
                     assert message.fields[field.name] == given_values[field.name]
         else:
             assert answer == b""
 
 
-def test_what_is_generated_passes_mypy_strict(tmp_path: Path) -> None:
-    """A handful of protocols at once: mypy's start costs more than they do."""
+def test_generated_code_passes_mypy_strict(tmp_path: Path) -> None:
+    """Check several protocols at once, since starting mypy takes longer than checking them."""
 
     @settings(EXAMPLES, max_examples=15)
     @given(st.data())
@@ -114,7 +118,7 @@ def test_what_is_generated_passes_mypy_strict(tmp_path: Path) -> None:
         pytest.fail(result.stdout + result.stderr)
 
 
-def test_what_is_generated_is_formatted(tmp_path: Path) -> None:
+def test_generated_code_is_formatted(tmp_path: Path) -> None:
     @settings(EXAMPLES, max_examples=15)
     @given(st.data())
     def generate(data: st.DataObject) -> None:

@@ -1,4 +1,4 @@
-"""The verbs as processes: what they print, what they write, and how they end."""
+"""Run the verbs as processes; check output, files and exit codes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cobotwire.editions.mycobot280 import MyCobot280
 VERB = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
 CONFORM = [*VERB, "--edition", "mycobot280", "conform"]
 ADAPTER = [sys.executable, "-m", "cobotwire.conformance.codec.adapter"]
-# The maker's library in a process of its own: it must not share a line with ours.
+# The maker's library runs in its own process, since it must not share a line with ours.
 PYMYCOBOT = """
 import sys
 from pymycobot import MyCobot280
@@ -34,7 +34,7 @@ def _run(*words: str) -> subprocess.CompletedProcess[str]:
 
 
 class _Listening:
-    """``conform client`` as a process; ``url`` is what its first line says."""
+    """``conform client`` as a process; ``url`` is what its first line message."""
 
     def __init__(self, *words: str) -> None:
         self._process = subprocess.Popen(
@@ -44,28 +44,28 @@ class _Listening:
         self.url = self._process.stdout.readline().strip()
 
     def end(self) -> tuple[int, str]:
-        """Its exit code, and what it printed behind the first line."""
-        said, _ = self._process.communicate(timeout=60)
-        return self._process.returncode, said
+        """Wait for the end; return the exit code, and the output after the first line."""
+        output, _ = self._process.communicate(timeout=60)
+        return self._process.returncode, output
 
 
 @pytest.mark.parametrize("listen", ["pty", "socket://127.0.0.1:0"])
-def test_our_client_passes_the_referee(listen: str, tmp_path: Path) -> None:
+def test_our_client_conforms(listen: str, tmp_path: Path) -> None:
     file = tmp_path / "report.json"
     referee = _Listening("--listen", listen, "--idle", "1", "--json", str(file))
     with MyCobot280(referee.url) as arm:
         assert arm.get_angles() is not None
         arm.send_angle(1, 2.55, 50)
-    code, said = referee.end()
-    assert code == 0, said
+    code, output = referee.end()
+    assert code == 0, output
     report = from_json(file.read_text())
     assert (report.kind, report.conforms) == ("client", True)
 
 
-def test_pymycobot_does_not_where_it_cuts_an_angle_off(tmp_path: Path) -> None:
-    told = tmp_path / "calls.txt"
-    told.write_text("get_angles\nsend_angle 1 2.55 speed=50\n")
-    referee = _Listening("--listen", "pty", "--expect", str(told), "--idle", "1")
+def test_pymycobot_fails_where_it_truncates_an_angle(tmp_path: Path) -> None:
+    script = tmp_path / "calls.txt"
+    script.write_text("get_angles\nsend_angle 1 2.55 speed=50\n")
+    referee = _Listening("--listen", "pty", "--expect", str(script), "--idle", "1")
     done = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", PYMYCOBOT, referee.url],
         capture_output=True,
@@ -73,38 +73,38 @@ def test_pymycobot_does_not_where_it_cuts_an_angle_off(tmp_path: Path) -> None:
         check=True,
     )
     assert "[" in done.stdout
-    code, said = referee.end()
+    code, output = referee.end()
     assert code == 1
-    assert "sent-rounded" in said
+    assert "sent-rounded" in output
 
 
-def test_the_native_codec_conforms() -> None:
+def test_native_codec_conforms() -> None:
     done = _run("codec", "--only", "*get_angles*", "--", *ADAPTER, "native")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.mark.parametrize(
-    ("source", "says"),
+    ("source", "message"),
     [
         ("raise SystemExit(3)", "ended with code 3"),
         ("import time; time.sleep(60)", "no answer within"),
-        ("print('hello'); input()", "is no JSON"),
+        ("print('hello'); input()", "is not JSON"),
     ],
     ids=["crashes", "hangs", "babbles"],
 )
-def test_a_command_that_never_greets_could_not_be_tested(source: str, says: str) -> None:
+def test_command_without_a_greeting_could_not_be_tested(source: str, message: str) -> None:
     done = _run("codec", "--timeout", "1", "--", sys.executable, "-c", source)
     assert done.returncode == 2
-    assert says in done.stderr
+    assert message in done.stderr
 
 
-def test_known_failures_of_pymycobot_are_excused_and_none_is_out_of_date(tmp_path: Path) -> None:
+def test_known_failures_of_pymycobot_are_excused_and_up_to_date(tmp_path: Path) -> None:
     known = vectors.ROOT / "tests" / "peers" / "pymycobot-codec.txt"
     words = ["codec", "--only", "*/send_angle/*", "--expected"]
     done = _run(*words, str(known), "--", *ADAPTER, "pymycobot")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "not supported" in done.stdout
-    # Our codec has none of these failures: a file that says so is out of date, and told.
+    # Our codec has none of these failures, so the file is out of date and the run fails.
     done = _run(*words, str(known), "--", *ADAPTER, "native")
     assert done.returncode == 1
     assert "expected-failure" in done.stdout
@@ -125,23 +125,23 @@ def test_known_failures_of_pymycobot_are_excused_and_none_is_out_of_date(tmp_pat
     ],
     ids=" ".join,
 )
-def test_what_cannot_run_ends_with_2_and_a_sentence(words: list[str]) -> None:
+def test_run_that_cannot_start_ends_with_2_and_a_sentence(words: list[str]) -> None:
     done = _run(*words)
     assert done.returncode == 2
     assert done.stderr.strip()
     assert "Traceback" not in done.stderr
 
 
-def test_the_rules_of_all_three_testers_are_listed() -> None:
-    found = json.loads(_run("rules", "--json").stdout)["rules"]
+def test_cases_of_all_three_subjects_are_listed() -> None:
+    found = json.loads(_run("cases", "--json").stdout)["cases"]
     assert found["device"]["reply-once"]
     assert found["client"]["motion-resent"]
     assert found["codec"]["stream-frames"]
-    listed = _run("rules").stdout
-    assert all(f"  {id} " in listed for rules in found.values() for id in rules)
+    listed = _run("cases").stdout
+    assert all(f"  {id} " in listed for cases in found.values() for id in cases)
 
 
-def test_a_simulated_arm_is_called_one(tmp_path: Path) -> None:
+def test_report_on_a_simulated_arm_names_it(tmp_path: Path) -> None:
     file = tmp_path / "report.json"
     assert _run("device", "--simulated", "--json", str(file)).returncode == 0
     report = from_json(file.read_text())

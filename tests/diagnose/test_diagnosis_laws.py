@@ -1,4 +1,4 @@
-"""What holds for the diagnosis of any stream, on both codecs."""
+"""Check the laws of diagnosis on random streams, with both codecs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import field
 import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
-from cobotwire.diagnose import Diagnoser, Finding, Item, ServoPacket, Span, summary, words
+from cobotwire.diagnose import Diagnoser, Finding, Item, ServoPacket, Span, summarize
 from cobotwire.editions.mycobot import TABLE
 
 CODECS = st.sampled_from([codecs.load(TABLE, "reference"), codecs.load(TABLE, "native")])
@@ -26,7 +26,7 @@ def diagnose(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[It
 
 
 def _pieces(items: list[Item]) -> list[tuple[int, bytes, bool]]:
-    """Every span of every item in the order of the stream, and whether it is a frame."""
+    """Return every span of every item in order, and whether it belongs to a frame."""
     return sorted(
         (span.offset, span.data, isinstance(item, Frame))
         for item in items
@@ -35,7 +35,7 @@ def _pieces(items: list[Item]) -> list[tuple[int, bytes, bool]]:
 
 
 @given(CODECS, LISTENING, st.data())
-def test_every_byte_of_noise_is_in_one_finding_and_every_frame_comes_through(
+def test_every_byte_of_noise_is_in_one_finding_and_every_frame_passes_through(
     codec: Codec, listening: Listening, data: st.DataObject
 ) -> None:
     stream = data.draw(STREAMS)
@@ -51,7 +51,9 @@ def test_every_byte_of_noise_is_in_one_finding_and_every_frame_comes_through(
 
 
 @given(CODECS, LISTENING, st.data())
-def test_chunking_does_not_matter(codec: Codec, listening: Listening, data: st.DataObject) -> None:
+def test_findings_do_not_depend_on_chunking(
+    codec: Codec, listening: Listening, data: st.DataObject
+) -> None:
     stream = data.draw(STREAMS)
     whole = diagnose(codec, listening, [stream])
     assert diagnose(codec, listening, data.draw(strategies.chunked(stream))) == whole
@@ -59,31 +61,31 @@ def test_chunking_does_not_matter(codec: Codec, listening: Listening, data: st.D
 
 
 @given(LISTENING, st.data())
-def test_both_codecs_lead_to_the_same_findings(listening: Listening, data: st.DataObject) -> None:
+def test_findings_are_the_same_for_both_codecs(listening: Listening, data: st.DataObject) -> None:
     stream = data.draw(STREAMS)
     one, other = (codecs.load(TABLE, name) for name in ("reference", "native"))
     assert diagnose(one, listening, [stream]) == diagnose(other, listening, [stream])
 
 
 @given(CODECS, st.data())
-def test_items_come_in_the_order_of_the_stream_and_have_words(
+def test_items_are_in_the_order_of_the_stream_and_have_descriptions(
     codec: Codec, data: st.DataObject
 ) -> None:
     items = diagnose(codec, "both", [data.draw(STREAMS)])
     assert all(a.offset < b.offset for a, b in pairwise(items))
     findings = [item for item in items if isinstance(item, Finding)]
-    assert all(words(finding) and "\n" not in words(finding) for finding in findings)
-    assert bool(summary(findings)) == bool(findings)
+    assert all(finding.describe() and "\n" not in finding.describe() for finding in findings)
+    assert bool(summarize(findings)) == bool(findings)
 
 
 @given(CODECS, field.servo_packets(), strategies.real_frames(), st.data())
-def test_a_servo_packet_is_found_even_with_a_frame_in_its_middle(
+def test_servo_packet_is_recognised_when_a_frame_interrupts_it(
     codec: Codec, packet: bytes, frame: bytes, data: st.DataObject
 ) -> None:
     cut = data.draw(st.integers(0, len(packet)))
-    before, behind = packet[:cut], packet[cut:]
-    items = diagnose(codec, "both", [before + frame + behind])
-    # By chance, the packet's bytes may be a frame themselves, or make one with the frame's.
+    before, after = packet[:cut], packet[cut:]
+    items = diagnose(codec, "both", [before + frame + after])
+    # By chance the bytes of the packet may be a frame, or form one with bytes of the frame.
     if not any(isinstance(i, Frame) and (i.offset, i.data) == (cut, frame) for i in items):
         return
     if sum(isinstance(item, Frame) for item in items) > 1:
@@ -93,18 +95,20 @@ def test_a_servo_packet_is_found_even_with_a_frame_in_its_middle(
 
 
 @given(CODECS, field.servo_packets(), st.data())
-def test_a_servo_packet_with_a_wrong_byte_is_none(
+def test_servo_packet_with_a_wrong_byte_is_not_recognised(
     codec: Codec, packet: bytes, data: st.DataObject
 ) -> None:
     at = data.draw(st.integers(2, len(packet) - 1))
     flip = data.draw(st.integers(1, 255))
-    spoilt = packet[:at] + bytes([packet[at] ^ flip]) + packet[at + 1 :]
-    found = [i for i in diagnose(codec, "both", [spoilt]) if isinstance(i, ServoPacket)]
-    assert all(item.data != spoilt for item in found)
+    damaged = packet[:at] + bytes([packet[at] ^ flip]) + packet[at + 1 :]
+    found = [i for i in diagnose(codec, "both", [damaged]) if isinstance(i, ServoPacket)]
+    assert all(item.data != damaged for item in found)
 
 
 @given(CODECS, LISTENING, st.lists(field.noise() | strategies.real_frames(), max_size=30))
-def test_memory_stays_bounded(codec: Codec, listening: Listening, pieces: list[bytes]) -> None:
+def test_diagnoser_holds_back_a_bounded_number_of_bytes(
+    codec: Codec, listening: Listening, pieces: list[bytes]
+) -> None:
     framer, diagnoser = codec.framer(listening), Diagnoser(codec, listening)
     fed: list[Event] = []
     given_back = 0

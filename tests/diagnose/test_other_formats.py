@@ -1,4 +1,4 @@
-"""The laws of diagnosis, for frames of other shapes than the document's."""
+"""Check the laws of diagnosis for other frame formats than the document's."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from cobotwire.codec.interface import Codec, Frame, Noise
 from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Item
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
-from cobotwire.table import FrameFormat
+from cobotwire.protocol.table import FrameFormat
 
 FORMATS = [
     FrameFormat(b"\xfe\xfe", b"", 40, "crc16-modbus"),
     FrameFormat(b"\xfe\xfe", b"", 18, "sum", (1, 2)),
-    # Headers with which text, a servo packet or NULs also start.
+    # Headers that also start text, a servo packet or NULs.
     FrameFormat(b"AT", b"\xfa", 18),
     FrameFormat(b"\xff\xff", b"\xfa", 18),
     FrameFormat(b"\0\0", b"\r", 18),
@@ -34,7 +34,7 @@ CODECS = [
 
 @st.composite
 def streams(draw: st.DrawFn, codec: Codec) -> bytes:
-    """Frames of the codec, whole, cut or spoilt, between field noise."""
+    """Generate frames of the codec, complete or cut, between noise."""
     frames = st.sampled_from(
         [
             codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)]),
@@ -54,7 +54,7 @@ def _diagnose(codec: Codec, chunks: list[bytes]) -> list[Item]:
 
 
 @given(st.sampled_from(CODECS), st.data())
-def test_the_laws_hold_for_frames_of_any_shape(codec: Codec, data: st.DataObject) -> None:
+def test_laws_of_diagnosis_hold_for_any_frame_format(codec: Codec, data: st.DataObject) -> None:
     stream = data.draw(streams(codec))
     items = _diagnose(codec, [stream])
     spans = sorted(
@@ -69,7 +69,7 @@ def test_the_laws_hold_for_frames_of_any_shape(codec: Codec, data: st.DataObject
 
 
 @given(st.sampled_from(CODECS), st.integers(1, 6))
-def test_a_cut_frame_is_named(codec: Codec, lost: int) -> None:
+def test_truncated_frame_has_the_name_of_its_command(codec: Codec, lost: int) -> None:
     frame = codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)])
     found = _diagnose(codec, [frame[:-lost]])
     assert isinstance(found[0], DamagedFrame)

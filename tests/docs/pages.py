@@ -1,8 +1,8 @@
-"""Runs a page of the guide: its files are written, its commands run, and their output compared.
+"""Run a page of the guide: write its files, run its commands, and compare their output.
 
-A block of code with ``<!-- file: NAME -->`` in front is a file, with ``append:`` more of one. In a
-block ``console`` each line that starts with ``$`` is a command; what follows is what it prints, and
-a line ``...`` stands for any lines. Other blocks are left alone.
+A code block after ``<!-- file: NAME -->`` is a file; after ``append:`` it is appended to one. In a
+block ``console`` each line that starts with ``$`` is a command, and the lines after it are its
+expected output, where ``...`` stands for any lines. Other blocks are ignored.
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ SECONDS = 60
 PORT = "/dev/ttyACM0"
 
 
-class Ran(NamedTuple):
-    """A command of a page, what it should print, and what it did."""
+class CommandRun(NamedTuple):
+    """A command of a page, its expected output, and its actual output."""
 
     command: str
-    right: str
+    expected: str
     printed: str
 
     @property
-    def fits(self) -> bool:
-        """Whether it printed what the page says."""
-        pattern = re.escape(self.right).replace(re.escape("...\n"), r"(?:.*\n)*?")
+    def matches(self) -> bool:
+        """Return whether the command printed the output on the page."""
+        pattern = re.escape(self.expected).replace(re.escape("...\n"), r"(?:.*\n)*?")
         return re.fullmatch(pattern, self.printed) is not None
 
 
-def run(page: Path, folder: Path, port: str) -> Iterator[Ran]:
-    """Everything on a page, in its order; ``port`` takes the place of the page's."""
+def run(page: Path, folder: Path, port: str) -> Iterator[CommandRun]:
+    """Run a page from top to bottom, with ``port`` in place of the port that the page names."""
     for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
         text = block["text"]
         if block["how"]:
@@ -46,18 +46,18 @@ def run(page: Path, folder: Path, port: str) -> Iterator[Ran]:
             with (folder / block["name"]).open(mode) as file:
                 file.write(text.replace(PORT, port))
         elif block["kind"] == "console":
-            for command, right in _commands(text):
-                yield Ran(
+            for command, expected in _commands(text):
+                yield CommandRun(
                     command,
-                    right.replace(PORT, port),
+                    expected.replace(PORT, port),
                     _printed(command.replace(PORT, port), folder),
                 )
 
 
 def _commands(text: str) -> Iterator[tuple[str, str]]:
     for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
-        command, _, right = part.partition("\n")
-        yield command, right
+        command, _, expected = part.partition("\n")
+        yield command, expected
 
 
 def _printed(command: str, folder: Path) -> str:

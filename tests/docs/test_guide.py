@@ -1,34 +1,55 @@
-"""The guide's pages do what they say, on a simulated arm."""
+"""Run the guide's pages, and the README's example, on a simulated arm."""
 
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from cobotwire.editions import mycobot
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.sim import PtyServer, SimulatedArm
-from cobotwire.sim.kinematics import prepare
-from docs.pages import run
+from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm
+from cobotwire.simulator.kinematics import prepare
+from docs.pages import BLOCK, PORT, run
 from vectors import ROOT
 
 PAGES = [ROOT / "docs" / "start.md", *sorted((ROOT / "docs" / "guide").glob("*.md"))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_the_page_does_what_it_says(page: Path, tmp_path: Path) -> None:
+def test_commands_of_guide_page_print_the_output_of_the_page(page: Path, tmp_path: Path) -> None:
     shutil.copytree(ROOT / "spec", tmp_path / "spec")
     prepare()
     with PtyServer(SimulatedArm(TABLE)) as server:
-        ran = list(run(page, tmp_path, server.url))
-    assert ran, "a page of the guide runs something"
-    assert [each for each in ran if not each.fits] == []
+        runs = list(run(page, tmp_path, server.url))
+    assert runs, "each page of the guide has at least one command"
+    assert [each for each in runs if not each.matches] == []
 
 
-def test_a_page_that_is_wrong_is_noticed(tmp_path: Path) -> None:
+def test_example_of_the_readme_moves_the_arm_and_prints_readings() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    [example] = [block["text"] for block in BLOCK.finditer(text) if block["kind"] == "python"]
+    clock = RunningClock(4.0)
+    with PtyServer(SimulatedArm(mycobot.TABLE, clock=clock), clock) as server:
+        done = subprocess.run(
+            [sys.executable, "-c", example.replace(PORT, server.url)],
+            capture_output=True,
+            text=True,
+            timeout=30,
+        )
+    assert (done.returncode, done.stderr) == (0, "")
+    j2, coords, *samples, report = done.stdout.splitlines()
+    assert float(j2) == pytest.approx(-20, abs=0.1)
+    assert coords.startswith("Coords(x=")
+    assert (len(samples), report[:3]) == (10, "10 ")
+
+
+def test_command_with_other_output_than_the_page_does_not_match(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(
         "```console\n$ echo one; echo two\none\n```\n```console\n$ echo a\n...\na\n```\n"
     )
-    assert [each.fits for each in run(page, tmp_path, "")] == [False, True]
+    assert [each.matches for each in run(page, tmp_path, "")] == [False, True]

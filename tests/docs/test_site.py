@@ -1,4 +1,4 @@
-"""The docs site, built: no warning, no dead link, nothing that is fetched from elsewhere."""
+"""Build the docs site: no warning, no dead link, nothing fetched from elsewhere."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from targets.comparison import ToolMissing
 from targets.decoder import browser
 from vectors import ROOT
 
-# What a browser loads by itself, and by which attribute.
+# The elements whose content a browser loads by itself, and the attribute that names it.
 LOADED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
 
-# As `make docs`, but without collecting garbage, which is a fifth of the time.
+# As `make docs`, but without garbage collection, which takes a fifth of the time.
 BUILD = "import gc, sys; gc.disable(); from sphinx.cmd.build import main; sys.exit(main())"
 
 
 class Page(HTMLParser):
-    """What a page links to, what it loads, and what can be linked to in it."""
+    """Collect what a page links to, what it loads, and the ids that links can name."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -44,7 +44,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site, built with a proxy that leads nowhere: nothing can be fetched."""
+    """Build the site with a proxy that leads nowhere, so that nothing can be fetched."""
     folder = tmp_path_factory.mktemp("site")
     nowhere = {f"{way}_proxy": "http://127.0.0.1:9" for way in ("http", "https")}
     command = [sys.executable, "-c", BUILD, "-q", "-W", "--keep-going", "-b", "html"]
@@ -60,11 +60,11 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def pages(site: Path) -> dict[Path, Page]:
-    """Every page of the site."""
+    """Return every page of the site by its path."""
     return {path: Page(path) for path in site.rglob("*.html")}
 
 
-def test_every_text_is_a_page(site: Path) -> None:
+def test_every_markdown_file_becomes_a_page(site: Path) -> None:
     texts = {path.relative_to(ROOT / "docs") for path in (ROOT / "docs").rglob("*.md")}
     texts = {path for path in texts if "_build" not in path.parts}
     assert len(texts) > 30
@@ -72,7 +72,7 @@ def test_every_text_is_a_page(site: Path) -> None:
         assert (site / text.with_suffix(".html")).is_file(), text
 
 
-def test_no_link_is_dead(site: Path, pages: dict[Path, Page]) -> None:
+def test_every_link_leads_to_an_existing_place(site: Path, pages: dict[Path, Page]) -> None:
     dead = [problem for path, page in pages.items() for problem in _dead(site, pages, path, page)]
     assert dead == []
     assert sum(len(page.links) for page in pages.values()) > 1000
@@ -90,17 +90,17 @@ def _dead(site: Path, pages: dict[Path, Page], path: Path, page: Page) -> Iterat
         elif (
             parts.fragment and target in pages and unquote(parts.fragment) not in pages[target].ids
         ):
-            yield f"{place}: no such place in it"
+            yield f"{place}: no such place on that page"
 
 
-def test_nothing_is_loaded_from_elsewhere(pages: dict[Path, Page]) -> None:
+def test_pages_load_nothing_from_other_hosts(pages: dict[Path, Page]) -> None:
     loads = {load for page in pages.values() for load in page.loads}
     assert loads
     assert [load for load in loads if urlsplit(load).scheme or load.startswith("//")] == []
 
 
 @pytest.mark.parametrize("edition", sorted(TABLES))
-def test_the_decoder_works_within_the_site(site: Path, edition: str) -> None:
+def test_decoder_page_of_the_site_decodes_a_request(site: Path, edition: str) -> None:
     try:
         shown = browser.dom(f"{(site / 'decoder.html').as_uri()}#edition={edition}&hex=FEFE0220FA")
     except ToolMissing as missing:

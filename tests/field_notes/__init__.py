@@ -1,1 +1,1 @@
-"""What real lines do, as data: the tests and ``bench/bad_lines.py`` play the same cases."""
+"""The behaviour of real lines as data; the tests and ``bench/bad_lines.py`` run the same cases."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from field_notes import noise, orders, replies
+from field_notes import connections, noise, replies
 
 GROUPS = {
     "Noise": noise.CASES,
     "Replies": replies.CASES,
-    "Orders, broken lines, shared lines": orders.CASES,
+    "One-way requests, broken lines, shared lines": connections.CASES,
 }
 CASES = {case.name: case for group in GROUPS.values() for case in group}
-assert len(CASES) == sum(map(len, GROUPS.values())), "a name stands for one case"
+assert len(CASES) == sum(map(len, GROUPS.values())), "two cases have the same name"

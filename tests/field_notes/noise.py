@@ -1,99 +1,119 @@
-"""Cases of bytes that are nobody's answer: servo packets, firmware text, NULs, echoes, garbage."""
+"""Cases of bytes that belong to no reply: servo packets, firmware text, NULs, echoes, garbage."""
 
 from __future__ import annotations
 
-from cobotwire.sim.faults import noise
-from field_notes.case import ANGLES, DONE, GET_ANGLES, NO_ANSWER, Call, Case, Script
+from cobotwire.simulator.faults import (
+    CommandError,
+    Echo,
+    Inserted,
+    Lost,
+    Panic,
+    Replaced,
+    ServoLeak,
+)
+from cobotwire.simulator.faults.noise import BOOT, LEAKS, PANIC, at_other_rate
+from field_notes.case import DONE, GET_ANGLES, GET_NOTHING, Call, Case
 
-LEAKS = {
-    "a servo read": noise.LEAKS["read"],
-    "a servo's reply": noise.LEAKS["status"],
-    "a sync read": noise.LEAKS["sync read"],
-    "a sync write": noise.LEAKS["sync write"],
-    "a servo ping": noise.LEAKS["ping"],
+PACKETS = {
+    "a servo read": "read",
+    "a servo's reply": "status",
+    "a sync read": "sync read",
+    "a sync write": "sync write",
+    "a servo ping": "ping",
 }
-CHECKSUM_FE = noise.LEAKS["checksum FE"]
-PANIC = noise.PANIC
-OTHER_BAUD = noise.at_other_rate(noise.BOOT, 4)[:16]
-TEXT = noise.COMMAND_ERROR
+OTHER_BAUD = at_other_rate(BOOT, 4)[:16]
 
 
-def _echo(request: bytes, number: int) -> Script:
-    return (request, 0.005, ANGLES)
-
-
-def _output_echo(request: bytes, number: int) -> Script:
-    return (request,) if request[3] == 0xA0 else (ANGLES,)
+def _hex(data: bytes) -> str:
+    return data.hex(" ").upper()
 
 
 CASES = (
     *(
         Case(
-            f"{name} in front", ("leak", "leak packets"), leak.hex(" ").upper(), ((leak + ANGLES,),)
+            f"{name} before the reply",
+            ("leak", "leak packets"),
+            _hex(LEAKS[packet]),
+            (ServoLeak(packets=(packet,)),),
         )
-        for name, leak in LEAKS.items()
+        for name, packet in PACKETS.items()
     ),
     Case(
-        "a servo's checksum of FE in front",
+        "a servo's checksum of FE before the reply",
         ("leak FE",),
-        f"{CHECKSUM_FE.hex(' ').upper()}, so that FE FE FE 0E is read",
-        ((CHECKSUM_FE + ANGLES,),),
+        f"{_hex(LEAKS['checksum FE'])}, so that FE FE FE 0E is read",
+        (ServoLeak(packets=("checksum FE",)),),
     ),
     Case(
         "a servo packet inside the reply",
         ("leak",),
         "the first reply is cut in two by a ping; the second is whole",
-        ((ANGLES[:9] + LEAKS["a servo ping"] + ANGLES[9:],), (ANGLES,)),
-        asked=2,
+        (ServoLeak(packets=("ping",), where="inside", after_bytes=9, nth=(1,)),),
+        requests=2,
     ),
-    Case("firmware text in front", ("text",), "`cmd_len error`, once", ((TEXT + ANGLES,),)),
+    Case(
+        "firmware text before the reply",
+        ("text",),
+        "`cmd_len error`, once",
+        (CommandError(only="requests"),),
+    ),
     Case(
         "firmware text, again and again",
         ("text",),
         "`cmd_len error` 20 times, 5 ms between them, then the reply",
-        ((*(TEXT, 0.005) * 20, ANGLES),),
-        asked=None,
+        (CommandError(only="requests", times=20, seconds=0.005),),
+        requests=None,
     ),
-    Case("a panic in front", ("panic",), f"{len(PANIC)} bytes of panic", ((PANIC, ANGLES),)),
+    Case(
+        "a panic before the reply",
+        ("panic",),
+        f"{len(PANIC)} bytes of panic",
+        (Inserted(data=PANIC),),
+    ),
     Case(
         "a panic inside the reply",
         ("panic", "boot"),
         "9 bytes of the reply, panic, 277 NULs, garbage; the next reply is whole",
-        ((ANGLES[:9] + PANIC + bytes(277) + OTHER_BAUD,), (ANGLES,)),
-        asked=2,
+        (Panic(nth=(1,), after_bytes=9, deaf_seconds=0),),
+        requests=2,
     ),
-    Case("277 NULs in front", ("boot",), "277 NULs, then the reply", ((bytes(277) + ANGLES,),)),
+    Case(
+        "277 NULs before the reply",
+        ("boot",),
+        "277 NULs, then the reply",
+        (Inserted(data=b"\0", times=277),),
+    ),
     Case(
         "boot output at another baud rate",
         ("boot",),
-        OTHER_BAUD.hex(" ").upper() + ", then the reply",
-        ((OTHER_BAUD + ANGLES,),),
+        _hex(OTHER_BAUD) + ", then the reply",
+        (Inserted(data=OTHER_BAUD),),
     ),
     Case(
         "wrong baud rate",
         ("baud",),
         "78 80 78 is all that ever comes",
-        ((b"\x78\x80\x78",),),
-        (Call("get_angles", (), NO_ANSWER),),
-        ours=("ReplyTimeout",),
-        asked=3,
+        (Replaced(by=b"\x78\x80\x78"),),
+        (GET_NOTHING,),
+        verdicts=("ReplyTimeout",),
+        requests=3,
     ),
     Case(
         "our own bytes come back",
         ("echo",),
         "each request is echoed, the reply follows 5 ms later",
-        _echo,
+        (Echo(seconds=0.005),),
     ),
     Case(
-        "an order's bytes come back",
+        "a one-way request's bytes come back",
         ("echo",),
-        "the transponder echoes set_basic_output (0xA0); then get_angles is asked",
-        _output_echo,
+        "the transponder echoes set_basic_output (0xA0); then get_angles is called",
+        (Lost(only="acknowledgements"), Echo(commands=(0xA0,))),
         (
             Call("set_basic_output", (2, 1), DONE, bytes.fromhex("FE FE 04 A0 02 01 FA")),
             GET_ANGLES,
         ),
-        ours=("right", "right"),
-        asked=2,
+        verdicts=("right", "right"),
+        requests=2,
     ),
 )

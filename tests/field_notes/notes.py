@@ -1,4 +1,4 @@
-"""The field notes in pieces, word for word, and who holds each: a case, another test, or nobody.
+"""The field notes in pieces, word for word, each with its case or test, or neither.
 
 The notes lie beside the repository. The pieces make up all of their lines; a test compares them.
 """
@@ -58,13 +58,15 @@ NOTES = {
 # Lines that a case on a pty or over TCP cannot show.
 ELSEWHERE = {
     "dtr": "tests/transport/test_port.py::test_dtr_and_rts_are_lowered_together",
-    "0x19": "tests/driver/test_field_notes.py::test_no_edition_sends_the_query_that_froze_an_arm",
-    "truncated": "tests/codec/test_every_raw_value.py::test_every_word_of_every_field_survives",
+    "0x19": "tests/client/test_field_notes.py::test_no_edition_has_the_query_that_froze_an_arm",
+    "truncated": (
+        "tests/codec/test_every_raw_value.py::test_every_raw_value_of_every_field_survives"
+    ),
 }
 
-# Figures of other people's machines: nothing that a driver could do right or wrong.
+# Figures of other people's machines: no client behaviour can be right or wrong here.
 FIGURES = {
-    "round trip": "bench/driver.py measures what the driver adds to it",
+    "round trip": "bench/client.py measures what the client adds to it",
     "polling": "how often is asked is the caller's choice",
     "line rate": "10 bits a byte, 17 bytes a reply",
 }

@@ -1,4 +1,4 @@
-"""Plays a case's calls on one client, whichever library it is of, and says how each ended."""
+"""Make a case's calls with one client of any library, and judge how each of them ends."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Outcome(NamedTuple):
 
     Attributes:
         verdict: ``right``, ``wrong, silently``, ``-1``, ``None`` or the name of an error.
-        detail: the value, or the words of the error.
-        meant: whether an error is one that the library raises on purpose, or the system.
+        detail: the value, or the text of the error.
+        meant: whether the library, or the system, raised the error on purpose.
     """
 
     verdict: str
@@ -30,17 +30,17 @@ class Outcome(NamedTuple):
 
 
 def open_blocking(url: str) -> Any:
-    """Our blocking client."""
+    """Open our blocking client."""
     return MyCobot280(url)
 
 
 def open_asyncio(url: str) -> Any:
-    """Our asyncio client, in a loop of its own thread."""
+    """Open our asyncio client, in an event loop of its own thread."""
     return InLoop(AsyncMyCobot280, url)
 
 
 def open_pymycobot(url: str) -> Any:
-    """The maker's library; imported here, since the tests of ours do not need it."""
+    """Open the maker's client. The import is here, since tests of ours do not need the library."""
     if url.startswith("socket://"):
         from pymycobot import MyCobot280Socket
 
@@ -58,20 +58,23 @@ OPENERS: dict[str, Callable[[str], Any]] = {
 }
 
 
-def play(case: Case, who: str, url: str, client: int = 0) -> tuple[list[Outcome], float]:
-    """All calls of this client, and the seconds that they took; opening is not timed."""
+def play(case: Case, library: str, url: str, client: int = 0) -> tuple[list[Outcome], float]:
+    """Make all calls of a client; return how they ended, and the seconds that they took.
+
+    The time does not include opening.
+    """
     try:
-        arm = OPENERS[who](url)
+        arm = OPENERS[library](url)
     except Exception as error:
         return [_failed(error)], 0.0
-    options = who == "pymycobot"
+    options = library == "pymycobot"
     started = time.monotonic()
     if case.threads:
         outcomes = _in_threads(case, arm, options)
     else:
         outcomes = _in_turn(case.calls[client :: case.clients], case, arm, options)
     seconds = time.monotonic() - started
-    if who != "pymycobot":
+    if library != "pymycobot":
         arm.__exit__(None, None, None)
     return outcomes, seconds
 
@@ -81,10 +84,10 @@ def _in_turn(calls: tuple[Call, ...], case: Case, arm: Any, options: bool) -> li
     for _ in range(case.repeat):
         for call in calls:
             outcome = called(call, arm, options)
-            if case.deaf and outcome.verdict == RIGHT:
+            if case.unread and outcome.verdict == RIGHT:
                 continue
             outcomes.append(outcome)
-            if case.deaf:
+            if case.unread:
                 return outcomes
     return outcomes
 
@@ -104,10 +107,10 @@ def _in_threads(case: Case, arm: Any, options: bool) -> list[Outcome]:
 
 
 def called(call: Call, arm: Any, options: bool) -> Outcome:
-    """One call, and how it ended."""
+    """Make one call, with its ``pymycobot_options`` if ``options``; return how it ended."""
     try:
         value = getattr(arm, call.method)(
-            *call.arguments, **(call.their_options if options else {})
+            *call.arguments, **(call.pymycobot_options if options else {})
         )
     except Exception as error:
         return _failed(error)
@@ -125,9 +128,6 @@ def _judged(call: Call, value: Any) -> Outcome:
 
 def _failed(error: Exception) -> Outcome:
     kind = type(error)
-    name = (
-        kind.__name__
-        if kind.__module__ in ("builtins", "cobotwire.errors")
-        else (f"{kind.__module__.split('.')[0]}.{kind.__name__}")
-    )
+    ours = kind.__module__ in ("builtins", "cobotwire.protocol.errors")
+    name = kind.__name__ if ours else f"{kind.__module__.split('.')[0]}.{kind.__name__}"
     return Outcome(name, str(error), isinstance(error, CobotwireError | OSError))

@@ -1,4 +1,4 @@
-"""A newcomer's path: two wheels, a fresh environment without Rust, a protocol of one's own."""
+"""Install both wheels in a fresh environment without Rust, and use a custom protocol."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ frame:
     check: crc16-modbus
     length_counts: [command, data, check]
     maximum_data: 8
-    doc: The maker's second frame variant.
-  link: {baudrate: 115200, deadline_ms: 200}
+    doc: The maker's second frame format.
+  transport: {baudrate: 115200, deadline_ms: 200}
 types:
   wire:
     byte: {bytes: 1, doc: A byte.}
@@ -40,24 +40,24 @@ commands:
     title: Set the warmth
     doc: Sets the warmth of a plate.
     safety: setting
-    request: [{name: plate, is: plate}, {name: warmth, is: warmth}]
+    request: [{name: plate, type: plate}, {name: warmth, type: warmth}]
   get_warmth:
     id: 0x11
     title: Read the warmth
     doc: Reads the warmth of a plate.
     safety: query
-    request: [{name: plate, is: plate}]
-    reply: [{name: plate, is: plate, echo: required}, {name: warmth, is: warmth}]
+    request: [{name: plate, type: plate}]
+    reply: [{name: plate, type: plate, echo: required}, {name: warmth, type: warmth}]
   is_hot:
     id: 0x12
-    title: Ask whether a plate is hot
-    doc: Asks whether any plate is hot.
+    title: Read whether a plate is hot
+    doc: Reads whether any plate is hot.
     safety: query
-    reply: [{name: hot, is: flag}]
+    reply: [{name: hot, type: flag}]
 """
 
 SCRIPT = """\
-from cobotwire.sim import PtyServer, SimulatedArm
+from cobotwire.simulator import PtyServer, SimulatedArm
 from heater import TABLE, Heater
 
 with PtyServer(SimulatedArm(TABLE)) as server, Heater(server.url) as heater:
@@ -86,7 +86,7 @@ def run(
 
 @pytest.fixture(scope="module")
 def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Both distributions, built as a release would build them."""
+    """Build both distributions as a release builds them."""
     folder = tmp_path_factory.mktemp("wheels")
     build = (sys.executable, "-m", "maturin", "build", "--release", "--quiet", "--out", folder)
     run(*build, cwd=vectors.ROOT)
@@ -97,7 +97,7 @@ def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 
 @pytest.fixture(scope="module")
 def fresh(tmp_path_factory: pytest.TempPathFactory, wheels: list[Path]) -> Path:
-    """The programs of a fresh environment with the two wheels and nothing else of ours."""
+    """Install the two wheels into a fresh environment, and return the folder of its programs."""
     folder = tmp_path_factory.mktemp("fresh") / "venv"
     run(sys.executable, "-m", "venv", folder)
     [native] = [wheel for wheel in wheels if wheel.name.startswith("cobotwire-")]
@@ -108,12 +108,12 @@ def fresh(tmp_path_factory: pytest.TempPathFactory, wheels: list[Path]) -> Path:
 
 @pytest.fixture
 def environment(fresh: Path) -> dict[str, str]:
-    """No Rust on the path, and nothing of this repository."""
+    """Return environment variables without Rust or this repository on the path."""
     kept = {name: value for name, value in os.environ.items() if name in ("HOME", "LANG")}
     return {**kept, "PATH": f"{fresh}:/usr/bin:/bin"}
 
 
-def test_from_one_yaml_file_to_a_talking_simulator(
+def test_package_built_from_one_yaml_file_talks_to_its_simulator(
     tmp_path: Path, fresh: Path, environment: dict[str, str]
 ) -> None:
     (tmp_path / "heater.yaml").write_text(PROTOCOL + _vectors())
@@ -139,7 +139,7 @@ def test_from_one_yaml_file_to_a_talking_simulator(
         run("cargo", "--version", env={**environment, "PATH": str(fresh)})
 
 
-def test_a_template_of_ones_own_takes_the_place_of_ours(
+def test_own_template_replaces_the_shipped_one_of_the_same_name(
     tmp_path: Path, environment: dict[str, str]
 ) -> None:
     (tmp_path / "heater.yaml").write_text(PROTOCOL + _vectors())
@@ -152,7 +152,7 @@ def test_a_template_of_ones_own_takes_the_place_of_ours(
     assert (tmp_path / "heater" / "enums.py").read_text() == '"""0 enums of our own."""\n'
 
 
-def test_a_folder_with_other_files_is_left_alone(
+def test_build_into_folder_with_other_files_fails_and_changes_nothing(
     tmp_path: Path, environment: dict[str, str]
 ) -> None:
     (tmp_path / "heater.yaml").write_text(PROTOCOL + _vectors())
@@ -161,12 +161,12 @@ def test_a_folder_with_other_files_is_left_alone(
     words = ("build", "heater.yaml", "--out", "heater")
     with pytest.raises(subprocess.CalledProcessError) as caught:
         run("cobotwire-gen", *words, cwd=tmp_path, env=environment)
-    assert "not generated, and in the way" in caught.value.stderr
+    assert "the folder contains files that were not generated" in caught.value.stderr
     assert (tmp_path / "heater" / "thesis.py").read_text() == "# years of work\n"
 
 
 def _frame(command: int, data: str) -> str:
-    """A frame with its CRC, computed here once more so that nothing of ours vouches for it."""
+    """Return a frame with its CRC, computed here independently of the code under test."""
     body = bytes.fromhex(f"FEFE{3 + len(data) // 2:02X}{command:02X}{data}")
     crc = 0xFFFF
     for byte in body:
@@ -179,9 +179,9 @@ def _frame(command: int, data: str) -> str:
 def _vectors() -> str:
     rows = [
         ("set", "set_warmth", "request", _frame(0x10, "0200EB"), "{plate: 2, warmth: 23.5}"),
-        ("ask", "get_warmth", "request", _frame(0x11, "02"), "{plate: 2}"),
-        ("told", "get_warmth", "reply", _frame(0x11, "0200EB"), "{plate: 2, warmth: 23.5}"),
-        ("hot?", "is_hot", "request", _frame(0x12, ""), "{}"),
+        ("get", "get_warmth", "request", _frame(0x11, "02"), "{plate: 2}"),
+        ("warmth", "get_warmth", "reply", _frame(0x11, "0200EB"), "{plate: 2, warmth: 23.5}"),
+        ("get hot", "is_hot", "request", _frame(0x12, ""), "{}"),
         ("hot", "is_hot", "reply", _frame(0x12, "01"), "{hot: true}"),
     ]
     lines = [

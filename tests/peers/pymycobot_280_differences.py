@@ -1,4 +1,4 @@
-"""Every place where MyCobot280's request is not ours in its own edition, with the ruling."""
+"""List every request of MyCobot280 that differs from ours in its own edition, with the ruling."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ _NEAREST = "encode: the nearest step (0.29 x100 is 29); pymycobot cuts off the r
 _ROUNDED = "encode: the nearest step is held to the limits; pymycobot checks, then cuts off"
 _LIMIT = "0x4C 0x4D: any tenth of a degree here; pymycobot takes whole degrees only"
 _PORT = "0xB2: a port is 1..65535; pymycobot packs any signed word"
-_TORQUE = "0x66 0x67: the torque stands behind the type; alone, the arm reads it as the type"
+_TORQUE = "0x66 0x67: the torque comes after the type; alone, the arm reads it as the type"
 _FLAG = "the list is closed here: modes and flags 0 1; pymycobot checks too little or nothing"
 _UNSIGNED = "0x64: a frequency is not negative; pymycobot checks none of the numbers"
-_SEVEN = "0x3E: six speeds for six joints; pymycobot takes seven too, a LEN of its own"
-_SPACE = "0x81 0x83: a tool or pedestal is not held to the arm's workspace; pymycobot does so"
+_SEVEN = "0x3E: six speeds for six joints; pymycobot takes seven too, with another LEN"
+_SPACE = "0x81 0x83: a tool or pedestal may exceed the arm's workspace; pymycobot limits it"
 _RADIANS = "0x22: the limits and speeds of send_angles; pymycobot checks none of them in radians"
 _COUNT = "0x23 0x8D: six numbers; pymycobot sends as many as it is given"
-_STEP = "0x33 0x34: what a signed word can say; pymycobot clamps the rest to it, silently"
-_SPAN = "0x33: any step that the wire can say; pymycobot refuses more than the joint's range"
-_ASKED = "0x2A: any target may be asked about; pymycobot holds it to the limits of motion"
+_STEP = "0x33 0x34: what fits a signed word; pymycobot silently clamps the rest"
+_SPAN = "0x33: any step that fits the wire; pymycobot rejects more than the joint's range"
+_ASKED = "0x2A: any target may be queried; pymycobot applies the limits of motion"
 _TEXT = "0xB0: ASCII that reads in one way only; pymycobot sends any text, as UTF-8"
 
 _OFF = [0, 0, 0, 0, 0, 0.29]
@@ -35,7 +35,7 @@ Differences = dict[tuple[str, str], Difference]
 def _same(
     command: str, topic: str, given: tuple[Any, ...], becomes: tuple[Any, ...] | str, ruling: str
 ) -> tuple[tuple[str, str], Difference]:
-    """Both sides are called by the same name with the same arguments."""
+    """Describe a difference where both sides have the same method and arguments."""
     return (command, topic), Difference(given, command, given, becomes, ruling)
 
 
@@ -110,7 +110,7 @@ UNCHECKED: Differences = dict(
 
 DIFFERENCES: Differences = {**TRUNCATIONS, **LIMITS, **UNCHECKED}
 
-# Texts for which only pymycobot has a request: the name, the password, and the ruling.
+# Texts that only pymycobot sends: the name, the password, and the ruling.
 TEXTS = [
     ("Müller", "geheim", _TEXT),
     ("net'(work", "x", _TEXT),
@@ -118,7 +118,7 @@ TEXTS = [
 ]
 
 
-def refused_by_pymycobot(command: str) -> str | None:
-    """The ruling by which a legal request of ours may be refused by pymycobot; None: none."""
+def rejected_by_pymycobot(command: str) -> str | None:
+    """Return the ruling for a legal request of ours that pymycobot rejects, or None."""
     rulings = {d.ruling for (name, _), d in LIMITS.items() if name == command}
     return next((r for r in sorted(rulings) if r in (_LIMIT, _SPACE, _ASKED, _SPAN, _PORT)), None)

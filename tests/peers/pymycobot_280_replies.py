@@ -1,4 +1,4 @@
-"""How MyCobot280 reads the replies of its edition where it reads them otherwise than we do."""
+"""Read replies with MyCobot280 and with our client, and list where the results differ."""
 
 from __future__ import annotations
 
@@ -10,61 +10,16 @@ from typing import Any, NamedTuple
 from cobotwire.codec import CodecName
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.editions.mycobot280 import MyCobot280 as OurMyCobot280
-from cobotwire.errors import ReplyTimeout
-from cobotwire.table import Command
+from cobotwire.protocol.errors import ReplyTimeout
+from cobotwire.protocol.table import Command
 from pymycobot_280_requests import REQUESTS
 from pymycobot_classes import peer_on
 from pymycobot_difference import M280
+from pymycobot_ports import ReplyingPort, ReplyingTransport
 
 
-class AnsweringPort:
-    """What pymycobot uses of ``serial.Serial``; every request is answered by the same bytes."""
-
-    def __init__(self, answer: bytes) -> None:
-        self._answer = answer
-        self._waiting = b""
-        self.asked = 0
-
-    def isOpen(self) -> bool:
-        return True
-
-    def reset_input_buffer(self) -> None:
-        self._waiting = b""
-
-    def write(self, data: Any) -> None:
-        self.asked += 1
-        self._waiting += self._answer
-
-    def inWaiting(self) -> int:
-        return len(self._waiting)
-
-    def read(self, size: int = 1) -> bytes:
-        data, self._waiting = self._waiting[:size], self._waiting[size:]
-        return data
-
-
-class AnsweringLink:
-    """The same for our driver: a :class:`cobotwire.transport.Transport`."""
-
-    url = "answering"
-
-    def __init__(self, answer: bytes) -> None:
-        self._answer = answer
-        self._waiting = b""
-
-    def write(self, data: bytes) -> None:
-        self._waiting += self._answer
-
-    def read(self, timeout: float) -> bytes:
-        data, self._waiting = self._waiting, b""
-        return data
-
-    def close(self) -> None:
-        """There is nothing to give back."""
-
-
-def question(command: Command, echoed: dict[str, Any]) -> tuple[Any, ...]:
-    """Arguments to ask with, such that the reply echoes them."""
+def arguments_for(command: Command, echoed: dict[str, Any]) -> tuple[Any, ...]:
+    """Return arguments of a request that matches a reply with these echoes."""
     arguments = list(REQUESTS[command.name][0])
     for index, field in enumerate(command.request[0].fields):
         if field.name in echoed:
@@ -72,26 +27,26 @@ def question(command: Command, echoed: dict[str, Any]) -> tuple[Any, ...]:
     return tuple(arguments)
 
 
-def heard_by_us(codec: CodecName, command: str, arguments: Iterable[Any], frame: bytes) -> Any:
-    """What our client gives for a reply, as plain lists and numbers."""
-    with OurMyCobot280(AnsweringLink(frame), codec=codec, timeout=0.05) as client:
+def read_by_us(codec: CodecName, command: str, arguments: Iterable[Any], frame: bytes) -> Any:
+    """Return our client's result for a reply, as plain lists and numbers."""
+    with OurMyCobot280(ReplyingTransport(frame), codec=codec, timeout=0.05) as client:
         return plain(getattr(client, command)(*arguments))
 
 
-def heard_by_pymycobot(command: str, arguments: Iterable[Any], frame: bytes) -> Any:
-    """What pymycobot's own, unmodified reading gives for it."""
-    return getattr(peer_on(M280, AnsweringPort(frame)), command)(*arguments)
+def read_by_pymycobot(command: str, arguments: Iterable[Any], frame: bytes) -> Any:
+    """Return what pymycobot itself reads from the reply."""
+    return getattr(peer_on(M280, ReplyingPort(frame)), command)(*arguments)
 
 
 def plain(value: Any) -> Any:
-    """A value of ours without names."""
+    """Return a value of ours without field names."""
     if isinstance(value, tuple):
         return [plain(item) for item in value]
     return int(value) if isinstance(value, int) else value
 
 
 def bits(byte: int) -> Any:
-    """0, or the numbers of the bits that are set."""
+    """Return the numbers of the bits that are set, or 0 if none is."""
     return [bit for bit in range(8) if byte >> bit & 1] or 0
 
 
@@ -113,10 +68,10 @@ def _points(ours: list[int]) -> Any:
     return [ours[::2], ours[1::2]] if any(ours) else -1
 
 
-# The ruling, and what pymycobot gives where we give ``ours``.
-OtherWords = tuple[str, Callable[[Any], Any]]
+# The ruling, and the result of pymycobot as a function of ours.
+OtherForm = tuple[str, Callable[[Any], Any]]
 
-DIFFERENCES: dict[str, OtherWords] = {
+DIFFERENCES: dict[str, OtherForm] = {
     "get_radians": (
         "0x20: the float nearest to the angle; pymycobot rounds it to thousandths",
         lambda ours: [round(math.degrees(value) * (math.pi / 180), 3) for value in ours],
@@ -142,9 +97,9 @@ DIFFERENCES: dict[str, OtherWords] = {
 
 
 class OtherReading(NamedTuple):
-    """A reply that the two sides take for different things; an exception's type is what is raised.
+    """A reply that the two sides read differently; an exception is given as its type.
 
-    What our client gives; for a setter, which does not wait, the fields that our codec reads.
+    ``ours`` is our client's result; for a setter, which does not wait, the decoded fields.
     """
 
     call: str
@@ -156,11 +111,11 @@ class OtherReading(NamedTuple):
 
 
 _ONE_BYTE = "0x62 0xA1: older firmware leaves the pin out; pymycobot skips a byte in any case"
-_OF_ANOTHER = "a reply is matched by what it echoes; pymycobot takes that of any joint or pin"
-_BARE = "an acknowledgement may be a bare frame; pymycobot takes a frame without data for none"
-_ANY = "0xA0: the word as it came; pymycobot says 1 whatever it is"
+_OF_ANOTHER = "a reply is matched by its echo; pymycobot takes the reply for any joint or pin"
+_BARE = "an acknowledgement may be a bare frame; pymycobot reads -1 from a frame without data"
+_ANY = "0xA0: the value as received; pymycobot always returns 1"
 _SPACES = "0xB1: both parts may contain spaces; pymycobot takes the first and the last word"
-_LINE_END = "0xB1: the text ends with silence, and a line end is none of it"
+_LINE_END = "0xB1: the text ends with silence, and a line end is not part of it"
 _PRINTED = b"ssid: my home password: two words"
 
 
@@ -172,8 +127,8 @@ OTHER_READINGS = [
     OtherReading("get_digital_input", (23,), _frame("FEFE036201FA"), 1, struct.error, _ONE_BYTE),
     OtherReading("get_basic_input", (5,), _frame("FEFE03A101FA"), 1, struct.error, _ONE_BYTE),
     *(
-        OtherReading(call, (asked,), _frame(reply), ReplyTimeout, theirs, _OF_ANOTHER)
-        for call, asked, reply, theirs in [
+        OtherReading(call, (argument,), _frame(reply), ReplyTimeout, theirs, _OF_ANOTHER)
+        for call, argument, reply, theirs in [
             ("get_joint_min_angle", 1, "FE FE 05 4A 02 06 0E FA", 155.0),
             ("get_joint_max_angle", 1, "FE FE 05 4B 02 06 0E FA", 155.0),
             ("is_servo_enable", 1, "FE FE 04 50 02 01 FA", 1),

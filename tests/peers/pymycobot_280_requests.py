@@ -1,7 +1,7 @@
-"""Argument sets for every call of the 280: the same numbers go into our method and pymycobot's.
+"""Argument sets for every command of the 280, for our method and for pymycobot's.
 
-Most are corners of the edition's own table: the lowest and the highest of every field, for each
-value of the field that decides how another reads. The rest are chosen by hand.
+Most are corners of the edition's own table: the lowest and the highest value of every field, for
+each value of its selector. The rest are chosen by hand.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.table import Field, Layout
+from cobotwire.protocol.table import Field, Variant
 from pymycobot_requests import REQUESTS as OLDER
 
 Arguments = tuple[Any, ...]
@@ -26,7 +26,7 @@ _COORDS = [
 ]
 _WORDS = [[-327.68, 327.67, -2.58, 2.5, 0.01, -0.01]]
 
-# Beside the corners, or in the place of those that pymycobot refuses.
+# In addition to the corners, or instead of corners that pymycobot rejects.
 _BY_HAND: dict[str, list[Arguments]] = {
     "send_angle": [(1, 1.5, 20), (2, -2.58, 1), (3, -0.1, 100)],
     "send_angles": [([1.5, -20.25, 30, -45.75, 120, -179.99], 50)],
@@ -47,20 +47,20 @@ _BY_HAND: dict[str, list[Arguments]] = {
     "solve_inv_kinematics": [(row, angles) for row in _COORDS for angles in _ANGLES],
     "set_ssid_pwd": [("MyCobotWiFi2.4G", "mycobot123"), ("my home net", "two words"), ("", "")],
 }
-# Its corners are beyond what pymycobot lets pass; the differences say where that ends.
+# Commands with corners that pymycobot rejects; pymycobot_280_differences lists its bounds.
 _NO_CORNERS = {"is_in_position", "set_tool_reference", "set_world_reference", "set_server_port"}
 _NO_CORNERS |= {"jog_increment_angle"}
-# What is called as in the older edition, and within the limits of this one.
+# Commands with the same arguments as in the older edition, within the limits of this one.
 _AS_BEFORE = {"send_angles", "jog_angle", "jog_coord", "jog_increment", "set_tool_reference"}
 _AS_BEFORE |= {"set_world_reference", "set_servo_data", "get_servo_data", "set_pin_mode"}
 
 
-def as_called(name: str, layout: Layout, values: Arguments) -> Arguments:
-    """Values of the wire as a caller gives them: lists and whole numbers, and radians."""
+def as_called(name: str, variant: Variant, values: Arguments) -> Arguments:
+    """Return decoded values as the caller's arguments: lists, integers, and radians."""
     given = [
         [_plain(v) for v in value] if field.many else _plain(value)
-        for field, value in zip(layout.fields, values)
-        if field.cases[0].numbers[0].maximum > 0  # else it is constant, and no argument
+        for field, value in zip(variant.fields, values)
+        if field.cases[0].numbers[0].maximum > 0  # otherwise it is a constant, not an argument
     ]
     if name == "send_radians":
         given[0] = [math.radians(degrees) for degrees in values[0]]
@@ -68,37 +68,38 @@ def as_called(name: str, layout: Layout, values: Arguments) -> Arguments:
 
 
 def _plain(value: float) -> float:
-    # pymycobot takes no bool for a 0 or 1, and no 90.0 as a limit.
+    # pymycobot accepts neither a bool for 0 or 1, nor 90.0 as a limit.
     return int(value) if value == int(value) else value
 
 
-def _corners(layout: Layout) -> Iterator[tuple[Any, ...]]:
-    deciding = {field.selector for field in layout.fields} - {-1}
-    picks = {w for field in layout.fields for case in field.cases for w in case.when}
+def _corners(variant: Variant) -> Iterator[tuple[Any, ...]]:
+    selectors = {field.selector for field in variant.fields} - {-1}
+    picks = {w for field in variant.fields for case in field.cases for w in case.when}
     chosen: list[int | None] = [*sorted(picks)]
     for pick in chosen or [None]:
         for high in (False, True):
             yield tuple(
-                pick if index in deciding else end(field, high, pick)
-                for index, field in enumerate(layout.fields)
+                pick if index in selectors else end(field, high, pick)
+                for index, field in enumerate(variant.fields)
             )
 
 
 def end(field: Field, high: bool, pick: int | None = None) -> Any:
-    """The lowest or the highest value of a field, in the case that ``pick`` decides."""
-    case = next(case for case in field.cases if not case.when or pick in case.when)
+    """Return the lowest or the highest value of a field, in the case that ``pick`` selects."""
+    case = field.case(pick)
+    assert case is not None, f"{field.name} has a case for {pick}"
     steps = [number.maximum if high else number.minimum for number in case.numbers]
     if field.choices:
         steps = [field.choices[-1 if high else 0]]
     numbers = zip(steps, case.numbers)
-    scaled = [step * n.multiply / n.divide if n.scaled else step for step, n in numbers]
+    scaled = [n.physical(step) for step, n in numbers]
     return tuple(scaled) if field.many else scaled[0]
 
 
 def _requests(name: str) -> list[Arguments]:
     found = [] if name in _NO_CORNERS else [
-        as_called(name, layout, values)
-        for layout in TABLE.command(name).request for values in _corners(layout)
+        as_called(name, variant, values)
+        for variant in TABLE.command(name).request for values in _corners(variant)
     ]  # fmt: skip
     if name == "set_ssid_pwd":
         found = []
@@ -109,9 +110,9 @@ REQUESTS: dict[str, list[Arguments]] = {
     command.name: _requests(command.name) for command in TABLE.commands
 }
 
-# What pymycobot fills in itself, and what it makes of several calls: its method and arguments, and
-# ours. Where it sends more than one request, the first.
-SAME_WISHES: list[tuple[str, Arguments, str, Arguments]] = [
+# Calls that pymycobot completes with defaults or composes of several: its method and arguments, and
+# ours. If it sends more than one request, the first counts.
+COMPOSED: list[tuple[str, Arguments, str, Arguments]] = [
     ("is_in_position", (_ANGLES[1],), "is_in_position", (_ANGLES[1], 0)),
     ("set_color", (), "set_color", (0, 0, 0)),
     ("go_home", (), "send_angles", ([0] * 6, 10)),
@@ -121,6 +122,6 @@ SAME_WISHES: list[tuple[str, Arguments, str, Arguments]] = [
     ("sync_send_coords", (_COORDS[3], 50), "send_coords", (_COORDS[3], 50, 0)),
     ("sync_send_coords", (_COORDS[3], 50, 1), "send_coords", (_COORDS[3], 50, 1)),
 ]
-# Public names of the class that say nothing to the arm.
-SILENT = {"check_python_version", "close", "crc_check", "crc_robot_class", "open", "wait"}
-SILENT |= {"gpio_init", "gpio_output"}  # these drive pins of the Raspberry Pi
+# Public names of the class that send nothing to the arm.
+LOCAL = {"check_python_version", "close", "crc_check", "crc_robot_class", "open", "wait"}
+LOCAL |= {"gpio_init", "gpio_output"}  # these drive pins of the Raspberry Pi

@@ -1,4 +1,4 @@
-"""The maker's library pymycobot 4.0.7, imported and built unmodified; what its classes write."""
+"""Import the maker's library pymycobot 4.0.7 unmodified, and capture what its classes write."""
 
 from __future__ import annotations
 
@@ -8,21 +8,22 @@ import threading
 import warnings
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NoReturn
+from typing import Any
 
+from cobotwire.client import Client
 from cobotwire.codec import CodecName
-from cobotwire.driver import Driver
 from cobotwire.editions.mycobot import MyCobot as OurMyCobot
+from pymycobot_ports import RecordingPort, RecordingTransport, Written
 
 with warnings.catch_warnings():
-    # Importing it compiles and calls what Python 3.11 deprecates (locale.getdefaultlocale). The
-    # marks of pytest do not reach imports, and the warnings are not ours to mend.
+    # Importing it compiles and calls what Python 3.11 deprecates (locale.getdefaultlocale). Pytest
+    # marks do not apply to imports, and we cannot fix these warnings.
     warnings.simplefilter("ignore")
     from pymycobot import CommandGenerator, MyCobot, MyCobot280, MyPalletizer260
     from pymycobot.error import MyCobot280DataException, MyCobotDataException
 
-__all__ = ["CLASSES", "REFUSALS", "MyCobot", "MyCobot280", "MyPalletizer260"]
-__all__ += ["our_client", "peer_on", "without_port", "written"]
+__all__ = ["CLASSES", "REJECTIONS", "MyCobot", "MyCobot280", "MyPalletizer260"]
+__all__ += ["peer_on", "recording_client", "without_port", "written"]
 
 CLASSES: dict[str, type[Any]] = {
     "MyCobot": MyCobot,
@@ -30,53 +31,17 @@ CLASSES: dict[str, type[Any]] = {
     "MyPalletizer260": MyPalletizer260,
 }
 
-# What it raises before it writes: on purpose, of an argument that its limits rule out; and by
-# accident, of a number that does not fit where it shall go (pyserial raises the last one).
-REFUSALS = (MyCobotDataException, MyCobot280DataException, struct.error, TypeError, ValueError)
-
-
-class Written(Exception):
-    """Thrown by a port at its first write, so that nobody waits for a reply or writes again."""
-
-    def __init__(self, data: bytes) -> None:
-        self.data = data
-        super().__init__(data.hex(" "))
-
-
-class RecordingPort:
-    """What pymycobot uses of ``serial.Serial`` before a request is out."""
-
-    def isOpen(self) -> bool:
-        return True
-
-    def reset_input_buffer(self) -> None:
-        """Nothing ever comes in."""
-
-    def write(self, data: Sequence[int]) -> NoReturn:
-        raise Written(bytes(data))
-
-
-class RecordingLink:
-    """The same for our driver: a :class:`cobotwire.transport.Transport`."""
-
-    url = "recording"
-
-    def write(self, data: bytes) -> None:
-        raise Written(data)
-
-    def read(self, timeout: float) -> bytes:
-        return b""
-
-    def close(self) -> None:
-        """There is nothing to give back."""
+# What a call raises before it writes: on purpose, for an argument outside of its limits; or by
+# accident, for a number that does not fit into its bytes (pyserial raises the last of these).
+REJECTIONS = (MyCobotDataException, MyCobot280DataException, struct.error, TypeError, ValueError)
 
 
 def peer_on(name: str, port: Any) -> Any:
-    """One of its classes as its constructor makes it, but for the port and 1.5 s of sleep."""
+    """Build one of its classes like its constructor does, without the port and 1.5 s of sleep."""
     kind = CLASSES[name]
     peer = object.__new__(kind)
     CommandGenerator.__init__(peer)
-    # Each module has a check of arguments of its own under this name.
+    # Each module has its own argument check under this name.
     peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
     peer.lock = threading.Lock()
     peer.thread_lock = True
@@ -86,20 +51,20 @@ def peer_on(name: str, port: Any) -> Any:
 
 @lru_cache
 def without_port(name: str) -> Any:
-    """One of its classes on a port that only records."""
+    """Return one of its classes on a port that only records."""
     return peer_on(name, RecordingPort())
 
 
-def our_client(codec: CodecName, kind: type[Driver] = OurMyCobot) -> Driver:
-    """A generated client of ours on a link that only records.
+def recording_client(codec: CodecName, kind: type[Client] = OurMyCobot) -> Client:
+    """Return a new generated client of ours on a transport that only records.
 
-    A new one each time: after a question was given up, a client holds the next one like it back.
+    A client cannot be used twice: after an abandoned request it delays the next one of its kind.
     """
-    return kind(RecordingLink(), codec=codec)
+    return kind(RecordingTransport(), codec=codec)
 
 
 def written(who: Any, method: str, arguments: Sequence[Any]) -> bytes:
-    """The first bytes that a call writes. What the call raises before that goes through."""
+    """Return the first bytes that a call writes, or raise what the call raises before that."""
     try:
         getattr(who, method)(*arguments)
     except Written as port:

@@ -1,13 +1,13 @@
-"""What a difference between pymycobot's requests and ours is, how one is written down and read."""
+"""Records of differences between pymycobot's requests and ours, and how to measure one."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from cobotwire.client import Client
 from cobotwire.codec.interface import Codec
-from cobotwire.driver import Driver
-from cobotwire.errors import ProtocolError, UsageError
-from pymycobot_classes import REFUSALS, without_port, written
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from pymycobot_classes import REJECTIONS, without_port, written
 
 Arguments = tuple[Any, ...]
 
@@ -16,19 +16,19 @@ BOTH = (COBOT, M280)
 NEWER = (M280, PALLETIZER)
 ALL = (COBOT, M280, PALLETIZER)
 
-# The topic of a command that a class says otherwise whatever its arguments are (zero apart, which
-# is the same in every scale).
+# The topic of a command that a class encodes differently for all arguments (except zero, which is
+# the same in every scale).
 ALWAYS = "always"
 
-# What ``becomes`` says where pymycobot raises before it writes.
+# The value of ``becomes`` if pymycobot raises before it writes.
 NOT_SENT = "not sent"
 
 
 class Difference(NamedTuple):
-    """The same wish, as both sides say it.
+    """One intent and the request that each side makes of it.
 
-    ``becomes`` is what an arm of this edition makes of pymycobot's bytes: the values that it reads,
-    or the reason for which it refuses them.
+    ``becomes`` is what an arm of this edition decodes from pymycobot's bytes: the values, or the
+    reason why it rejects them.
     """
 
     ours: Arguments
@@ -39,7 +39,7 @@ class Difference(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A difference, and the classes that have it."""
+    """A difference and the classes that have it."""
 
     peers: tuple[str, ...]
     command: str
@@ -55,11 +55,11 @@ def same_call(
     becomes: Arguments | str,
     ruling: str,
 ) -> Row:
-    """Both sides are called by the same name with the same arguments."""
+    """Describe a difference where both sides have the same method and arguments."""
     return Row(peers, command, topic, Difference(arguments, command, arguments, becomes, ruling))
 
 
-def other_form(
+def other_variant(
     peers: tuple[str, ...],
     command: str,
     topic: str,
@@ -68,28 +68,28 @@ def other_form(
     theirs: Arguments,
     ruling: str,
 ) -> Row:
-    """pymycobot is called otherwise, and its frame has a LEN that this edition does not know."""
+    """Describe a call of pymycobot whose frame has a LEN that this edition does not know."""
     return Row(peers, command, topic, Difference(ours, method, theirs, "bad-length", ruling))
 
 
-def said_by_us(client: Driver, command: str, difference: Difference) -> bytes | str:
-    """What our client writes."""
+def sent_by_us(client: Client, command: str, difference: Difference) -> bytes | str:
+    """Return what our client writes."""
     try:
         return written(client, command, difference.ours)
     except UsageError:
         return NOT_SENT
 
 
-def said_by(peer: str, difference: Difference) -> bytes | str:
-    """What one of pymycobot's classes writes."""
+def sent_by(peer: str, difference: Difference) -> bytes | str:
+    """Return what one of pymycobot's classes writes."""
     try:
         return written(without_port(peer), difference.method, difference.theirs)
-    except REFUSALS:
+    except REJECTIONS:
         return NOT_SENT
 
 
-def read_by(codec: Codec, request: bytes | str) -> Arguments | str:
-    """What an arm of the codec's edition makes of a request."""
+def decoded_by(codec: Codec, request: bytes | str) -> Arguments | str:
+    """Return the values that an arm of the codec's edition decodes, or the reason of rejection."""
     if isinstance(request, str):
         return request
     try:

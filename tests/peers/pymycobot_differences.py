@@ -1,4 +1,4 @@
-"""Every place where pymycobot's request is not ours, with the ruling that decides for ours."""
+"""List every request of pymycobot that differs from ours, with the ruling for ours."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pymycobot_difference import (
     PALLETIZER,
     Difference,
     Row,
-    other_form,
+    other_variant,
     same_call,
 )
 from pymycobot_value_differences import REACH, TRUNCATIONS
@@ -33,25 +33,25 @@ _REFERENCED = ([10, 20.5, -30, 45, 0, -90],)
 _REFERENCED_READ = ((1.0, 2.05, -3.0, 45.0, 0.0, -90.0),)
 
 NEVER_EQUAL = [
-    other_form(ALL, "set_encoder", ALWAYS, (4, 9), "set_encoder", (4, 9, 50), _SPEED_BYTE),
+    other_variant(ALL, "set_encoder", ALWAYS, (4, 9), "set_encoder", (4, 9, 50), _SPEED_BYTE),
     same_call(NEWER, "set_joint_min", ALWAYS, (1, -90), (1, -9.0), _LIMIT),
     same_call(NEWER, "set_joint_max", ALWAYS, (1, 90), (1, 9.0), _LIMIT),
     same_call((M280,), "set_tool_reference", ALWAYS, _REFERENCED, _REFERENCED_READ, _REFERENCE),
     same_call((M280,), "set_world_reference", ALWAYS, _REFERENCED, _REFERENCED_READ, _REFERENCE),
-    other_form(
+    other_variant(
         (PALLETIZER,), "send_coords", ALWAYS, (_SIX, 50, 0), "send_coords", (_FOUR, 50), _SHORT
     ),
 ]
 
 OTHER_MEANINGS = [
-    other_form((M280,), "jog_absolute", "jog_rpy", (1, 9, 50), "jog_rpy", (1, 1, 50), _RPY),
-    other_form((M280,), "jog_stop", "a step", (), "jog_increment_coord", (1, 9, 50), _STEP),
-    other_form(BOTH, "get_coords", "of angles", (), "angles_to_coords", (_SIX,), _FORWARD),
+    other_variant((M280,), "jog_absolute", "jog_rpy", (1, 9, 50), "jog_rpy", (1, 1, 50), _RPY),
+    other_variant((M280,), "jog_stop", "a step", (), "jog_increment_coord", (1, 9, 50), _STEP),
+    other_variant(BOTH, "get_coords", "of angles", (), "angles_to_coords", (_SIX,), _FORWARD),
     Row(ALL, "focus_servo", "all", Difference((6,), "focus_all_servos", (), "bad-value", _EVERY)),
 ]
 
 SHORT_ROWS = [
-    other_form((PALLETIZER,), command, "four joints", ours, command, theirs, _SHORT)
+    other_variant((PALLETIZER,), command, "four joints", ours, command, theirs, _SHORT)
     for command, ours, theirs in [
         ("send_angles", (_SIX, 50), (_FOUR, 50)),
         ("is_in_position", (_SIX, 1), (_FOUR, 1)),
@@ -60,9 +60,11 @@ SHORT_ROWS = [
 ]
 
 TRAILING_BYTES = [
-    other_form(BOTH, "send_coords", "no mode", (_SIX, 50, 0), "send_coords", (_SIX, 50), _NO_MODE),
+    other_variant(
+        BOTH, "send_coords", "no mode", (_SIX, 50, 0), "send_coords", (_SIX, 50), _NO_MODE
+    ),
     *(
-        other_form(peers, command, "a trailing byte", ours, command, (*ours, 1), _TRAILING)
+        other_variant(peers, command, "a trailing byte", ours, command, (*ours, 1), _TRAILING)
         for peers, command, ours in [
             (ALL, "release_all_servos", ()),
             (ALL, "release_servo", (1,)),
@@ -83,5 +85,5 @@ DIFFERENCES: dict[tuple[str, str, str], Difference] = {
 
 
 def never_equal(command: str, peer: str) -> bool:
-    """Whether a class says a command in another form or scale whatever its arguments are."""
+    """Return whether a class uses another variant or scale for a command, for all arguments."""
     return (command, peer, ALWAYS) in DIFFERENCES

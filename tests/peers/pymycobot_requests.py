@@ -1,7 +1,7 @@
-"""Argument sets for every command: the same numbers go into our method and into pymycobot's.
+"""Argument sets for every command, for our method and for pymycobot's.
 
-Lists and 0 or 1 stand where our methods would also take tuples, bools and enums: it takes no other.
-All numbers are inside the limits of every class compared, and survive its truncation.
+They use lists and 0 or 1, since pymycobot takes no tuples, bools or enums. All numbers are inside
+the limits of every class compared, and unchanged by its truncation.
 """
 
 from __future__ import annotations
@@ -95,10 +95,10 @@ REQUESTS: dict[str, list[Arguments]] = {
 }
 
 
-def can_say(peer: str, command: str, arguments: Arguments) -> bool:
+def accepts(peer: str, command: str, arguments: Arguments) -> bool:
     """Whether a class takes these arguments: the palletizer has four joints and coordinates.
 
-    It lets six angles and six encoders through unchecked, and then says what we say.
+    The palletizer's class does not check six angles or encoders, and encodes them as we do.
     """
     if peer != "MyPalletizer260" or not arguments:
         return True
@@ -109,5 +109,5 @@ def can_say(peer: str, command: str, arguments: Arguments) -> bool:
 
 
 def requests_of(command: str, peer: str) -> Sequence[Arguments]:
-    """The argument sets that a class takes."""
-    return [given for given in REQUESTS[command] if can_say(peer, command, given)]
+    """Return the argument sets that a class accepts."""
+    return [given for given in REQUESTS[command] if accepts(peer, command, given)]

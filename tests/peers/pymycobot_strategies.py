@@ -1,4 +1,4 @@
-"""Arguments with scaled numbers, restricted to those that pymycobot's truncation leaves alone."""
+"""Draw arguments with scaled numbers that pymycobot's truncation does not change."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _hundredths(lowest: float, highest: float) -> st.SearchStrategy[float]:
 
 
 def _tenths(lowest: float, highest: float) -> st.SearchStrategy[float]:
-    # Of tenths, truncation spares every one: (n / 10) * 10 is n again in IEEE doubles.
+    # Truncation changes no tenth: (n / 10) * 10 is n again in IEEE doubles.
     return st.integers(round(lowest * 10), round(highest * 10)).map(lambda step: step / 10)
 
 
@@ -27,7 +27,7 @@ _AXES = (_tenths(-281.4, 281.4), _tenths(-281.4, 281.4), _tenths(-69.9, 412.6)) 
 _COORDS = st.tuples(*_AXES).map(list)
 _ANGLES = st.tuples(*(_hundredths(low, high) for low, high in zip(_LOWEST, _HIGHEST))).map(list)
 
-# Up to the fourth, which is the palletizer's last.
+# Joints up to the fourth, which is the palletizer's last.
 _ONE_ANGLE = st.one_of(
     [
         st.tuples(st.just(joint), _hundredths(_LOWEST[joint - 1], _HIGHEST[joint - 1]), _SPEED)

@@ -1,4 +1,4 @@
-"""Values for which pymycobot's request is not ours, although the command is the same."""
+"""List values for which pymycobot's request differs from ours although the command is equal."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ _SIGNED = "signed words reach from -32535 to 33000 here; pymycobot packs -32768.
 _LIMIT = "0x4C 0x4D: any hundredth of a degree here; pymycobot takes whole degrees only"
 _PORT = "the port is an unsigned word; pymycobot packs a signed one"
 _SPEED = "speed is 0..100 in this edition; pymycobot wants 1..100, as mycobot280 does for motion"
-_JOINT = "joints are 1..6; newer firmware has the gripper at 7"
+_JOINT = "joints are 1..6; newer firmware has the gripper as 7"
 _CLOSED = "the list is closed here: gripper 0 1, pin mode 0 1, free mode 0 1, registers 20..24"
-_BYTE = "0x52 writes 0..254; a value of two bytes has no form here, and pymycobot none without mode"
+_BYTE = (
+    "0x52 writes 0..254; a value of two bytes has no variant here, and pymycobot none without mode"
+)
 
 _SIX = [0, 0, 0, 0, 0, 0.29]
 _SIX_READ = (0, 0, 0, 0, 0, 0.28)

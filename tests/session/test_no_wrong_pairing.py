@@ -1,6 +1,6 @@
-"""The law of pairing: whatever is late, lost or cut, no answer goes to another question.
+"""The law of pairing: no reply goes to another request, even if replies are late, lost or cut.
 
-Holds as far as an answer has begun to come within the grace, and comes once.
+It holds if each reply starts to arrive within the grace, and arrives once.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.session import Answered, HostSession, SessionEvent
+from cobotwire.session import ReplyMatched, SessionEvent
 from cobotwire.session.policy import GRACE_SECONDS
+from session.one_caller import OneCaller
 
 REFERENCE = codecs.load(TABLE, "reference")
 TIMEOUT = 0.1
@@ -22,29 +23,27 @@ TIMEOUT = 0.1
 
 @dataclass
 class Reply:
-    """On its way: it begins to come at ``due``, or sooner; ``said`` bytes have come."""
+    """A reply in transit: it starts to arrive by ``due``; ``sent`` bytes have arrived."""
 
     data: bytes
     due: float
-    said: int = 0
+    sent: int = 0
 
 
 class Pairing(RuleBasedStateMachine):
-    """An arm whose every answer holds another number, so that a wrong pairing shows."""
+    """An arm that puts another number into each reply, so that a wrong pairing shows."""
 
     @initialize(codec=st.sampled_from(["reference", "native"]))
     def begin(self, codec: codecs.CodecName) -> None:
-        self.session = HostSession(codecs.load(TABLE, codec))
+        self.session = OneCaller(codecs.load(TABLE, codec))
         self.now = 0.0
         self.line: list[Reply] = []
         self.count = 0
         self.right = -1
 
-    def _asked(self, name: str, joint: int, delay: float, lost: bool) -> None:
-        request = self.session.prepare(name, (joint,))
-        held = self.session.hold_until(request)
-        assume(held is None or held <= self.now)
-        self.session.send(request, self.now, TIMEOUT)
+    def _request(self, name: str, joint: int, delay: float, lost: bool) -> None:
+        assume(self.session.free_at(name, joint, now=self.now) <= self.now)
+        assert self.session.request(name, (joint,), self.now, TIMEOUT)
         self.count += 1
         self.right = self.count % 1000
         if lost:
@@ -60,40 +59,40 @@ class Pairing(RuleBasedStateMachine):
         delay=st.floats(0.0, GRACE_SECONDS - 0.001),
         lost=st.sampled_from([False, False, False, True]),
     )
-    def ask(self, name: str, joint: int, delay: float, lost: bool) -> None:
-        """A question that is not held is asked; the arm answers late, or never."""
-        self._asked(name, joint, delay, lost)
+    def request(self, name: str, joint: int, delay: float, lost: bool) -> None:
+        """Send a request that is not held; the arm replies late, or never."""
+        self._request(name, joint, delay, lost)
 
     @precondition(lambda self: self.line)
     @rule(size=st.integers(1, 30), cut=st.sampled_from([False] * 9 + [True]))
-    def hear(self, size: int, cut: bool) -> None:
-        """Some bytes come: a part of an answer, or the end of one and the start of the next."""
-        said = b""
-        while self.line and len(said) < size:
+    def receive(self, size: int, cut: bool) -> None:
+        """Receive some bytes: a part of a reply, or the end of one and the start of the next."""
+        received = b""
+        while self.line and len(received) < size:
             reply = self.line[0]
-            part = reply.data[reply.said :][: size - len(said)]
-            reply.said += len(part)
-            said += part
-            if reply.said == len(reply.data) or cut:
+            part = reply.data[reply.sent :][: size - len(received)]
+            reply.sent += len(part)
+            received += part
+            if reply.sent == len(reply.data) or cut:
                 self.line.pop(0)
-        self._judge(self.session.receive(said, self.now))
+        self._judge(self.session.receive(received, self.now))
 
     @precondition(lambda self: self.session.waiting)
     @rule()
     def give_up(self) -> None:
-        """Ctrl-C."""
-        self.session.abandon()
+        """Give up the request, as Ctrl-C does."""
+        self.session.give_up()
 
     @rule(seconds=st.floats(0.001, 0.6), late=st.booleans())
     def time_passes(self, seconds: float, late: bool) -> None:
-        """No answer begins to come behind the grace. The driver may be late to wake."""
+        """Let time pass. No reply starts after the grace; the client may wake late."""
         end = self.now + seconds
         for reply in self.line:
             self.now = max(self.now, min(reply.due, end))
-            if reply.due <= end and reply.said == 0:
-                # The line keeps the order: what was said before comes first.
-                self.hear(
-                    sum(len(r.data) - r.said for r in self.line[: self.line.index(reply)]) + 1,
+            if reply.due <= end and reply.sent == 0:
+                # The line keeps the order: bytes sent earlier arrive first.
+                self.receive(
+                    sum(len(r.data) - r.sent for r in self.line[: self.line.index(reply)]) + 1,
                     cut=False,
                 )
                 break
@@ -103,15 +102,15 @@ class Pairing(RuleBasedStateMachine):
 
     def _judge(self, events: list[SessionEvent]) -> None:
         for event in events:
-            if isinstance(event, Answered):
+            if isinstance(event, ReplyMatched):
                 number = event.fields.get("encoder", round(event.fields.get("angle", 0) * 10))
-                assert number == self.right, "the answer to another question"
+                assert number == self.right, "the reply to another request"
 
     @invariant()
-    def what_is_remembered_is_bounded(self) -> None:
-        """At most one debt for each question of the last grace."""
+    def outstanding_replies_are_bounded(self) -> None:
+        """Check that there is at most one outstanding reply for each request."""
         if hasattr(self, "session"):
-            assert len(self.session._debts._debts) <= self.count
+            assert len(self.session.exchange._outstanding) <= self.count
 
 
 TestPairing = Pairing.TestCase

@@ -26,19 +26,19 @@ def _document(path: Path = SHARED / "document.txt") -> list[str]:
     return path.read_text().splitlines()
 
 
-def test_all_64_commands_are_there_each_with_an_id_of_its_own() -> None:
+def test_edition_mycobot_has_64_commands_with_unique_ids() -> None:
     ids = [command.id for command in vectors.edition().commands]
     assert len(ids) == len(set(ids)) == 64
 
 
-def test_every_example_that_is_not_consistent_has_its_erratum() -> None:
+def test_every_inconsistent_example_has_an_erratum() -> None:
     edition = vectors.edition()
     odd = {v.example for v in edition.vectors if v.example and v.verdict != "consistent"}
     assert len(odd) == 25
     assert odd <= {erratum.example for erratum in edition.errata}
 
 
-def test_disputed_facts_keep_their_evidence() -> None:
+def test_every_dispute_has_evidence() -> None:
     edition = vectors.edition()
     disputed = {command.name for command in edition.commands if command.disputed}
     assert {"set_joint_min", "set_joint_max", "send_coord"} <= disputed
@@ -50,7 +50,7 @@ def test_disputed_facts_keep_their_evidence() -> None:
 
 
 @needs_shared
-def test_the_vectors_are_the_documents_examples() -> None:
+def test_vectors_contain_all_examples_of_the_document() -> None:
     ours = [vector for vector in vectors.edition().vectors if vector.example]
     for vector, example in zip(ours, _examples(), strict=True):
         frame = example["frame"]
@@ -62,7 +62,7 @@ def test_the_vectors_are_the_documents_examples() -> None:
 
 
 @needs_shared
-def test_printed_frames_stand_on_their_lines() -> None:
+def test_printed_frames_match_their_lines_of_the_document() -> None:
     document = _document()
     for vector in vectors.edition().vectors:
         if vector.example:
@@ -73,7 +73,7 @@ def test_printed_frames_stand_on_their_lines() -> None:
 
 
 @needs_shared
-def test_errata_quote_what_stands_on_their_lines() -> None:
+def test_errata_quote_their_lines_of_the_document() -> None:
     document = _document()
     for erratum in vectors.edition().errata:
         text = " ".join(" ".join(document[first - 1 : last]) for first, last in erratum.lines)

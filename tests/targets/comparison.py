@@ -1,4 +1,4 @@
-"""What the test of a target says of it: how much was compared, and what differed."""
+"""The result of testing a target: how much was compared, and what differed."""
 
 from __future__ import annotations
 
@@ -14,4 +14,4 @@ class Comparison(NamedTuple):
 
 
 class ToolMissing(Exception):
-    """The real tool is not on this machine; the text says which, and how to get it."""
+    """A tool is not installed; the message names it and how to install it."""

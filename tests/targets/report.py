@@ -1,6 +1,6 @@
-"""For each target and edition: vectors run, fields compared, differences. Run by ``make targets``.
+"""Print vectors, fields and differences for each target and edition; run by ``make targets``.
 
-Ends with 1 if there is a difference, with 2 if a target could not be run.
+The exit code is 1 if there is a difference, 2 if a target could not run.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ SHOWN = 5
 
 
 def main() -> int:
-    """Compare all, print the table and what differs."""
+    """Compare every target; print the table and the differences."""
     console = Console()
     table = Table("target", "edition", "vectors", "fields", "differences")
-    told: list[str] = []
+    differences: list[str] = []
     missing = False
     for path in sorted(HERE.glob("*/comparison.py")):
         target = path.parent.name
@@ -36,11 +36,11 @@ def main() -> int:
                 continue
             counts = (found.vectors, found.fields, len(found.differences))
             table.add_row(target, edition, *(f"{count:,}" for count in counts))
-            told += [f"{target}, {edition}: {text}" for text in found.differences[:SHOWN]]
+            differences += [f"{target}, {edition}: {text}" for text in found.differences[:SHOWN]]
     console.print(table)
-    for line in told:
+    for line in differences:
         console.print(line, markup=False)
-    return 1 if told else 2 if missing else 0
+    return 1 if differences else 2 if missing else 0
 
 
 def _compare(target: str, edition: str) -> Comparison | ToolMissing:

@@ -1,4 +1,4 @@
-"""The page about targets of one's own: its template runs, and gives what it says."""
+"""The template on the page about custom targets runs and gives the output shown there."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from cobotwire_codegen.cli import main
-from strategies import TABLES, forms_of
+from strategies import TABLES, variants_of
 from vectors import ROOT
 
 PAGE = (ROOT / "docs" / "targets.md").read_text()
@@ -26,13 +26,13 @@ def _run(template: Path, *options: str, edition: str = "mycobot280") -> tuple[in
 
 @pytest.fixture
 def template(tmp_path: Path) -> Path:
-    """The page's template, as a reader saves it."""
+    """Write the page's template to a file, as a reader does."""
     path = tmp_path / "commands.csv.j2"
     path.write_text(TEMPLATE)
     return path
 
 
-def test_the_page_shows_what_its_template_gives(template: Path) -> None:
+def test_template_of_the_page_renders_the_output_of_the_page(template: Path) -> None:
     status, text = _run(template)
     assert status == 0
     assert text.startswith(OUTPUT)
@@ -40,12 +40,12 @@ def test_the_page_shows_what_its_template_gives(template: Path) -> None:
 
 
 @pytest.mark.parametrize("edition", sorted(TABLES))
-def test_every_form_is_a_line_of_the_csv(template: Path, edition: str, tmp_path: Path) -> None:
+def test_csv_has_a_line_for_every_variant(template: Path, edition: str, tmp_path: Path) -> None:
     out = tmp_path / "commands.csv"
     assert _run(template, "--out", str(out), edition=edition) == (0, "")
     lines = list(csv.DictReader(io.StringIO(out.read_text())))
     found = {
-        (line["command"], line["direction"], int(line["form"])): (
+        (line["command"], line["direction"], int(line["variant"])): (
             int(line["id"], 16),
             int(line["data bytes"]),
             line["fields"].split(),
@@ -53,29 +53,29 @@ def test_every_form_is_a_line_of_the_csv(template: Path, edition: str, tmp_path:
         for line in lines
     }
     right = {
-        (form.command.name, form.direction, form.number): (
-            form.command.id,
-            form.layout.size,
-            [field.name for field in form.layout.fields],
+        (variant.command.name, variant.direction, variant.number): (
+            variant.command.id,
+            variant.variant.size,
+            [field.name for field in variant.variant.fields],
         )
-        for form in forms_of(TABLES[edition])
+        for variant in variants_of(TABLES[edition])
     }
     assert found == right
     assert len(lines) == len(right)
 
 
 @pytest.mark.parametrize(
-    ("line", "told"),
+    ("line", "message"),
     [
         ("{{ edition.nonsense }}", "nonsense"),
         ("{% for command in edition.commands %}", "endfor"),
         ('{% include "missing.j2" %}', "missing.j2"),
     ],
 )
-def test_a_mistake_is_told_with_its_place(tmp_path: Path, line: str, told: str) -> None:
+def test_template_error_names_file_and_line(tmp_path: Path, line: str, message: str) -> None:
     path = tmp_path / "mine.j2"
     path.write_text(f"first line\n{line}\n")
     status, text = _run(path)
     assert status == 2
-    assert told in text
+    assert message in text
     assert "mine.j2:2" in text or "mine.j2:3" in text

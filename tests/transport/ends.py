@@ -1,4 +1,4 @@
-"""The far end of a link, held by the test itself: a pty or a TCP connection."""
+"""The far end of a transport, which the test controls: a pty or a TCP connection."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import tty
 from types import TracebackType
 from typing import Self
 
-from cobotwire.transport import Link, open_link
+from cobotwire.transport import OpenedTransport, open_transport
 
 FAST = 4_000_000
 
 
 class PtyEnd:
-    """The master of a pty; ``url`` is what to open."""
+    """The master of a pty; ``url`` is the port to open."""
 
     kind = "serial"
 
@@ -25,18 +25,18 @@ class PtyEnd:
         self._slave = slave
 
     def accept(self) -> None:
-        # The link alone has it open now, so that closing the master is unplugging.
+        # Only the transport has it open now, so that closing the master unplugs it.
         os.close(self._slave)
         self._slave = -1
 
-    def say(self, data: bytes) -> None:
+    def send(self, data: bytes) -> None:
         assert os.write(self._master, data) == len(data)
 
-    def hear(self, size: int) -> bytes:
-        heard = b""
-        while len(heard) < size:
-            heard += os.read(self._master, size - len(heard))
-        return heard
+    def receive(self, size: int) -> bytes:
+        received = b""
+        while len(received) < size:
+            received += os.read(self._master, size - len(received))
+        return received
 
     def unplug(self) -> None:
         for descriptor in (self._master, self._slave):
@@ -59,19 +59,19 @@ class TcpEnd:
         self._peer, _ = self._server.accept()
         self._peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
-    def say(self, data: bytes) -> None:
+    def send(self, data: bytes) -> None:
         assert self._peer is not None
         self._peer.sendall(data)
 
-    def hear(self, size: int) -> bytes:
+    def receive(self, size: int) -> bytes:
         assert self._peer is not None
-        heard = b""
-        while len(heard) < size:
-            heard += self._peer.recv(size - len(heard))
-        return heard
+        received = b""
+        while len(received) < size:
+            received += self._peer.recv(size - len(received))
+        return received
 
     def hang_up(self) -> None:
-        """Close the connection; the server goes on listening."""
+        """Close the connection; the server continues to listen."""
         assert self._peer is not None
         self._peer.close()
         self._peer = None
@@ -86,11 +86,11 @@ End = PtyEnd | TcpEnd
 
 
 class Line:
-    """A link and its far end, for the length of a ``with`` block."""
+    """A transport and its far end, for the length of a ``with`` block."""
 
     def __init__(self, kind: str, baudrate: int = FAST) -> None:
         self.end: End = PtyEnd() if kind == "serial" else TcpEnd()
-        self.link: Link = open_link(self.end.url, baudrate)
+        self.transport: OpenedTransport = open_transport(self.end.url, baudrate)
         self.end.accept()
 
     def __enter__(self) -> Self:
@@ -102,5 +102,5 @@ class Line:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        self.link.close()
+        self.transport.close()
         self.end.unplug()

@@ -1,4 +1,4 @@
-"""What only serial ports have: locks, control lines, the terminal's modes."""
+"""Behaviour that only serial ports have: locks, control lines, the terminal's modes."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from typing import Any
 import pytest
 from serial.tools import list_ports
 
-from cobotwire.errors import LinkError
-from cobotwire.transport import open_link
-from cobotwire.transport.serial.opening import ask_low_latency
+from cobotwire.protocol.errors import LinkError
+from cobotwire.transport import open_transport
+from cobotwire.transport.descriptor import SELECTABLE, Waiter
+from cobotwire.transport.serial.opening import request_low_latency
 from cobotwire.transport.serial.port import keep_others_out
-from cobotwire.transport.waiting import SELECTABLE, Waiter
 from transport.ends import FAST, Line, PtyEnd
 
 OPEN = """
 import sys
 from cobotwire import LinkError
-from cobotwire.transport import open_link
+from cobotwire.transport import open_transport
 try:
-    open_link(sys.argv[1], 115200)
+    open_transport(sys.argv[1], 115200)
 except LinkError as error:
     print(error)
 else:
@@ -34,7 +34,7 @@ else:
 """
 
 
-# Becomes nobody only when Python is loaded: its files may be in a folder of root's.
+# Becomes `nobody` only when Python is loaded: its files may be in a folder of root's.
 OPEN_WITHOUT_LOCK = """
 import os, sys
 os.setuid(65534)
@@ -54,26 +54,26 @@ def in_another_process(script: str, *arguments: str) -> str:
     return result.stdout.strip()
 
 
-def test_the_second_process_on_a_port_is_told_so() -> None:
+def test_second_process_on_a_port_is_a_link_error() -> None:
     with Line("serial") as line:
-        told = in_another_process(OPEN, line.end.url)
-        assert told == f"{line.end.url}: cannot be opened: another program has it open"
-        line.link.close()
+        message = in_another_process(OPEN, line.end.url)
+        assert message == f"{line.end.url}: cannot be opened: another program has it open"
+        line.transport.close()
     end = PtyEnd()
     assert in_another_process(OPEN, end.url) == "opened"
     end.unplug()
 
 
-def test_the_second_link_of_this_process_is_told_so_too() -> None:
+def test_second_transport_of_this_process_on_a_port_is_a_link_error() -> None:
     with Line("serial") as line:
         with pytest.raises(LinkError, match="another program has it open"):
-            open_link(line.end.url, 115200)
+            open_transport(line.end.url, 115200)
         with pytest.raises(LinkError, match="another program has it open"):
-            open_link(f"spy://{line.end.url}", 115200)
+            open_transport(f"spy://{line.end.url}", 115200)
 
 
-@pytest.mark.skipif(os.getuid() != 0, reason="only root can become somebody who is not root")
-def test_programs_that_ask_for_no_lock_are_kept_out_as_well() -> None:
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
+def test_programs_that_check_no_lock_are_kept_out() -> None:
     end = PtyEnd()
     os.chmod(end.url, 0o666)
     try:
@@ -93,16 +93,16 @@ def test_dtr_and_rts_are_lowered_together(monkeypatch: pytest.MonkeyPatch) -> No
             calls.append((request, struct.unpack("I", rest[0])[0]))
         return real(descriptor, request, *rest)
 
-    # A pty has no such lines, so that nothing else here can show what they are set to.
+    # A pty has no DTR and RTS, so only the patched call shows how they are set.
     monkeypatch.setattr(fcntl, "ioctl", watch)
     with Line("serial"):
         assert calls[0] == (termios.TIOCMBIC, termios.TIOCM_DTR | termios.TIOCM_RTS)
         assert all(request == termios.TIOCMBIC for request, _ in calls)
 
 
-def test_the_terminal_is_raw_and_nothing_in_the_data_stops_it() -> None:
+def test_terminal_is_raw_and_data_cannot_stop_it() -> None:
     with Line("serial") as line:
-        descriptor = line.link.fileno()
+        descriptor = line.transport.fileno()
         assert descriptor is not None
         incoming, outgoing, control, local, *_ = termios.tcgetattr(descriptor)
         assert incoming & (termios.IXON | termios.IXOFF | termios.IXANY | termios.ICRNL) == 0
@@ -111,24 +111,24 @@ def test_the_terminal_is_raw_and_nothing_in_the_data_stops_it() -> None:
         assert control & getattr(termios, "CRTSCTS", 0) == 0
 
 
-def test_a_port_without_low_latency_mode_is_opened_all_the_same() -> None:
+def test_port_without_low_latency_mode_is_opened() -> None:
     with Line("serial") as line:
-        assert line.link.low_latency is False
+        assert line.transport.low_latency is False
 
 
-def test_low_latency_is_asked_for() -> None:
-    asked = []
+def test_low_latency_is_requested() -> None:
+    modes = []
 
     class Port:
         def set_low_latency_mode(self, wanted: bool) -> None:
-            asked.append(wanted)
+            modes.append(wanted)
 
-    # No port here has it.
-    assert ask_low_latency(Port()) is True
-    assert asked == [True]
+    # No port here has that mode.
+    assert request_low_latency(Port()) is True
+    assert modes == [True]
 
 
-def test_a_descriptor_too_high_for_select_is_waited_for() -> None:
+def test_descriptor_too_high_for_select_can_be_waited_for() -> None:
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = SELECTABLE + 100
     if soft <= wanted:
@@ -136,14 +136,14 @@ def test_a_descriptor_too_high_for_select_is_waited_for() -> None:
             pytest.skip(f"this system allows {hard} open files, the test needs {wanted}")
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted + 1, hard))
     with Line("serial") as line:
-        descriptor = line.link.fileno()
+        descriptor = line.transport.fileno()
         assert descriptor is not None
         high = fcntl.fcntl(descriptor, fcntl.F_DUPFD, wanted)
         waiter = Waiter()
         try:
             assert waiter.wait(high, 0, writing=True)
             assert not waiter.wait(high, 0.01)
-            line.end.say(b"x")
+            line.end.send(b"x")
             assert waiter.wait(high, 5.0)
         finally:
             os.close(high)
@@ -151,25 +151,25 @@ def test_a_descriptor_too_high_for_select_is_waited_for() -> None:
     resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
-def test_a_baud_rate_that_no_table_lists_is_set() -> None:
+def test_unusual_baud_rate_is_set() -> None:
     with Line("serial", baudrate=FAST + 1) as line:
-        line.link.write(b"x")
-        assert line.end.hear(1) == b"x"
+        line.transport.write(b"x")
+        assert line.end.receive(1) == b"x"
 
 
-def test_a_port_may_be_named_by_its_hardware(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hwgrep_url_finds_the_port(monkeypatch: pytest.MonkeyPatch) -> None:
     ends = [PtyEnd(), PtyEnd()]
     plugged = ends[:1]
-    # No such hardware here; what pyserial finds is a pty, and after a while another one.
+    # Without such hardware, pyserial finds a pty here, and later another one.
     monkeypatch.setattr(list_ports, "grep", lambda text: [(end.url, "", "") for end in plugged])
-    link = open_link("hwgrep://1A86:55D4", FAST)
-    assert link.kind == "serial"
-    link.write(b"first")
-    assert ends[0].hear(5) == b"first"
+    transport = open_transport("hwgrep://1A86:55D4", FAST)
+    assert transport.kind == "serial"
+    transport.write(b"first")
+    assert ends[0].receive(5) == b"first"
     plugged[:] = ends[1:]
-    link.reopen()
-    link.write(b"second")
-    assert ends[1].hear(6) == b"second"
-    link.close()
+    transport.reopen()
+    transport.write(b"second")
+    assert ends[1].receive(6) == b"second"
+    transport.close()
     for end in ends:
         end.unplug()

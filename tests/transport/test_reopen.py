@@ -1,63 +1,63 @@
-"""A link that is opened again."""
+"""Reopen a transport."""
 
 from __future__ import annotations
 
 import pytest
 
-from cobotwire.errors import LinkError
-from cobotwire.transport import open_link
+from cobotwire.protocol.errors import LinkError
+from cobotwire.transport import open_transport
 from transport.ends import FAST, Line, TcpEnd
 
 
-def test_a_server_that_comes_back_is_reached_again() -> None:
+def test_server_that_comes_back_is_reopened() -> None:
     with Line("socket") as line:
         assert isinstance(line.end, TcpEnd)
         for round_ in range(3):
             line.end.hang_up()
             with pytest.raises(LinkError):
-                line.link.read(1.0)
-            line.link.reopen()
+                line.transport.read(1.0)
+            line.transport.reopen()
             line.end.accept()
-            line.end.say(b"%d" % round_)
-            assert line.link.read(1.0) == b"%d" % round_
+            line.end.send(b"%d" % round_)
+            assert line.transport.read(1.0) == b"%d" % round_
 
 
-def test_a_port_that_is_still_there_is_opened_again() -> None:
+def test_present_port_is_reopened() -> None:
     with Line("serial") as line:
-        line.link.write(b"one")
-        assert line.end.hear(3) == b"one"
-        line.link.reopen()
-        line.link.write(b"two")
-        assert line.end.hear(3) == b"two"
+        line.transport.write(b"one")
+        assert line.end.receive(3) == b"one"
+        line.transport.reopen()
+        line.transport.write(b"two")
+        assert line.end.receive(3) == b"two"
 
 
-def test_a_closed_link_may_be_opened_again() -> None:
+def test_closed_transport_can_be_reopened() -> None:
     with Line("serial") as line:
-        line.link.close()
-        line.link.reopen()
-        line.end.say(b"x")
-        assert line.link.read(1.0) == b"x"
+        line.transport.close()
+        line.transport.reopen()
+        line.end.send(b"x")
+        assert line.transport.read(1.0) == b"x"
 
 
 @pytest.mark.parametrize("kind", ["serial", "socket"])
-def test_what_is_gone_cannot_be_opened_again_but_tried_again(kind: str) -> None:
+def test_reopening_a_vanished_port_fails_and_can_be_repeated(kind: str) -> None:
     with Line(kind) as line:
         line.end.unplug()
         for _ in range(2):
             with pytest.raises(LinkError, match="cannot be opened"):
-                line.link.reopen()
+                line.transport.reopen()
         with pytest.raises(LinkError, match="it is closed"):
-            line.link.read(0)
+            line.transport.read(0)
 
 
-def test_pyserials_other_urls_are_opened_again_too() -> None:
-    link = open_link("loop://", FAST)
-    assert link.kind == "loop"
-    assert link.fileno() is None
-    link.write(b"before")
-    link.reopen()
-    link.write(b"after")
-    assert link.read(0.5).startswith(b"a")
-    link.close()
+def test_other_pyserial_urls_are_reopened() -> None:
+    transport = open_transport("loop://", FAST)
+    assert transport.kind == "loop"
+    assert transport.fileno() is None
+    transport.write(b"before")
+    transport.reopen()
+    transport.write(b"after")
+    assert transport.read(0.5).startswith(b"a")
+    transport.close()
     with pytest.raises(LinkError, match="it is closed"):
-        link.write_some(b"x")
+        transport.write_some(b"x")

@@ -1,4 +1,4 @@
-"""A link that shows what passes."""
+"""A transport that passes its traffic to a tap."""
 
 from __future__ import annotations
 
@@ -7,63 +7,63 @@ import time
 import pytest
 
 from cobotwire import MyCobot
-from cobotwire.errors import LinkError
-from cobotwire.sim import PtyServer
-from cobotwire.transport import Link, TappedLink, open_link
+from cobotwire.protocol.errors import LinkError
+from cobotwire.simulator import PtyServer
+from cobotwire.transport import OpenedTransport, TappedTransport, open_transport
 from transport.ends import FAST, Line
 
 Seen = list[tuple[str, bytes, float]]
 
 
-def tapped(link: Link) -> tuple[TappedLink, Seen]:
+def tapped(transport: OpenedTransport) -> tuple[TappedTransport, Seen]:
     seen: Seen = []
-    return TappedLink(link, lambda *what: seen.append(what)), seen
+    return TappedTransport(transport, lambda *what: seen.append(what)), seen
 
 
-def test_it_is_a_link_that_a_driver_takes(server: PtyServer) -> None:
-    link, seen = tapped(open_link(server.url, FAST))
-    assert isinstance(link, Link)
-    with MyCobot(link) as arm:
+def test_client_accepts_a_tapped_transport(server: PtyServer) -> None:
+    transport, seen = tapped(open_transport(server.url, FAST))
+    assert isinstance(transport, OpenedTransport)
+    with MyCobot(transport) as arm:
         arm.power_on()
         assert arm.is_power_on() is True
     sent = b"".join(data for way, data, _ in seen if way == "sent")
     assert sent.startswith(bytes.fromhex("FE FE 02 10 FA"))
-    assert any(way == "heard" for way, _, _ in seen)
+    assert any(way == "received" for way, _, _ in seen)
 
 
 @pytest.mark.parametrize("kind", ["serial", "socket"])
-def test_each_chunk_is_shown_when_it_passes(kind: str) -> None:
+def test_tap_gets_each_chunk_when_it_passes(kind: str) -> None:
     with Line(kind) as line:
-        link, seen = tapped(line.link)
-        line.end.say(b"half")
-        assert link.read(1.0) == b"half"
-        assert link.read(0.02) == b""
-        line.end.say(b" and half")
-        assert link.read(1.0) == b" and half"
-        link.write(b"whole")
-        taken = link.write_some(b"some")
+        transport, seen = tapped(line.transport)
+        line.end.send(b"half")
+        assert transport.read(1.0) == b"half"
+        assert transport.read(0.02) == b""
+        line.end.send(b" and half")
+        assert transport.read(1.0) == b" and half"
+        transport.write(b"whole")
+        taken = transport.write_some(b"some")
         assert taken == 4
         assert [what[:2] for what in seen] == [
-            ("heard", b"half"),
-            ("heard", b" and half"),
+            ("received", b"half"),
+            ("received", b" and half"),
             ("sent", b"whole"),
             ("sent", b"some"),
         ]
         times = [what[2] for what in seen]
         assert times == sorted(times)
         assert times[-1] <= time.monotonic()
-        assert link.fileno() == line.link.fileno()
-        assert link.low_latency == line.link.low_latency
+        assert transport.fileno() == line.transport.fileno()
+        assert transport.low_latency == line.transport.low_latency
 
 
-def test_of_a_write_that_fails_what_was_taken_is_shown() -> None:
+def test_tap_gets_the_written_bytes_of_a_failed_write() -> None:
     with Line("serial") as line:
-        link, seen = tapped(line.link)
+        transport, seen = tapped(line.transport)
         data = bytes(range(250)) * 100
         with pytest.raises(LinkError) as caught:
-            link.write(data)
+            transport.write(data)
         assert seen[0][:2] == ("sent", data[: caught.value.written])
-        link.reopen()
-        link.close()
+        transport.reopen()
+        transport.close()
         with pytest.raises(LinkError, match="it is closed"):
-            link.read(0)
+            transport.read(0)

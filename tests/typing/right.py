@@ -1,12 +1,20 @@
 """Code that must type-check."""
 
 from cobotwire import AsyncMyCobot, Limits, MyCobot, RetryPolicy, Sample, StreamReport
-from cobotwire.editions.mycobot import Angles, Axis, Coords, ReferenceFrame, WifiAccount
+from cobotwire.editions.mycobot import (
+    Angles,
+    Axis,
+    Coords,
+    GetAngles,
+    GetEncoder,
+    ReferenceFrame,
+    WifiAccount,
+)
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 
 
 def drive(arm: MyCobot) -> None:
-    """What a user writes."""
+    """Call methods as a user does."""
     arm.send_angles([0, 0, 0, 0, 0, 0], speed=30)
     arm.send_angles((0.5, 0, 0, 0, 0, 0), 30)
     arm.send_angles(arm.get_angles(), 30)
@@ -25,33 +33,36 @@ def drive(arm: MyCobot) -> None:
 
 
 def wait(arm: MyCobot280) -> None:
-    """Motions that are waited for, and acknowledgements."""
+    """Wait for motions and acknowledgements."""
     arm.move_angles([0, 0, 0, 0, 0, 0], 30, timeout=5)
     arm.move_coords(arm.get_coords(), 30, wait=False)
     arm.set_color(1, 2, 3, ack_within=0.5)
     limits = Limits(joints=[(-90, 90), None, None, None, None, None], wider=True)
-    MyCobot280("/dev/ttyACM0", limits=limits, retry=RetryPolicy(tries=1)).close()
+    MyCobot280("/dev/ttyACM0", limits=limits, retry=RetryPolicy(attempts=1)).close()
 
 
 def sample(arm: MyCobot) -> StreamReport:
-    """Samples of several queries."""
-    with arm.stream("get_angles", ("get_encoder", 2), rate=50, timeout=0.1) as stream:
+    """Sample several queries."""
+    with arm.stream(GetAngles(), GetEncoder(2), rate=50, timeout=0.1) as stream:
         for one in stream:
             seen: Sample = one
-            print(seen.number, one.answered_at - one.asked_at, one["get_encoder", 2])
+            print(seen.number, one.replied_at - one.requested_at, one[GetEncoder(2)])
+            angles: Angles = one[GetAngles()]
+            encoder: int = one.reading(GetEncoder(2)).value
+            print(angles.j1 + encoder)
     return stream.report
 
 
 async def sample_async(arm: AsyncMyCobot) -> float:
-    """The same with async."""
-    stream = arm.stream("get_angles", rate=50)
+    """Sample several queries with the asyncio client."""
+    stream = arm.stream(GetAngles(), rate=50)
     async for one in stream:
-        print(one.values, one.reading("get_angles").answered_at)
+        print(one.values, one.reading(GetAngles()).replied_at)
     return stream.report.reached
 
 
 async def drive_async(port: str) -> float:
-    """The same with await."""
+    """Call methods of the asyncio client as a user does."""
     async with AsyncMyCobot(port) as arm:
         await arm.send_angles(await arm.get_angles(), 30)
     async with AsyncMyCobot280(port, timeout=1.0) as other:

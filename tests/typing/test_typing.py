@@ -1,33 +1,67 @@
-"""The generated API under ``mypy --strict``: what must and what must not type-check."""
+"""The generated API under ``mypy --strict`` and pyright: what each accepts and what it rejects."""
 
 from __future__ import annotations
 
+import json
 import re
+import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from mypy import api
 
 import vectors
 
 HERE = Path(__file__).parent
+# A pyright that pip installs together with its Node.js; it downloads nothing at run time.
+PYRIGHT = Path(sys.executable).with_name("basedpyright")
+Checker = Callable[[Path], tuple[str, set[int]]]
 
 
-def _mypy(path: Path) -> tuple[str, int]:
+def mypy(path: Path) -> tuple[str, set[int]]:
+    """Return what mypy prints of a file, and the lines with errors."""
     config = str(vectors.ROOT / "pyproject.toml")
-    out, err, code = api.run(["--strict", "--config-file", config, str(path)])
+    out, err, _ = api.run(["--strict", "--config-file", config, str(path)])
     assert not err
-    return out, code
+    return out, {int(line) for line in re.findall(rf"{path.name}:(\d+): error", out)}
 
 
-def test_right_code_type_checks() -> None:
-    out, code = _mypy(HERE / "right.py")
-    assert code == 0, out
+def pyright(path: Path) -> tuple[str, set[int]]:
+    """Return what pyright prints of a file, and the lines with errors."""
+    if not PYRIGHT.exists():
+        pytest.skip("basedpyright is not installed; it is in the dependency group test")
+    settings = {
+        "include": [str(path)],
+        "extraPaths": [str(vectors.ROOT / "python")],
+        "typeCheckingMode": "standard",
+        "pythonVersion": "3.11",
+        # _call and _send have the types that the generated methods rely on.
+        "reportPrivateUsage": False,
+    }
+    config = path.parent / f"pyright-{path.stem}.json"
+    config.write_text(json.dumps(settings))
+    try:
+        command = [str(PYRIGHT), "--project", str(config), "--outputjson"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    finally:
+        config.unlink()
+    found = json.loads(done.stdout)["generalDiagnostics"]
+    errors = [each for each in found if each["severity"] == "error"]
+    return done.stdout, {each["range"]["start"]["line"] + 1 for each in errors}
 
 
-def test_each_wrong_line_is_an_error_and_no_other_is() -> None:
-    path = HERE / "wrong.py"
-    out, code = _mypy(path)
-    assert code == 1
-    found = {int(number) for number in re.findall(r"wrong\.py:(\d+): error", out)}
-    lines = path.read_text().splitlines()
-    assert found == {n for n, line in enumerate(lines, 1) if line.endswith("# wrong")}
+@pytest.mark.parametrize("check", [mypy, pyright])
+@pytest.mark.parametrize("name", ["right.py", "messages_right.py"])
+def test_right_code_type_checks(name: str, check: Checker) -> None:
+    out, errors = check(HERE / name)
+    assert not errors, out
+
+
+@pytest.mark.parametrize("check", [mypy, pyright])
+@pytest.mark.parametrize("name", ["wrong.py", "messages_wrong.py"])
+def test_each_wrong_line_and_no_other_is_an_error(name: str, check: Checker) -> None:
+    out, errors = check(HERE / name)
+    lines = (HERE / name).read_text().splitlines()
+    assert errors == {n for n, line in enumerate(lines, 1) if line.endswith("# wrong")}, out

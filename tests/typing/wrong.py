@@ -2,10 +2,11 @@
 
 import cobotwire
 from cobotwire import AsyncMyCobot, MyCobot
+from cobotwire.editions.mycobot import GetAngles, GetEncoder
 
 
 def drive(arm: MyCobot) -> None:
-    """What a type checker must catch."""
+    """Make the mistakes that a type checker must catch."""
     arm.send_angles("000000", speed=30)  # wrong
     arm.send_angles([0, 0, 0, 0, 0, 0])  # wrong
     arm.send_angles([0, 0, 0, 0, 0, 0], speed=2.5)  # wrong
@@ -20,16 +21,19 @@ def drive(arm: MyCobot) -> None:
     print(angles)
     arm.power_on(ack_within=1.0)  # wrong
     arm.move_angles([0, 0, 0, 0, 0, 0], 30, 5)  # wrong
-    arm.stream("get_angles")  # wrong
-    arm.stream(("get_encoder", 2), 50)  # wrong
-    arm.stream((2, "get_encoder"), rate=50)  # wrong
-    for sample in arm.stream("get_angles", rate=50):
+    arm.stream(GetAngles())  # wrong
+    arm.stream(GetEncoder(2), 50)  # wrong
+    arm.stream("get_angles", rate=50)  # wrong
+    for sample in arm.stream(GetAngles(), GetEncoder(2), rate=50):
         print(sample.angles)  # wrong
+        number: str = sample[GetEncoder(2)]  # wrong
+        print(number, sample[GetAngles()].j7)  # wrong
+        print(sample["get_angles"])  # wrong
 
 
 async def drive_async(arm: AsyncMyCobot) -> None:
-    """What is forgotten most."""
+    """Forget await and async, the most frequent mistakes."""
     print(arm.get_angles().j1)  # wrong
     await arm.send_angles("000000", 30)  # wrong
-    for sample in arm.stream("get_angles", rate=50):  # wrong
+    for sample in arm.stream(GetAngles(), rate=50):  # wrong
         print(sample)

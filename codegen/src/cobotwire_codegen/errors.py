@@ -1,4 +1,4 @@
-"""What is wrong with a spec, as data with a place. The text is made at the edge."""
+"""Problems of a spec as data with a place; the command line formats them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from difflib import get_close_matches
 
 @dataclass(frozen=True, slots=True, order=True)
 class Place:
-    """Where something stands: lines and columns count from 1."""
+    """A position in a file; lines and columns count from 1."""
 
     file: str
     line: int
@@ -21,7 +21,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True, order=True)
 class Problem:
-    """One thing that is wrong. ``code`` is stable; the message may improve."""
+    """One problem of a spec. ``code`` is stable; the message may improve."""
 
     place: Place
     code: str
@@ -32,7 +32,7 @@ class Problem:
 
 
 class SpecError(Exception):
-    """A spec that cannot be used; carries every problem found, in the order of the files."""
+    """A spec that cannot be used; carries every problem, in the order of the files."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = tuple(sorted(set(problems)))
@@ -40,7 +40,7 @@ class SpecError(Exception):
 
 
 def nearest(given: str, known: Iterable[str]) -> str:
-    """A hint for a misspelt word: ``; did you mean X?``, else the list of what is known."""
+    """Return a hint for a misspelt word: ``; did you mean X?``, or the list of known words."""
     words = sorted(known)
     near = get_close_matches(given, words, n=1, cutoff=0.6)
     if near:

@@ -1,4 +1,4 @@
-"""YAML to nodes that know their place. The only importer of the YAML library."""
+"""Parses YAML to nodes that know their place. The only importer of the YAML library."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _EXPONENT = re.compile(r"[eE]([+-]?\d+)")
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A word, number, truth value or nothing. Decimal numbers are kept exact."""
+    """A text, number, truth value or nothing. Decimal numbers are kept exact."""
 
     place: Place
     value: Plain
@@ -39,7 +39,7 @@ class Sequence:
 
 @dataclass(frozen=True, slots=True)
 class Mapping:
-    """A mapping; ``keys`` says where each key stands."""
+    """A mapping; ``keys`` holds the place of each key."""
 
     place: Place
     entries: dict[str, Node]
@@ -50,10 +50,10 @@ Node = Scalar | Sequence | Mapping
 
 
 def load(path: Path, shown: str | None = None) -> Node:
-    """Read one YAML file; ``shown`` is the file's name in messages.
+    """Return the root node of a YAML file; ``shown`` is the file's name in messages.
 
     Raises:
-        SpecError: the file is missing, is no YAML, or gives a key twice.
+        SpecError: the file is missing, is not YAML, or gives a key twice.
     """
     name = shown if shown is not None else str(path)
     try:
@@ -65,7 +65,7 @@ def load(path: Path, shown: str | None = None) -> Node:
 
 
 def parse(text: str, name: str) -> Node:
-    """Read YAML text; ``name`` stands for the file in messages."""
+    """Return the root node of YAML text; ``name`` stands for the file in messages."""
     problems: list[Problem] = []
     try:
         root = YAML(typ="safe", pure=True).compose(text)
@@ -78,7 +78,7 @@ def parse(text: str, name: str) -> Node:
         before = text[: error.position]
         column = error.position - (before.rfind("\n") + 1) + 1
         place = Place(name, before.count("\n") + 1, column)
-        message = f"the character U+{ord(text[error.position]):04X} cannot stand in YAML"
+        message = f"the character U+{ord(text[error.position]):04X} is not allowed in YAML"
         raise SpecError([Problem(place, "syntax", message)]) from error
     except RecursionError:
         raise SpecError([Problem(Place(name, 1, 1), "syntax", "nested too deeply")]) from None
@@ -92,7 +92,7 @@ def _convert(
 ) -> Node:
     place = Place(name, node.start_mark.line + 1, node.start_mark.column + 1)
     if any(node is outer for outer in above):
-        problems.append(Problem(place, "syntax", "an alias stands inside of what it names"))
+        problems.append(Problem(place, "syntax", "an alias refers to a node that contains it"))
         return Scalar(place, None)
     above = (*above, node)
     if isinstance(node, ScalarNode):
@@ -116,13 +116,13 @@ def _mapping(
     for key_node, value in node.value:
         key_place = Place(name, key_node.start_mark.line + 1, key_node.start_mark.column + 1)
         if not isinstance(key_node, ScalarNode):
-            problems.append(Problem(key_place, "bad-key", "a key is a plain word"))
+            problems.append(Problem(key_place, "bad-key", "a key must be a plain word"))
             continue
         key = key_node.value
         if key in mapping.entries:
             first = mapping.keys[key]
             problems.append(
-                Problem(key_place, "duplicate-key", f"{key} stands already in line {first.line}")
+                Problem(key_place, "duplicate-key", f"{key} is already given in line {first.line}")
             )
             continue
         mapping.entries[key] = _convert(value, name, problems, above)
@@ -141,29 +141,29 @@ def _scalar(node: ScalarNode, place: Place, problems: list[Problem]) -> Scalar:
             return Scalar(place, _whole(text) if tag == "int" else exact(text))
         except ValueError:
             shown = text if len(text) <= 40 else f"{text[:37]}..."
-            message = f"{shown} is no number with an exact value"
+            message = f"{shown} is not a number with an exact value"
             problems.append(Problem(place, "bad-number", message))
             return Scalar(place, None)
     if tag != "str":
-        problems.append(Problem(place, "bad-tag", f"the tag {node.tag} is not taken"))
+        problems.append(Problem(place, "bad-tag", f"the tag {node.tag} is not supported"))
     return Scalar(place, text)
 
 
 def exact(text: str) -> Fraction:
-    """The exact value of a number; one with an exponent beyond all use is none.
+    """Return the exact value of a number; a number with a huge exponent is rejected.
 
     Raises:
-        ValueError: it is no number.
+        ValueError: the text is not a number, or its exponent has more than three digits.
     """
     exponent = _EXPONENT.search(text)
-    # 1e99999999 would be worked out digit by digit.
+    # 1e99999999 would be computed digit by digit.
     if exponent is not None and len(exponent[1].lstrip("+-0")) > 3:
         raise ValueError(text)
     return Fraction(text)
 
 
 def _whole(text: str) -> int:
-    """A whole number as YAML 1.2 spells it: a leading 0 alone changes nothing."""
+    """Return a whole number as YAML 1.2 reads it: a leading 0 alone has no meaning."""
     digits = text.replace("_", "")
     bases = {"0x": 16, "0o": 8, "0b": 2}
     return int(digits, bases.get(digits.lstrip("+-")[:2].lower(), 10))

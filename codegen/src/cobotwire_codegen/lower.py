@@ -1,4 +1,4 @@
-"""The model to the table that codecs interpret: types resolved, scales as integer pairs."""
+"""Lower the model to the table that codecs interpret: types resolved, scales as integer pairs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from cobotwire_codegen.model import (
 
 
 def numbers(type: Type) -> tuple[dict[str, Any], ...]:
-    """The numbers of a type, in wire order."""
+    """Return the numbers of a type, in wire order."""
     if isinstance(type, Value):
         return tuple(_quantity(name, item) for name, item in type.items)
     if isinstance(type, Quantity):
@@ -56,14 +56,14 @@ def _number(name: str, wire: Wire, minimum: int, maximum: int) -> dict[str, Any]
 
 
 def kind(type: Type) -> str:
-    """How a value of the type is spelt."""
+    """Return the kind of a field of this type."""
     if isinstance(type, Flag):
         return "flag"
     return "enum" if isinstance(type, Enum) else "number"
 
 
 def choices(type: Type) -> tuple[int, ...]:
-    """The closed list of whole numbers, or nothing."""
+    """Return the closed list of raw values; empty if there is none."""
     if isinstance(type, Flag):
         return (0, 1)
     if isinstance(type, Quantity):
@@ -72,41 +72,46 @@ def choices(type: Type) -> tuple[int, ...]:
 
 
 def field_choices(field: Field) -> tuple[int, ...]:
-    """The closed list of a field: a constant has one entry."""
+    """Return the closed list of a field: a constant has one entry."""
     return choices(field.type) if field.const is None else (field.const,)
 
 
 def labels(type: Type) -> tuple[str, ...]:
-    """The words for the choices, or nothing."""
+    """Return the names of the choices; empty if they have none."""
     return tuple(member.name for member in type.members) if isinstance(type, Enum) else ()
 
 
 def cases(field: Field) -> Iterator[tuple[tuple[int, ...], Type]]:
-    """The field's types with the selector's values that pick them; neighbours joined."""
-    if not field.by:
+    """Yield the field's types with the selector values that pick them; neighbours are joined."""
+    if not field.selector:
         yield (), field.type
     for type, group in groupby(field.cases, key=lambda case: case[1]):
         yield tuple(member.value for member, _ in group), type
 
 
+def message_class(command: str) -> str:
+    """Return the name of a command's request class: ``get_angles`` gives ``GetAngles``."""
+    return "".join(word[:1].upper() + word[1:] for word in command.split("_"))
+
+
 def notes(command: Command) -> tuple[str, ...]:
-    """What a reader of the command should know beside its description."""
+    """Return the notes of a command, its disputes among them."""
     return (*command.notes, *(dispute_note(dispute) for dispute in command.disputed))
 
 
 def dispute_note(dispute: Dispute) -> str:
-    """A dispute in one sentence."""
+    """Return a dispute in one sentence."""
     return f"Disputed: {dispute.claim} Read: {dispute.reading} (confidence {dispute.confidence})."
 
 
-def selector(field: Field, form: tuple[Field, ...]) -> int:
-    """The index, in a form, of the field that decides this one's type."""
-    names = [other.name for other in form]
-    return names.index(field.by) if field.by else -1
+def selector(field: Field, variant: tuple[Field, ...]) -> int:
+    """Return the index, in the variant, of the field's selector; -1 if it has none."""
+    names = [other.name for other in variant]
+    return names.index(field.selector) if field.selector else -1
 
 
 def table(edition: Edition) -> dict[str, Any]:
-    """The table as plain data."""
+    """Return the table as plain data."""
     return {
         "edition": edition.name,
         "title": edition.title,
@@ -126,7 +131,7 @@ def table(edition: Edition) -> dict[str, Any]:
 
 
 def maximum_length(edition: Edition) -> int:
-    """The highest LEN that the frame can carry."""
+    """Return the highest LEN of a frame."""
     return 1 + edition.frame.maximum_data + edition.frame.check_size
 
 
@@ -140,8 +145,8 @@ def _command(family: str, command: Command) -> dict[str, Any]:
         "family": family,
         "safety": command.safety,
         "deadline_ms": command.deadline_ms,
-        "request": [_layout(form) for form in command.forms("request")],
-        "reply": [_layout(form) for form in command.forms("reply")],
+        "request": [_variant(variant) for variant in command.variants("request")],
+        "reply": [_variant(variant) for variant in command.variants("reply")],
         "text": text
         and {
             "prefixes": list(text.prefixes),
@@ -163,16 +168,18 @@ def _command(family: str, command: Command) -> dict[str, Any]:
             "query": command.read_by.query,
             "fields": [list(pair) for pair in command.read_by.fields],
         },
-        "tries": [[[name, list(numbers)] for name, numbers in tried] for tried in command.tries],
+        "samples": [
+            [[name, list(numbers)] for name, numbers in sample] for sample in command.samples
+        ],
         "agrees_with": list(command.agrees_with),
     }
 
 
-def _layout(form: tuple[Field, ...]) -> dict[str, Any]:
-    return {"fields": [_field(field, form) for field in form]}
+def _variant(variant: tuple[Field, ...]) -> dict[str, Any]:
+    return {"fields": [_field(field, variant) for field in variant]}
 
 
-def _field(field: Field, form: tuple[Field, ...]) -> dict[str, Any]:
+def _field(field: Field, variant: tuple[Field, ...]) -> dict[str, Any]:
     return {
         "name": field.name,
         "kind": kind(field.type),
@@ -183,6 +190,6 @@ def _field(field: Field, form: tuple[Field, ...]) -> dict[str, Any]:
         "many": isinstance(field.type, Value),
         "choices": list(field_choices(field)),
         "labels": list(labels(field.type)) if field.const is None else [],
-        "selector": selector(field, form),
+        "selector": selector(field, variant),
         "echo": bool(field.echo),
     }

@@ -1,16 +1,25 @@
-"""Where this project keeps its spec, and where what is generated from it goes."""
+"""Find this project's spec, and list the files that are generated from it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path, PurePosixPath
 
-from cobotwire_codegen.author.schema import schema_json
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
+from cobotwire_codegen.language.reference import language_page
+from cobotwire_codegen.language.schema import schema_json
 from cobotwire_codegen.model import Edition
-from cobotwire_codegen.render import Files, render_python, render_reference, render_vectors
+from cobotwire_codegen.render import (
+    Files,
+    render_python,
+    render_reference,
+    render_vectors,
+    with_used_types,
+)
+from cobotwire_codegen.render.sharing import Sharing
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
@@ -19,10 +28,10 @@ from cobotwire_codegen.targets.wireshark import render_wireshark
 
 
 def editions(root: Path) -> list[Edition]:
-    """Every edition of the spec, checked.
+    """Return every edition of the spec, checked.
 
     Raises:
-        SpecError: the spec is wrong, or there is none.
+        SpecError: the spec is wrong, or has no edition.
     """
     found = [build_edition(path, root) for path in edition_files(root)]
     for edition in found:
@@ -31,39 +40,74 @@ def editions(root: Path) -> list[Edition]:
 
 
 def edition_files(root: Path) -> list[Path]:
-    """The edition files of a project.
+    """Return the edition files of a project.
 
     Raises:
-        SpecError: there is none.
+        SpecError: the project has no edition file.
     """
     paths = sorted((root / "spec" / "editions").glob("*.yaml"))
     if not paths:
         place = Place(str(root / "spec" / "editions"), 1, 1)
-        raise SpecError([Problem(place, "no-edition", "there is no edition here")])
+        message = "there is no edition here; run this in the project, or pass --root"
+        raise SpecError([Problem(place, "no-edition", message)])
     return paths
 
 
-def targets(root: Path, found: list[Edition]) -> list[Target]:
-    """What is generated, and where it belongs."""
+def committed(root: Path, found: list[Edition]) -> list[Target]:
+    """Return the generated files that people review, and that are committed."""
     package = root / "python" / "cobotwire" / "editions"
     reference = root / "docs" / "reference"
-    data: Files = {}
+    sharings = _sharings(found)
     made = []
     for edition in found:
-        made.append(Target(package / edition.name, render_python(edition)))
+        base = sharings.get(edition.base)
+        made.append(Target(package / edition.name, render_python(edition, base=base)))
         made.append(Target(reference / edition.name, render_reference(edition)))
-        made.append(Target(root / "targets" / "c" / edition.name, render_c(edition)))
-        data.update(render_vectors(edition))
-    made.append(Target(root / "rust" / "core" / "tests" / "data", data))
-    made.append(schema_target(root, found))
-    made.append(Target(root / "targets" / "vectors", render_shared_vectors(found)))
-    made.append(Target(root / "targets" / "construct", render_construct(found)))
     made.append(Target(root / "docs" / "_static" / "decoder" / "tables", render_decoder(found)))
-    made.append(Target(root / "targets" / "wireshark", render_wireshark(found)))
+    made.append(schema_target(root, found))
+    made.append(Target(reference, {PurePosixPath("language.md"): language_page()}, alone=False))
+    return made
+
+
+def _every_c(found: Sequence[Edition]) -> Files:
+    made: Files = {}
+    for edition in found:
+        made |= {edition.name / path: text for path, text in render_c(edition).items()}
+    return made
+
+
+def _every_vectors(found: Sequence[Edition]) -> Files:
+    return {path: text for edition in found for path, text in render_vectors(edition).items()}
+
+
+# Build products by their folder: git ignores them, so each user generates those needed.
+PRODUCTS: dict[str, Callable[[Sequence[Edition]], Files]] = {
+    "rust/core/tests/data": _every_vectors,
+    "targets/c": _every_c,
+    "targets/construct": render_construct,
+    "targets/vectors": render_shared_vectors,
+    "targets/wireshark": render_wireshark,
+}
+
+
+def products(root: Path, found: list[Edition], folders: Iterable[str] = PRODUCTS) -> list[Target]:
+    """Return the generated files that git ignores: output targets, and data of the Rust tests."""
+    return [Target(root / folder, PRODUCTS[folder](found)) for folder in folders]
+
+
+def _sharings(found: list[Edition]) -> dict[str, Sharing]:
+    """Return each edition beside its base, bases first."""
+    made: dict[str, Sharing] = {}
+    left = {edition.name: edition for edition in found}
+    while left:
+        ready = [name for name, edition in left.items() if edition.base not in left]
+        for name in ready:
+            edition = left.pop(name)
+            made[name] = Sharing(with_used_types(edition), made.get(edition.base))
     return made
 
 
 def schema_target(root: Path, found: list[Edition]) -> Target:
-    """The schema for editors, beside the files that it speaks of."""
+    """Return the schema for editors, which lies next to the files that it describes."""
     files = {PurePosixPath("schema.json"): schema_json(found)}
     return Target(root / "spec", files, alone=False)

@@ -1,7 +1,7 @@
-"""Builds frames from the model with exact arithmetic: the third, independent encoder.
+"""Build frames from the model with exact arithmetic: the third, independent encoder.
 
 The codecs interpret the generated table; this one reads the spec's own model, so a mistake in
-between shows as a vector that does not hold.
+lowering shows as a vector that fails.
 """
 
 from __future__ import annotations
@@ -18,33 +18,33 @@ def build_frame(
     direction: Literal["request", "reply"],
     values: dict[str, object],
 ) -> bytes:
-    """The frame that carries ``values``.
+    """Return the frame that carries ``values``.
 
     Raises:
-        ValueError: the message has no such form, or a value cannot be said.
+        ValueError: the message has no such variant, or a value cannot be encoded.
     """
-    refusal = f"no {direction} of {command.name} has the fields {', '.join(values)}"
+    problem = f"no {direction} of {command.name} has the fields {', '.join(values)}"
     data = None
-    for form in command.forms(direction):
-        if data is None and [field.name for field in form] == list(values):
+    for variant in command.variants(direction):
+        if data is None and [field.name for field in variant] == list(values):
             try:
-                data = b"".join(_field(field, values) for field in form)
+                data = b"".join(_field(field, values) for field in variant)
             except ValueError as error:
-                refusal = str(error)
+                problem = str(error)
     if data is None:
-        raise ValueError(refusal)
+        raise ValueError(problem)
     return enclose(frame, command.id, data)
 
 
 def enclose(frame: Frame, id: int, data: bytes) -> bytes:
-    """The frame around data bytes; with its first address, where it has one."""
+    """Return the frame around data bytes, with its first address if it has addresses."""
     start = frame.header + bytes(member.value for member in frame.addresses[:1])
     body = start + bytes([1 + len(data) + frame.check_size, id]) + data
     return body + check_of(frame, body, len(data))
 
 
 def check_of(frame: Frame, body: bytes, data_size: int) -> bytes:
-    """What ends a frame, from all that stands before it."""
+    """Return the bytes that end a frame, from all bytes before them."""
     if frame.check == "footer":
         return frame.footer
     if frame.check == "sum":
@@ -60,21 +60,22 @@ def check_of(frame: Frame, body: bytes, data_size: int) -> bytes:
 
 def _field(field: Field, values: dict[str, object]) -> bytes:
     type, value = field.type, values[field.name]
-    if field.by:
-        picked = str(values[field.by])
+    if field.selector:
+        picked = str(values[field.selector])
         type = next((case for member, case in field.cases if member.name == picked), field.type)
     if field.const is not None and value != field.const:
         raise ValueError(f"{field.name} is always {field.const}")
-    return say(type, field.name, value)
+    return encode_value(type, field.name, value)
 
 
-def say(type: Type, name: str, value: object) -> bytes:
-    """One value of a type as bytes."""
+def encode_value(type: Type, name: str, value: object) -> bytes:
+    """Return one value of a type as bytes."""
     if isinstance(type, Value):
         if not isinstance(value, tuple) or len(value) != len(type.items):
             raise ValueError(f"{name} must be a list of {len(type.items)} numbers")
         return b"".join(
-            say(item, f"{name}.{label}", part) for (label, item), part in zip(type.items, value)
+            encode_value(item, f"{name}.{label}", part)
+            for (label, item), part in zip(type.items, value)
         )
     if isinstance(type, Enum):
         for member in type.members:
@@ -109,7 +110,7 @@ def _word(wire: Wire, whole: Fraction, name: str) -> bytes:
 
 
 def size(type: Type) -> int:
-    """Bytes of a type on the wire."""
+    """Return the number of bytes of a type on the wire."""
     if isinstance(type, Value):
         return sum(item.wire.width for _, item in type.items)
     return type.wire.width

@@ -1,6 +1,6 @@
 "use strict";
-// The page around the law: what is pasted is decoded at once. It also stands in the address behind
-// #, so that a decoded line can be sent to somebody else.
+// The page: decode what is pasted at once, and keep it in the fragment of the address, so that the
+// decoded bytes can be sent as a link.
 (function () {
   const REASONS = {
     "no-header": "no frame starts here",
@@ -33,11 +33,11 @@
       bytes = cobotwire.parse(text.value);
     } catch (error) {
       output.append(element("p", { class: "problem", role: "alert" },
-        `Not hex, behind ${error.offset} byte(s): ${error.message}.`));
+        `Not hex, after ${error.offset} byte(s): ${error.message}.`));
       return;
     }
-    const heard = direction.value === "both" ? ["request", "reply"] : [direction.value];
-    const law = new cobotwire.Law(cobotwire.tables[edition.value], heard);
+    const directions = direction.value === "both" ? ["request", "reply"] : [direction.value];
+    const law = new cobotwire.Law(cobotwire.tables[edition.value], directions);
     const events = law.cut(bytes);
     output.append(summary(bytes, events));
     for (const event of events) {
@@ -65,8 +65,8 @@
     try {
       readings = law.read(data);
     } catch (error) {
-      return element("section", { class: "event refused" },
-        element("h3", {}, `frame at ${event.offset}: refused`),
+      return element("section", { class: "event rejected" },
+        element("h3", {}, `frame at ${event.offset}: rejected`),
         element("p", {}, `${error.message} (byte ${error.offset}).`),
         chips(data, (at) => (at === error.offset ? "wrong" : "data")));
     }
@@ -85,32 +85,32 @@
     return card;
   }
 
-  // For each byte of a frame: what it belongs to.
+  // Return for each byte of a frame what it belongs to.
   function roles(law, reading, data) {
     const end = data.length - law.checkSize;
     const found = Array.from(data, (byte, at) => {
-      if (at < law.frame.header.length) return { kind: "header", name: "header", start: 0, says: "a frame starts here" };
-      if (at < law.at) return { kind: "header", name: "address", start: at, says: `${byte}` };
-      if (at === law.at) return { kind: "length", name: "LEN", start: at, says: `${byte} bytes follow` };
-      if (at === law.at + 1) return { kind: "command", name: "CMD", start: at, says: reading.command.name };
-      return { kind: "footer", name: law.frame.check === "footer" ? "footer" : "check", start: end, says: "the frame ends here" };
+      if (at < law.frame.header.length) return { kind: "header", name: "header", start: 0, meaning: "a frame starts here" };
+      if (at < law.at) return { kind: "header", name: "address", start: at, meaning: `${byte}` };
+      if (at === law.at) return { kind: "length", name: "LEN", start: at, meaning: `${byte} bytes follow` };
+      if (at === law.at + 1) return { kind: "command", name: "CMD", start: at, meaning: reading.command.name };
+      return { kind: "footer", name: law.frame.check === "footer" ? "footer" : "check", start: end, meaning: "the frame ends here" };
     });
     reading.fields.forEach(({ field, numbers }) => {
-      numbers.forEach(({ number, offset, whole, value }) => {
+      numbers.forEach(({ number, offset, raw, value }) => {
         const name = number.name ? `${field.name}.${number.name}` : field.name;
-        const role = { kind: "data", name, start: offset, says: words(field, number, whole, value) };
+        const role = { kind: "data", name, start: offset, meaning: format(field, number, raw, value) };
         for (let at = offset; at < offset + number.width; at += 1) found[at] = role;
       });
     });
     return found;
   }
 
-  function words(field, number, whole, value) {
-    if (field.kind === "flag") return whole ? "yes" : "no";
-    const label = field.labels[field.choices.indexOf(whole)];
-    if (field.kind === "enum" && label) return `${label} (${whole})`;
+  function format(field, number, raw, value) {
+    if (field.kind === "flag") return raw ? "yes" : "no";
+    const label = field.labels[field.choices.indexOf(raw)];
+    if (field.kind === "enum" && label) return `${label} (${raw})`;
     const unit = UNITS[number.unit] || (number.unit && ` ${number.unit}`);
-    const scaled = number.multiply === number.divide ? "" : `  (${whole} on the wire)`;
+    const scaled = number.multiply === number.divide ? "" : `  (raw ${raw})`;
     return `${value}${unit}${scaled}`;
   }
 
@@ -131,9 +131,9 @@
         element("td", {}, String(at)),
         element("td", {}, element("code", {}, cobotwire.hex(data.subarray(at, end)))),
         element("td", {}, role.name),
-        element("td", {}, role.says)));
+        element("td", {}, role.meaning)));
     });
-    const head = element("tr", {}, ...["byte", "on the wire", "is", "says"].map((name) =>
+    const head = element("tr", {}, ...["byte", "hex", "content", "meaning"].map((name) =>
       element("th", { scope: "col" }, name)));
     return element("div", { class: "scroll" }, element("table", {}, element("thead", {}, head), body));
   }

@@ -1,14 +1,19 @@
-"""Recordings of a line in pcapng files, which Wireshark reads; see ``docs/captures.md``."""
+"""Record serial traffic to pcapng files, which Wireshark reads, and read it back.
 
-from cobotwire.capture.file import Recording
+See ``docs/captures.md``.
+"""
+
 from cobotwire.capture.packet import Direction, Interface, Kind, Packet, Piece
 from cobotwire.capture.reader import CaptureReader, is_capture, read
 from cobotwire.capture.recorder import Recorder
+from cobotwire.capture.recording import Recording
+from cobotwire.capture.streams import CapturedMessage, messages
 from cobotwire.capture.writer import CaptureWriter
 
 __all__ = [
     "CaptureReader",
     "CaptureWriter",
+    "CapturedMessage",
     "Direction",
     "Interface",
     "Kind",
@@ -17,5 +22,6 @@ __all__ = [
     "Recorder",
     "Recording",
     "is_capture",
+    "messages",
     "read",
 ]

@@ -1,13 +1,13 @@
-"""What a capture holds: packets, each of them bytes that went over the line of an interface."""
+"""Define what a capture holds: packets of bytes, each sent or received on one interface."""
 
 from __future__ import annotations
 
 import re
 from typing import Literal, NamedTuple
 
-# "unknown" is what a capture of somebody else may leave open; ours never do.
-Direction = Literal["sent", "heard", "unknown"]
-# "bytes" is what nobody has looked into: a chunk as it was read or written.
+# Captures of other programs may not say the direction; ours always do.
+Direction = Literal["sent", "received", "unknown"]
+# "bytes" is a chunk as it was read or written, not cut into frames.
 Kind = Literal["frame", "noise", "bytes"]
 
 _PIECE = re.compile(r"(\d+) bytes at \+(\d+) ns")
@@ -15,23 +15,23 @@ _MARK = "in pieces: "
 
 
 class Piece(NamedTuple):
-    """The bytes of a packet that came together."""
+    """Some bytes of a packet that were read or written together, with their time."""
 
     size: int
     time_ns: int
 
 
 class Packet(NamedTuple):
-    """A frame, a span of noise, or a chunk.
+    """A frame, a span of noise, or a raw chunk.
 
     Attributes:
-        time_ns: when its first byte was read or written, in nanoseconds since 1970 (UTC).
-        direction: ``sent`` is what this side wrote, ``heard`` what it read.
+        time_ns: when the first byte was read or written, in nanoseconds since 1970 (UTC).
+        direction: ``sent`` is what the recording side wrote, ``received`` what it read.
         data: the bytes.
-        kind: what they are, by the edition that the interface names.
-        reason: why noise is none; empty for all else.
-        pieces: where not all of it came at ``time_ns``: each piece with its own time; else empty.
-        interface: the index of its line in ``CaptureReader.interfaces``.
+        kind: what they are in the edition that the interface names.
+        reason: the framer's reason for noise; empty for frames and raw chunks.
+        pieces: each piece with its own time, if the bytes did not all come at ``time_ns``.
+        interface: an index into ``CaptureReader.interfaces``.
     """
 
     time_ns: int
@@ -44,12 +44,12 @@ class Packet(NamedTuple):
 
 
 class Interface(NamedTuple):
-    """One line that was recorded.
+    """A serial port, socket or other transport that was recorded.
 
     Attributes:
-        url: the port or URL; empty if the capture does not tell.
-        edition: the edition by which the packets were cut; empty likewise.
-        baudrate: bits a second; 0 likewise.
+        url: the port or URL; empty if the capture does not name it.
+        edition: the edition by which the packets were cut; empty if the capture does not name it.
+        baudrate: bits a second; 0 if the capture does not state it.
     """
 
     url: str
@@ -58,25 +58,25 @@ class Interface(NamedTuple):
 
 
 def comment_of(packet: Packet) -> str:
-    """What the fields of pcapng have no place for; people read it in Wireshark, and we again."""
-    words = []
+    """Return what pcapng has no field for, as text that Wireshark shows and :func:`read` reads."""
+    parts = []
     if packet.kind != "frame":
-        words.append(f"{packet.kind} {packet.reason}".strip())
+        parts.append(f"{packet.kind} {packet.reason}".strip())
     if packet.pieces:
-        # The start of the packet is the first piece's time; differences are easier to read.
+        # Differences from the packet's own time are easier to read than absolute times.
         pieces = [f"{size} bytes at +{time - packet.time_ns} ns" for size, time in packet.pieces]
-        words.append(_MARK + ", ".join(pieces))
-    return "; ".join(words)
+        parts.append(_MARK + ", ".join(pieces))
+    return "; ".join(parts)
 
 
 def with_comment(packet: Packet, comment: str) -> Packet:
-    """The packet with what :func:`comment_of` said of it. Any other comment changes nothing."""
-    for words in comment.split("; "):
-        kind, _, reason = words.partition(" ")
-        if kind == "noise" or words == "bytes":
+    """Return the packet with what :func:`comment_of` wrote; other comments change nothing."""
+    for part in comment.split("; "):
+        kind, _, reason = part.partition(" ")
+        if kind == "noise" or part == "bytes":
             packet = packet._replace(kind="noise" if kind == "noise" else "bytes", reason=reason)
-        elif words.startswith(_MARK):
-            found = _PIECE.findall(words)
+        elif part.startswith(_MARK):
+            found = _PIECE.findall(part)
             pieces = tuple(Piece(int(size), packet.time_ns + int(late)) for size, late in found)
             if sum(piece.size for piece in pieces) == len(packet.data):
                 packet = packet._replace(pieces=pieces)

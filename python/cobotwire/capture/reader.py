@@ -1,4 +1,4 @@
-"""A pcapng file to packets, ours or another program's."""
+"""Read the packets of a pcapng file, ours or another program's."""
 
 from __future__ import annotations
 
@@ -9,41 +9,41 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Literal, NamedTuple, NoReturn, Self
 
-from cobotwire.capture import blocks
+from cobotwire.capture import block_encoding as blocks
+from cobotwire.capture.block_parsing import Block, Fields, Truncated, blocks_of
+from cobotwire.capture.file_errors import unusable_file
 from cobotwire.capture.packet import Direction, Interface, Packet, with_comment
-from cobotwire.capture.parse import Block, Fields, Truncated, blocks_of
-from cobotwire.errors import CaptureError, UsageError
+from cobotwire.protocol.errors import CaptureError
 
-DIRECTIONS: tuple[Direction, ...] = ("unknown", "heard", "sent", "unknown")
+DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent", "unknown")
 MICROSECONDS = 6
-# What cuts packets at frames, and says what they are.
+# Files of other applications hold raw chunks; ours hold frames and noise.
 OURS = "cobotwire"
 
 
 def is_capture(first_bytes: bytes) -> bool:
-    """Whether a file that begins like this (12 bytes are enough) is a pcapng file."""
+    """Return whether a file that begins with these bytes (12 suffice) is a pcapng file."""
     magic = struct.pack("<I", blocks.BYTE_ORDER_MAGIC)
     kind = struct.pack("<I", blocks.SECTION)
     return first_bytes[:4] == kind and first_bytes[8:12] in (magic, magic[::-1])
 
 
 def read(path: str | os.PathLike[str]) -> CaptureReader:
-    """Open a capture; iterating over what this gives gives its packets.
+    """Open a capture; iterate over the result to get its packets.
 
     Raises:
-        UsageError: there is no such file, or it cannot be read.
-        CaptureError: while iterating: it is no capture, or damaged; its ``offset`` says where.
+        UsageError: the file does not exist, or it cannot be read.
+        CaptureError: while iterating: the file is not a capture, or it is damaged at ``offset``.
     """
     try:
         file = Path(path).open("rb")  # noqa: SIM115  (closed by the reader)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise UsageError("capture", str(path), f"a file that can be read ({reason})") from None
+        raise unusable_file("capture", path, error) from None
     return CaptureReader(file, str(path))
 
 
-class _Line(NamedTuple):
-    """How the numbers of one interface's packets are to be read."""
+class _Format(NamedTuple):
+    """How to read the packets of one interface."""
 
     number: int
     link_type: int
@@ -51,23 +51,23 @@ class _Line(NamedTuple):
     offset_seconds: int
 
     def nanoseconds(self, high: int, low: int) -> int:
-        """A time stamp; what is finer than nanoseconds is cut."""
+        """Return a time stamp in nanoseconds; finer fractions are cut off."""
         exponent = self.resolution & 0x7F
         units: int = 2**exponent if self.resolution & 0x80 else 10**exponent
         return (high << 32 | low) * 1_000_000_000 // units + self.offset_seconds * 1_000_000_000
 
 
 class CaptureReader:
-    """The packets of a capture, in the order of the file; see ``docs/captures.md`` for that order.
+    """Yields the packets of a capture, in the order of the file (see ``docs/captures.md``).
 
     Attributes:
-        name: the file's, for messages.
-        interfaces: the lines that the blocks read so far introduce.
-        application: what wrote the capture, in its own words.
-        truncated_at: where the block begins in whose middle the file ends; None if it ends between
-            blocks, or that is not known yet.
-        finished: whether the recording was ended in order. A capture that is still being written,
-            or whose writer was killed, is neither finished nor, mostly, truncated.
+        name: the name of the file, for messages.
+        interfaces: the interfaces that the blocks read so far describe.
+        application: the name of the program that wrote the capture.
+        truncated_at: the offset of the block that the file cuts off; None if the last block is
+            complete, or the end has not been read yet.
+        finished: whether the recorder was closed. A capture that is still being written, or
+            whose writer was killed, is not finished; mostly it is not truncated either.
     """
 
     def __init__(self, file: BinaryIO, name: str = "capture") -> None:
@@ -77,15 +77,25 @@ class CaptureReader:
         self.truncated_at: int | None = None
         self.name = name
         self._file = file
-        self._lines: list[_Line] = []
+        self._formats: list[_Format] = []
         self._finished: set[int] = set()
         self._endian: Literal["little", "big"] = "little"
         self._packets = self._read()
 
     @property
     def finished(self) -> bool:
-        """See the class."""
+        """Return whether the recorder was closed."""
         return len(self._finished) == len(self.interfaces) > 0
+
+    @property
+    def incomplete(self) -> str:
+        """Return what is missing at the end, in a sentence; empty if nothing is."""
+        if self.truncated_at is not None:
+            return (
+                f"{self.name} ends in the middle of a packet; "
+                f"everything before byte {self.truncated_at} is complete"
+            )
+        return "" if self.finished else f"the recording {self.name} was not finished"
 
     def __iter__(self) -> Iterator[Packet]:
         return self
@@ -105,7 +115,7 @@ class CaptureReader:
         self.close()
 
     def close(self) -> None:
-        """Give the file back; there is no need to after the last packet."""
+        """Close the file; after the last packet this happens by itself."""
         self._packets.close()
         self._file.close()
 
@@ -120,10 +130,10 @@ class CaptureReader:
                 elif block.kind == blocks.INTERFACE:
                     self._interface(fields)
                 elif block.kind == blocks.STATISTICS:
-                    self._finished.add(self._line(block, fields).number)
+                    self._finished.add(self._format(block, fields).number)
                 elif block.kind in (blocks.SIMPLE_PACKET, blocks.OBSOLETE_PACKET):
-                    self._refuse(block, "packets of a kind that tell neither time nor direction")
-                # What else there may be (names, secrets, things of other programs) is none of ours.
+                    self._reject(block, "its packets have neither a time nor a direction")
+                # Other blocks (names, secrets, private ones) are skipped.
         except Truncated as end:
             self.truncated_at = end.offset
         finally:
@@ -132,9 +142,9 @@ class CaptureReader:
     def _section(self, block: Block, fields: Fields) -> None:
         _, major, _, _ = fields.numbers("IHHq")
         if major != blocks.VERSION[0]:
-            self._refuse(block, f"version {major} of pcapng, which nobody knew when this was made")
-        # Indexes of interfaces count from each section's beginning.
-        self._lines = []
+            self._reject(block, f"it has pcapng version {major}; supported: {blocks.VERSION[0]}")
+        # Interface indexes start from 0 in each section.
+        self._formats = []
         self._endian = "little" if block.order == "<" else "big"
         options = dict(fields.options())
         self.application = _text(options.get(blocks.SECTION_APPLICATION, b""))
@@ -143,40 +153,39 @@ class CaptureReader:
         link_type, _, _ = fields.numbers("HHI")
         options = dict(fields.options())
         description = _text(options.get(blocks.INTERFACE_DESCRIPTION, b""))
-        word, _, edition = description.partition(" ")
+        key, _, edition = description.partition(" ")
         speed = int.from_bytes(options.get(blocks.INTERFACE_SPEED, b""), self._endian)
         name = _text(options.get(blocks.INTERFACE_NAME, b""))
-        self.interfaces.append(Interface(name, edition if word == "edition" else "", speed))
+        self.interfaces.append(Interface(name, edition if key == "edition" else "", speed))
         resolution = options.get(blocks.INTERFACE_RESOLUTION) or bytes([MICROSECONDS])
-        late = options.get(blocks.INTERFACE_OFFSET, b"")
-        seconds = int.from_bytes(late, self._endian, signed=True)
-        self._lines.append(_Line(len(self.interfaces) - 1, link_type, resolution[0], seconds))
+        offset = options.get(blocks.INTERFACE_OFFSET, b"")
+        seconds = int.from_bytes(offset, self._endian, signed=True)
+        self._formats.append(_Format(len(self.interfaces) - 1, link_type, resolution[0], seconds))
 
     def _packet(self, block: Block, fields: Fields) -> Packet:
-        line = self._line(block, fields)
-        if line.link_type not in blocks.USER_LINK_TYPES:
-            self._refuse(block, f"packets of link type {line.link_type}, which is no serial line")
+        format = self._format(block, fields)
+        if format.link_type not in blocks.USER_LINK_TYPES:
+            self._reject(block, f"link type {format.link_type} is not a serial line")
         high, low, size, _ = fields.numbers("IIII")
         data = fields.data(size)
         options = dict(fields.options())
         flags = int.from_bytes(options.get(blocks.PACKET_FLAGS, b""), self._endian)
         packet = Packet(
-            line.nanoseconds(high, low),
+            format.nanoseconds(high, low),
             DIRECTIONS[flags & 3],
             data,
-            # Only we cut at frames, and say so of what is none.
             "frame" if self.application.startswith(OURS) else "bytes",
-            interface=line.number,
+            interface=format.number,
         )
         return with_comment(packet, _text(options.get(blocks.COMMENT, b"")))
 
-    def _line(self, block: Block, fields: Fields) -> _Line:
+    def _format(self, block: Block, fields: Fields) -> _Format:
         (index,) = fields.numbers("I")
-        if index >= len(self._lines):
-            self._refuse(block, f"damaged: nothing introduces its interface {index}")
-        return self._lines[index]
+        if index >= len(self._formats):
+            self._reject(block, f"damaged: it does not describe interface {index}")
+        return self._formats[index]
 
-    def _refuse(self, block: Block, why: str) -> NoReturn:
+    def _reject(self, block: Block, why: str) -> NoReturn:
         raise CaptureError(self.name, block.offset, why)
 
 

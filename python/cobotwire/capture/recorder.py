@@ -1,4 +1,4 @@
-"""What goes over a line, to a capture: cut at frames, every byte kept."""
+"""Cut sent and received bytes into the packets of a capture; every byte is kept."""
 
 from __future__ import annotations
 
@@ -12,68 +12,69 @@ from typing import Literal, Protocol
 from cobotwire.capture.packet import Interface, Packet, Piece
 from cobotwire.capture.writer import CaptureWriter
 from cobotwire.codec.interface import Codec, Event, Framer, Noise
-from cobotwire.errors import CaptureError
+from cobotwire.protocol.errors import CaptureError
 
-# A frame that stood still this long is written as what has come of it. The longest pause seen
-# within a reply is 0.1 s; a cut too early would cost only the picture, never a byte.
-IDLE_SECONDS = 0.5
+# An incomplete frame is written after this pause. The longest pause seen within a reply is 0.1 s;
+# a cut that is too early splits a frame into two packets, but loses no byte.
+IDLE_NS = 500_000_000
 
 _log = logging.getLogger("cobotwire.capture")
 
 
 class Moment(Protocol):
-    """What a driver's ``trace`` is called with; ``time`` is in ``time.monotonic()`` seconds."""
+    """One item of a client's traffic; ``time`` is in ``time.monotonic()`` seconds."""
 
     @property
     def time(self) -> float:
-        """When."""
+        """When it was sent or received."""
         ...
 
     @property
-    def direction(self) -> Literal["sent", "heard"]:
-        """Which way."""
+    def direction(self) -> Literal["sent", "received"]:
+        """Whether it was sent or received."""
         ...
 
     @property
     def data(self) -> bytes:
-        """What."""
+        """Its bytes."""
         ...
 
 
 class Side:
-    """One direction: chunks with their times in, packets out. Every byte is in exactly one."""
+    """Cuts the chunks of one direction into packets; every byte is in exactly one packet."""
 
-    def __init__(self, direction: Literal["sent", "heard"], framer: Framer | None) -> None:
-        """Cut by ``framer``; without one, a chunk is a packet of kind ``bytes``."""
+    def __init__(self, direction: Literal["sent", "received"], framer: Framer | None) -> None:
+        """Cut with ``framer``; without one each chunk becomes a packet of kind ``bytes``."""
         self._direction = direction
         self._framer = framer
-        # What came and is in no packet yet, in the pieces in which it came.
+        # The bytes that are in no packet yet, in the pieces in which they came.
         self._waiting: deque[Piece] = deque()
         self._idle_at = 0
 
     def feed(self, data: bytes, time_ns: int) -> list[Packet]:
-        """Take a chunk as it was read or written."""
+        """Take a chunk as it was read or written; return the packets that are complete."""
         if self._framer is None:
             return [Packet(time_ns, self._direction, data, "bytes")] if data else []
         if data:
             self._waiting.append(Piece(len(data), time_ns))
-            self._idle_at = time_ns + int(IDLE_SECONDS * 1e9)
+            self._idle_at = time_ns + IDLE_NS
         return self._packets(self._framer.feed(data))
 
     def wake(self, time_ns: int) -> list[Packet]:
-        """Let time pass: what has stood still too long waits for its rest no longer."""
+        """Return what has waited for more bytes longer than ``IDLE_NS``, as packets."""
         return self.flush() if self._waiting and time_ns >= self._idle_at else []
 
     def flush(self) -> list[Packet]:
-        """Give up what waits for its rest."""
+        """Return everything that waits for more bytes, as packets."""
         return [] if self._framer is None else self._packets(self._framer.flush())
 
     def _packets(self, events: Iterable[Event]) -> list[Packet]:
-        """One for each frame; noise between two frames is one, with its first byte's reason."""
+        """Return a packet for each frame, and one for all noise between two frames."""
         joined: list[Event] = []
         for event in events:
             last = joined[-1] if joined else None
             if isinstance(event, Noise) and isinstance(last, Noise):
+                # The reason is that of the first byte.
                 joined[-1] = last._replace(data=last.data + event.data)
             else:
                 joined.append(event)
@@ -93,7 +94,7 @@ class Side:
         )
 
     def _take(self, size: int) -> tuple[Piece, ...]:
-        """The next ``size`` bytes of what waits; the framer's events come in the line's order."""
+        """Remove the pieces of the next ``size`` bytes; events come in the order of the stream."""
         taken = []
         while size:
             piece = self._waiting.popleft()
@@ -106,10 +107,10 @@ class Side:
 
 
 class Recorder:
-    """Writes everything that goes over one line to a capture; give it to a driver as ``trace``.
+    """Writes the traffic of one transport to a capture; pass it to a client as ``trace``.
 
-    A recording that fails (a full disk) must not fail the call that moves an arm: it is logged at
-    once, recording ends, and :meth:`close` raises.
+    When a write fails (the disk is full), the call that moves an arm must not fail: the error is
+    logged, recording stops, and :meth:`close` raises.
     """
 
     def __init__(
@@ -121,50 +122,50 @@ class Recorder:
         baudrate: int = 0,
         name: str = "capture",
     ) -> None:
-        """Introduce the line to the capture; a writer may have the recorders of several lines.
+        """Describe the transport to the capture; several recorders may share a writer.
 
         Args:
-            writer: where packets go.
-            codec: by whose edition they are cut; None leaves the chunks as they come.
-            url: the port, for who reads the capture.
-            baudrate: bits a second, likewise.
-            name: the file's, for messages.
+            writer: writes the packets.
+            codec: cuts the bytes into frames; None records the chunks as they come.
+            url: the port, for the readers of the capture.
+            baudrate: bits a second, for the readers of the capture.
+            name: the name of the file, for messages.
         """
         edition = "" if codec is None else codec.table.edition
         self._writer = writer
         self._name = name
         self._index = writer.interface(Interface(url, edition, baudrate))
         self._sent = Side("sent", None if codec is None else codec.framer("request"))
-        self._heard = Side("heard", None if codec is None else codec.framer("reply"))
-        # Anchored once: a clock that is set meanwhile does not turn the recording's time back.
+        self._received = Side("received", None if codec is None else codec.framer("reply"))
+        # Read once, so that setting the clock does not turn the recording's time back.
         self._epoch_ns = time.time_ns() - time.monotonic_ns()
         self._lock = threading.Lock()
         self._failure: OSError | ValueError | None = None
 
     def __call__(self, moment: Moment) -> None:
-        """Record what a driver tells."""
+        """Record one item of a client's traffic."""
         self.record(moment.direction, moment.data, moment.time)
 
-    def record(self, direction: Literal["sent", "heard"], data: bytes, at: float) -> None:
-        """Record a chunk as it was read or written at a ``time.monotonic()`` second."""
+    def record(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:
+        """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds."""
         with self._lock:
             time_ns = self._epoch_ns + round(at * 1e9)
-            for side in (self._sent, self._heard):
+            for side in (self._sent, self._received):
                 self._write(side.wake(time_ns))
-            side = self._sent if direction == "sent" else self._heard
+            side = self._sent if direction == "sent" else self._received
             self._write(side.feed(data, time_ns))
 
     def close(self) -> None:
-        """Write what waits for its rest. The writer stays open.
+        """Write what waits for more bytes. The writer stays open.
 
         Raises:
-            CaptureError: a write has failed, and the recording ends there.
+            CaptureError: a write failed, so the recording is incomplete.
         """
         with self._lock:
             self._write(self._sent.flush())
-            self._write(self._heard.flush())
+            self._write(self._received.flush())
             if self._failure is not None:
-                detail = f"recording ended early: {self._failure}"
+                detail = f"the recording is incomplete: {self._failure}"
                 raise CaptureError(self._name, self._writer.size, detail) from self._failure
 
     def _write(self, packets: Iterable[Packet]) -> None:
@@ -173,7 +174,7 @@ class Recorder:
                 return
             try:
                 self._writer.packet(packet._replace(interface=self._index))
-            # A ValueError is what a closed file raises.
+            # A closed file raises ValueError.
             except (OSError, ValueError) as error:
                 self._failure = error
-                _log.error("recording to %s ended: %s", self._name, error)
+                _log.error("recording to %s stopped: %s", self._name, error)

@@ -1,39 +1,39 @@
-"""Packets to a pcapng file, one by one: what was written is whole, whatever happens later."""
+"""Write packets to a pcapng file; each is complete on disk before the next."""
 
 from __future__ import annotations
 
 from typing import BinaryIO
 
-from cobotwire.capture import blocks
+from cobotwire.capture import block_encoding as blocks
 from cobotwire.capture.packet import Interface, Packet, comment_of
 
-FLAGS = {"sent": blocks.OUTBOUND, "heard": blocks.INBOUND, "unknown": 0}
+FLAGS = {"sent": blocks.OUTBOUND, "received": blocks.INBOUND, "unknown": 0}
 
 
 class CaptureWriter:
     """Writes packets to an open binary file, which it does not close.
 
     Attributes:
-        size: how many bytes of whole blocks were written.
+        size: bytes written so far, in complete blocks.
     """
 
     def __init__(self, file: BinaryIO, application: str = "cobotwire") -> None:
-        """Begin the file; ``application`` is what the capture says wrote it."""
+        """Begin the file; ``application`` names the program that writes it."""
         self._file = file
         self.size = 0
-        # For each interface: the times of its first and last packet, and how many there were.
+        # For each interface: the times of its first and last packet, and their number.
         self._seen: list[tuple[int, int, int]] = []
         self._write(blocks.section(application))
 
     def interface(self, interface: Interface) -> int:
-        """Introduce a line; gives the index by which its packets name it."""
+        """Describe an interface; return the index for its packets."""
         edition = f"edition {interface.edition}" if interface.edition else ""
         self._write(blocks.interface(interface.url, edition, interface.baudrate))
         self._seen.append((0, 0, 0))
         return len(self._seen) - 1
 
     def packet(self, packet: Packet) -> None:
-        """Write one packet of a line that was introduced."""
+        """Write one packet of an interface that was described."""
         first, last, count = self._seen[packet.interface]
         self._write(
             blocks.packet(
@@ -49,12 +49,12 @@ class CaptureWriter:
         self._seen[packet.interface] = first, max(last, end), count + 1
 
     def finish(self) -> None:
-        """Say that nothing is missing: the recording ends because it was told to."""
+        """Mark the recording as finished: nothing is missing at its end."""
         for index, (first, last, count) in enumerate(self._seen):
             self._write(blocks.statistics(index, first, last, count))
 
     def _write(self, block: bytes) -> None:
         self._file.write(block)
-        # A process that is killed leaves whole blocks behind; the system has them from here on.
+        # After this a killed process loses no block.
         self._file.flush()
         self.size += len(block)

@@ -1,4 +1,4 @@
-"""The command ``cobotwire``. Importing this needs nothing; running it needs the extra ``cli``."""
+"""Run the command ``cobotwire``; it needs the packages of the extra ``cli``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 def main() -> None:
     """Run the command line."""
     try:
-        import click  # noqa: F401  (asking whether it is there is the point)
+        import click  # noqa: F401  (imported only to see whether it is installed)
         import rich  # noqa: F401
     except ImportError as error:
         sys.exit(f"cobotwire: {error}. The command line needs: pip install 'cobotwire[cli]'")

@@ -1,39 +1,55 @@
-"""The verbs together, and what they share."""
+"""Put the verbs together; define the options that all of them share."""
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import click
 
 import cobotwire
-from cobotwire.cli.call import call
-from cobotwire.cli.commands import commands
-from cobotwire.cli.conform import conform
-from cobotwire.cli.decode import decode
-from cobotwire.cli.demo import demo
-from cobotwire.cli.doctor import doctor
-from cobotwire.cli.failure import EPILOG, failures
-from cobotwire.cli.monitor import monitor
-from cobotwire.cli.plot import plot
-from cobotwire.cli.ports import ports_
-from cobotwire.cli.replay import replay
-from cobotwire.cli.sim import sim
+from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors
 from cobotwire.editions import DEFAULT
+
+# In the order of --help. The verb NAME is the function NAME in the module cobotwire.cli.NAME.
+VERBS = (
+    "demo",
+    "ports",
+    "doctor",
+    "monitor",
+    "call",
+    "decode",
+    "sim",
+    "replay",
+    "plot",
+    "conform",
+    "commands",
+)
 
 
 class _App(click.Group):
-    def invoke(self, ctx: click.Context) -> Any:
-        """Run a verb; what goes wrong becomes a line and an exit code."""
-        with failures():
-            return super().invoke(ctx)
+    """Imports a verb when it is used, so that each starts without the imports of the others."""
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        if name not in VERBS:
+            return None
+        verb = getattr(import_module(f"cobotwire.cli.{name}"), name)
+        assert isinstance(verb, click.Command), f"{name} is a verb"
+        return verb
+
+    def invoke(self, context: click.Context) -> Any:
+        with exit_on_errors():
+            return super().invoke(context)
 
 
-def _version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:
-    if wanted and not ctx.resilient_parsing:
-        with failures():
+def _print_version(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+    if wanted and not context.resilient_parsing:
+        with exit_on_errors():
             click.echo(f"cobotwire {cobotwire.__version__}, {cobotwire.codec_in_use()} codec")
-        ctx.exit()
+        context.exit()
 
 
 @click.group(cls=_App, context_settings={"help_option_names": ["-h", "--help"]}, epilog=EPILOG)
@@ -41,21 +57,17 @@ def _version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> No
     "--edition",
     default=DEFAULT,
     show_default=True,
-    help="The edition of the protocol, or a package that cobotwire-gen build made.",
+    help="The protocol edition of the arm, or the name of a package built by cobotwire-gen.",
 )
 @click.option(
     "--version",
     is_flag=True,
     is_eager=True,
     expose_value=False,
-    callback=_version,
+    callback=_print_version,
     help="Show the version and the codec in use.",
 )
 @click.pass_context
-def app(ctx: click.Context, edition: str) -> None:
-    """Talk to a myCobot arm, simulate one, and read what goes over its line."""
-    ctx.obj = edition
-
-
-for verb in (demo, ports_, doctor, monitor, call, decode, sim, replay, plot, conform, commands):
-    app.add_command(verb)
+def app(context: click.Context, edition: str) -> None:
+    """Control a myCobot arm, simulate one, and decode its serial traffic."""
+    context.obj = edition

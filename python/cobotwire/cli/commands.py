@@ -1,4 +1,4 @@
-"""``cobotwire commands``: the list, or one command's reference."""
+"""``cobotwire commands``: list the commands of an edition, or describe one."""
 
 from __future__ import annotations
 
@@ -6,88 +6,78 @@ import json
 from dataclasses import asdict
 
 import click
-from rich.console import Console
 from rich.table import Table as Grid
 
 from cobotwire import editions
-from cobotwire.table import Command, Field, FrameFormat, Layout, Number
+from cobotwire.cli.shared.output import plain_console
+from cobotwire.protocol.table import Command, Field, FrameFormat, Number, Variant
 
 
-@click.command()
+@click.command(short_help="List the commands, or describe one.")
 @click.argument("name", required=False)
 @click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
 @click.pass_obj
 def commands(edition: str, name: str | None, as_json: bool) -> None:
-    """List the commands of the edition, or tell all about the command NAME."""
+    """List the commands of the edition, or describe the command NAME byte by byte."""
     table = editions.load(edition).TABLE
     chosen = table.commands if name is None else (table.command(name),)
     if as_json:
         click.echo(json.dumps([asdict(command) for command in chosen], indent=1))
     elif name is None:
-        _list(chosen)
+        _print_list(chosen)
     else:
-        _reference(table.frame, chosen[0])
+        _print_reference(table.frame, chosen[0])
 
 
-def _list(chosen: tuple[Command, ...]) -> None:
+def _print_list(chosen: tuple[Command, ...]) -> None:
     grid = Grid("id", "command", "safety", "what it does", box=None, pad_edge=False)
     for command in chosen:
         grid.add_row(f"0x{command.id:02X}", command.name, command.safety, command.title)
-    _console().print(grid)
+    plain_console().print(grid)
 
 
-def _console() -> Console:
-    # What the spec says is shown as it stands: a [word] or :word: in it is no markup of rich's.
-    console = Console(highlight=False, markup=False, emoji=False)
-    if not console.is_terminal:
-        # No colour then, and lines as long as they come, for grep and the like.
-        console.width = 200
-    return console
-
-
-def _reference(frame: FrameFormat, command: Command) -> None:
-    console = _console()
+def _print_reference(frame: FrameFormat, command: Command) -> None:
+    console = plain_console()
     console.print(f"{command.name}  0x{command.id:02X}  {command.safety}", style="bold")
     console.print(f"{command.title}. {command.doc}")
     for note in command.notes:
         console.print(f"Note: {note}")
-    for direction in ("request", "reply"):
-        for form in command.layouts("request" if direction == "request" else "reply"):
+    for direction, variants in (("request", command.request), ("reply", command.reply)):
+        for variant in variants:
             console.print(f"\n{direction}", style="bold")
-            console.print(_layout(frame, command, form))
+            console.print(_byte_table(frame, command, variant))
     if command.text is not None:
         pairs = zip(command.text.prefixes, command.text.fields)
-        console.print("\nreply, outside any frame", style="bold")
+        console.print("\nreply, as text without a frame", style="bold")
         console.print("".join(f"{prefix}<{field}>" for prefix, field in pairs))
     elif not command.reply:
         console.print("\nreply: none")
 
 
-def _layout(frame: FrameFormat, command: Command, form: Layout) -> Grid:
-    grid = Grid("byte", "content", "value", "what it is", box=None, pad_edge=False)
+def _byte_table(frame: FrameFormat, command: Command, variant: Variant) -> Grid:
+    grid = Grid("byte", "content", "value", "meaning", box=None, pad_edge=False)
     start = len(frame.header)
     grid.add_row(f"0-{start - 1}", "header", frame.header.hex(" ").upper(), "")
-    grid.add_row(str(start), "LEN", f"{frame.length(form.size):02X}", "")
+    grid.add_row(str(start), "LEN", f"{frame.length(variant.size):02X}", "")
     grid.add_row(str(start + 1), "CMD", f"{command.id:02X}", "")
     offset = start + 2
-    for field in form.fields:
+    for field in variant.fields:
         for index, number in enumerate(field.cases[0].numbers):
             last = offset + number.width - 1
             place = str(offset) if last == offset else f"{offset}-{last}"
             name = f"{field.name} {number.name}".strip()
-            spans = [_span(field, case.numbers[index]) for case in field.cases]
-            grid.add_row(place, name, " or ".join(spans), field.doc)
+            ranges = [_allowed(field, case.numbers[index]) for case in field.cases]
+            grid.add_row(place, name, " or ".join(ranges), field.doc)
             offset = last + 1
     grid.add_row(str(offset), "footer", frame.footer.hex().upper(), "")
     return grid
 
 
-def _span(field: Field, number: Number) -> str:
+def _allowed(field: Field, number: Number) -> str:
     if field.kind == "flag":
         return "0 no, 1 yes"
     if field.labels:
         return ", ".join(f"{c} {label}" for c, label in zip(field.choices, field.labels))
-    low = number.minimum * number.multiply / number.divide
-    high = number.maximum * number.multiply / number.divide
+    low, high = number.physical(number.minimum), number.physical(number.maximum)
     step = f" (x {number.divide / number.multiply:g})" if number.scaled else ""
     return f"{low:g}..{high:g} {number.unit}".strip() + step

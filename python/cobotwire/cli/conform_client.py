@@ -1,4 +1,4 @@
-"""``cobotwire conform client``: an arm that judges every byte which a client sends."""
+"""``cobotwire conform client``: serve an arm that judges every byte a client sends."""
 
 from __future__ import annotations
 
@@ -11,28 +11,40 @@ from urllib.parse import urlsplit
 import click
 
 from cobotwire import editions
-from cobotwire.cli.arguments import framed, parse
-from cobotwire.cli.conforming import ReportFiles, conclude, could_not_run, report_options
-from cobotwire.cli.serving import serve
-from cobotwire.conformance.client import MISDEEDS, Manners, Referee, Told
-from cobotwire.conformance.places import places_of
-from cobotwire.errors import UsageError
-from cobotwire.sim import PtyPort, Server, TcpPort
-from cobotwire.sim.kinematics import prepare
-from cobotwire.sim.tcp import address
-from cobotwire.table import Table
+from cobotwire.capture.file_errors import unusable_file
+from cobotwire.cli.shared.call_arguments import parse, request_values
+from cobotwire.cli.shared.conform_report import (
+    ReportFiles,
+    conclude,
+    exit_if_not_testable,
+    report_options,
+)
+from cobotwire.cli.shared.serving import serve
+from cobotwire.conformance.client import FAULTS, Referee, ScriptLine, faulty_replies
+from cobotwire.conformance.sources import spec_lines
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import PtyServer, Server, TcpServer
+from cobotwire.simulator.kinematics import prepare
+from cobotwire.simulator.tcp import address
 
 
 @click.command()
-@click.option("--listen", default="pty", help="pty, or socket://127.0.0.1:PORT; port 0 is any.")
-@click.option("--expect", metavar="FILE", help="What the client was told to send: a call a line.")
-@click.option("--misbehave", default="", help=f"Answer badly now and then: {','.join(MISDEEDS)}.")
-@click.option("--every", type=int, default=3, help="Every so many answers a bad one [3].")
-@click.option("--delay", type=float, default=8.0, help="Milliseconds until an answer [8].")
-@click.option("--patience", type=float, default=30.0, help="Milliseconds a reply may take [30].")
-@click.option("--no-acks", is_flag=True, help="Acknowledge no orders, as older firmware.")
-@click.option("--seconds", type=float, help="End after so long.")
-@click.option("--idle", type=float, help="End when the client was silent for so many seconds.")
+@click.option("--listen", default="pty", help="pty, or socket://127.0.0.1:PORT.")
+@click.option("--expect", metavar="FILE", help="The calls that the client makes, one per line.")
+@click.option("--misbehave", default="", help=f"Send bad replies now and then: {','.join(FAULTS)}.")
+@click.option("--every", type=int, default=3, show_default=True, help="Every n-th reply is bad.")
+@click.option("--delay", type=float, default=8.0, show_default=True, help="Milliseconds per reply.")
+@click.option(
+    "--patience",
+    type=float,
+    default=30.0,
+    show_default=True,
+    help="Milliseconds for which the client should wait for a reply.",
+)
+@click.option("--no-acks", is_flag=True, help="Send no acknowledgements, as older firmware does.")
+@click.option("--seconds", type=float, help="End after this time.")
+@click.option("--idle", type=float, help="End after this many seconds without a request.")
 @report_options
 @click.pass_obj
 def client(
@@ -48,40 +60,40 @@ def client(
     idle: float | None,
     files: ReportFiles,
 ) -> None:
-    """Serve an arm, and judge the client that drives it.
+    """Serve an arm, and judge the client that controls it.
 
-    The first line is what the client has to open. Over TCP the run ends when the client has gone,
-    on a pseudo-terminal by --idle, --seconds or Ctrl-C. With --expect values are compared with
-    what the client was told; a line is a call as for `cobotwire call`:
+    The first line of output is the port that the client has to open. Over TCP the run ends when the
+    client disconnects; on a pseudo-terminal by --idle, --seconds or Ctrl-C. With --expect the
+    requests are compared with the calls in FILE, which are written as for `cobotwire call`:
 
     \b
       send_angles 0,10,0,0,0,0 speed=30
       get_angles
-    """  # noqa: D301  (\b is the control character by which click keeps the lines)
-    with could_not_run():
+    """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
+    with exit_if_not_testable():
         table = editions.load(edition).TABLE
         for name, value in (("delay", delay), ("patience", patience)):
             if not 0 <= value <= 60_000:
                 raise UsageError(name, value, "0..60000 milliseconds")
-        misdeeds = [word for word in misbehave.split(",") if word]
+        faults = [word for word in misbehave.split(",") if word]
         referee = Referee(
             table,
             subject=f"client on {listen}",
-            manners=Manners(delay / 1000, misdeeds, every),
+            scenario=faulty_replies(delay / 1000, faults, every),
             script=None if expect is None else list(read_script(table, expect)),
             acks=not no_acks,
             patience=patience / 1000,
-            places=places_of(edition),
+            sources=spec_lines(edition),
         )
-        # A referee that imports while the client waits would take its second try for haste.
+        # Importing while the client waits would make the referee slow and its retry look hasty.
         prepare()
         server = _server(listen, referee)
-        serve(server, looks=[_Ending(server, referee, seconds, idle).look])
+        serve(server, between=[_Ending(server, referee, seconds, idle).check])
     conclude(referee.finish(), files)
 
 
 class _Ending:
-    """Looks now and then whether the run is over."""
+    """Ends the run when its time is over or the client has gone."""
 
     def __init__(
         self, server: Server, referee: Referee, seconds: float | None, idle: float | None
@@ -90,8 +102,8 @@ class _Ending:
         self._end = None if seconds is None else time.monotonic() + seconds
         self._over = False
 
-    def look(self) -> None:
-        """Stop the server once, when the time is over or the client has gone."""
+    def check(self) -> None:
+        """Stop the server, once."""
         if not self._over and (self._late() or self._silent() or self._gone()):
             self._over = True
             self._server.stop()
@@ -104,43 +116,43 @@ class _Ending:
         return self._idle is not None and silence is not None and silence >= self._idle
 
     def _gone(self) -> bool:
-        if not isinstance(self._server, TcpPort):
+        if not isinstance(self._server, TcpServer):
             return False
         return self._referee.silence is not None and self._server.clients == 0
 
 
 def _server(listen: str, referee: Referee) -> Server:
     if listen == "pty":
-        return PtyPort(referee)
+        return PtyServer(referee)
     parts = urlsplit(listen)
     if parts.scheme not in ("socket", "tcp") or parts.path.strip("/"):
-        raise UsageError("listen", listen, "pty, or socket://127.0.0.1:PORT")
+        raise UsageError("listen", listen, "pty, socket://HOST:PORT")
     host, port = address(parts.netloc)
-    # Whoever comes is taken for the same client: judging is about one.
-    return TcpPort(lambda: referee, host, port)
+    # Every connection is taken for the same client, because one client is judged.
+    return TcpServer(lambda: referee, host, port)
 
 
-def read_script(table: Table, path: str) -> Iterator[Told]:
-    """The calls of a script.
+def read_script(table: Table, path: str) -> Iterator[ScriptLine]:
+    """Yield the calls in a file.
 
     Raises:
-        UsageError: the file cannot be read, or a line is no call; the text says where.
+        UsageError: the file cannot be read, or a line is not a call.
     """
     try:
         lines = Path(path).read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeError) as error:
-        raise UsageError("expect", path, f"a text file ({error})") from error
+        raise unusable_file("expect", path, error) from error
     for number, line in enumerate(lines, 1):
         words = shlex.split(line, comments=True)
         if words:
             place = f"{path}:{number}"
             try:
-                yield _told(table, words, place)
+                yield _script_line(table, words, place)
             except UsageError as error:
-                raise UsageError(f"{place}: {error.argument}", error.value, error.allowed) from None
+                raise UsageError("expect", line, message=f"{place}: {error}") from None
 
 
-def _told(table: Table, words: list[str], place: str) -> Told:
-    """A call as it is written; the text behind a request is not compared."""
+def _script_line(table: Table, words: list[str], place: str) -> ScriptLine:
+    """Parse a call; the text that follows some requests is not compared."""
     command = table.command(words[0])
-    return Told(command, framed(command, parse(command, words[1:])), place)
+    return ScriptLine(command, request_values(command, parse(command, words[1:])), place)

@@ -1,4 +1,4 @@
-"""``cobotwire conform compare``: what became of an arm, a client or a codec since then."""
+"""``cobotwire conform compare``: compare two reports on the same subject."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from cobotwire.cli.conforming import CONFORMS, DOES_NOT, could_not_run
+from cobotwire.capture.file_errors import unusable_file
+from cobotwire.cli.shared.conform_report import CONFORMS, DOES_NOT, exit_if_not_testable
 from cobotwire.conformance import Report
 from cobotwire.conformance.reports import Comparison, from_json
 from cobotwire.conformance.reports import compare as compared
-from cobotwire.errors import UsageError
 
 STYLES = {"worse": "red", "better": "green"}
 
@@ -24,14 +24,14 @@ STYLES = {"worse": "red", "better": "green"}
 @click.command()
 @click.argument("before")
 @click.argument("after")
-@click.option("--json", "as_json", is_flag=True, help="Print what differs as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the differences as JSON.")
 def compare(before: str, after: str, as_json: bool) -> None:
-    """Compare two reports that were written with --json.
+    """Compare the reports BEFORE and AFTER, which were written with --json.
 
-    Exit codes: 0 nothing is worse; 1 something is: a test fails that did not, or passed and is not
-    tested now; 2 a file is no report.
+    Exit codes: 0 nothing is worse; 1 something is worse: a test case fails now, or it passed and is
+    not run any more; 2 a file is not a report.
     """
-    with could_not_run():
+    with exit_if_not_testable():
         found = compared(_read("before", before), _read("after", after))
     if as_json:
         click.echo(json.dumps(asdict(found), indent=1))
@@ -44,16 +44,16 @@ def _read(argument: str, name: str) -> Report:
     try:
         text = Path(name).read_text(encoding="utf-8")
     except (OSError, UnicodeError) as error:
-        raise UsageError(argument, name, f"a report in JSON ({error})") from error
+        raise unusable_file(argument, name, error) from error
     return from_json(text)
 
 
 def _show(found: Comparison) -> None:
     console = Console(soft_wrap=True)
-    table = Table("", "command", "rule", "before", "after", "what was found")
+    table = Table("", "command", "test case", "before", "after", "what was found")
     for change in found.changes:
-        verdicts = (change.before or "not there", change.after or "not there")
-        row = (change.kind, change.command or "the line", change.rule, *verdicts, change.reason)
+        outcomes = (change.before or "not run", change.after or "not run")
+        row = (change.kind, change.command or "the line", change.case, *outcomes, change.reason)
         table.add_row(*row, style=STYLES.get(change.kind))
     if found.changes:
         console.print(table)
@@ -63,5 +63,5 @@ def _show(found: Comparison) -> None:
             f" {1000 * slower.after:.1f} ms after"
         )
     counts = Counter(change.kind for change in found.changes)
-    told = ", ".join(f"{count} {kind}" for kind, count in counts.items())
-    console.print(told or "No verdict differs.")
+    summary = ", ".join(f"{count} {kind}" for kind, count in counts.items())
+    console.print(summary or "No verdict differs.")

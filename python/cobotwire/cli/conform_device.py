@@ -1,23 +1,39 @@
-"""``cobotwire conform device``: does this arm, this firmware, keep to an edition?"""
+"""``cobotwire conform device``: test an arm and its firmware against an edition."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import click
+from rich.console import Console
+from rich.progress import Progress
 
 from cobotwire import editions
-from cobotwire.cli.conforming import ReportFiles, conclude, could_not_run, report_options
-from cobotwire.cli.progress import Shown
-from cobotwire.conformance.device import CLASSES, Leave, Line, Tester, Waits, words, workspace_of
-from cobotwire.conformance.places import places_of
-from cobotwire.errors import LinkError, UsageError
-from cobotwire.sim import SimulatedArm
-from cobotwire.sim.clock import SteppedClock
-from cobotwire.sim.memory import MemoryLink
-from cobotwire.table import Table
-from cobotwire.transport import open_link
+from cobotwire.cli.shared.arm_options import baudrate_option
+from cobotwire.cli.shared.conform_report import (
+    ReportFiles,
+    conclude,
+    exit_if_not_testable,
+    report_options,
+)
+from cobotwire.conformance.device import (
+    PERMISSIONS,
+    DeviceConnection,
+    Permissions,
+    Step,
+    Tester,
+    Timing,
+    parse_workspace,
+    words,
+)
+from cobotwire.conformance.sources import spec_lines
+from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.memory import MemoryTransport
+from cobotwire.transport import open_transport
 
 IN_MEMORY = "simulated arm in memory"
 
@@ -25,20 +41,22 @@ IN_MEMORY = "simulated arm in memory"
 @click.command()
 @click.argument("port", metavar="URL", required=False)
 @click.option(
-    "--allow", default="", metavar="CLASSES", help=f"What may be sent: {','.join(CLASSES)}."
+    "--allow", default="", metavar="PERMISSIONS", help=f"What may be sent: {','.join(PERMISSIONS)}."
 )
-@click.option("--max-speed", type=int, help="Percent of the fastest that motion may take.")
+@click.option("--max-speed", type=int, help="The highest speed to move at, in percent.")
 @click.option(
     "--workspace",
     metavar="RANGES",
-    help="Degrees of every joint, -30:30, or of each: 1=-90:90,2=-30:30,...",
+    help="Allowed degrees for all joints, -30:30, or for each: 1=-90:90,2=-30:30,...",
 )
-@click.option("--repeat", type=int, default=1, show_default=True, help="Run each trial so often.")
-@click.option("--retries", type=int, default=0, show_default=True, help="Ask again so often.")
-@click.option("--optional", default="", metavar="COMMANDS", help="What the arm may lack.")
-@click.option("--baudrate", type=int, help="Bits a second [default: the edition's].")
-@click.option("--linger", type=float, help="Milliseconds to listen behind a reply [4].")
-@click.option("--simulated", is_flag=True, help="Test a simulated arm in memory; no URL then.")
+@click.option("--repeat", type=int, default=1, show_default=True, help="Runs of each test case.")
+@click.option("--retries", type=int, default=0, show_default=True, help="Retries of a query.")
+@click.option(
+    "--optional", default="", metavar="COMMANDS", help="Commands that the arm need not support."
+)
+@baudrate_option
+@click.option("--linger", type=float, help="Milliseconds to listen after a reply [default: 4].")
+@click.option("--simulated", is_flag=True, help="Test a simulated arm instead of URL.")
 @report_options
 @click.pass_obj
 def device(
@@ -57,29 +75,30 @@ def device(
 ) -> None:
     """Test the arm at URL against an edition.
 
-    Without --allow only queries are sent. Motion needs --max-speed and --workspace too. What is set
-    is set back; Ctrl-C stops the arm and sets back. Exit codes: 0 the arm conforms; 1 it does not;
-    2 it could not be tested.
+    By default only queries are sent; --allow permits more. Motion also needs --max-speed and
+    --workspace. Settings are restored at the end; Ctrl-C stops the arm and restores them too.
+
+    Exit codes: 0 the arm conforms; 1 it does not; 2 it could not be tested.
     """
-    with could_not_run():
+    with exit_if_not_testable():
         table = editions.load(edition).TABLE
         if repeat < 1 or retries < 0:
             raise UsageError("repeat, retries", (repeat, retries), "repeat from 1, retries from 0")
-        leave = Leave.of(
+        permissions = Permissions.of(
             words(allow),
             joints=table.joints,
             max_speed=max_speed,
-            workspace=None if workspace is None else workspace_of(workspace, table.joints),
+            workspace=None if workspace is None else parse_workspace(workspace, table.joints),
         )
         names = frozenset(table.command(name).name for name in words(optional))
-        waits = Waits() if linger is None else Waits(linger=linger / 1000)
-        with _line(table, port, simulated, baudrate) as line:
+        timing = Timing() if linger is None else Timing(linger=linger / 1000)
+        with _connection(table, port, simulated, baudrate) as connection:
             tester = Tester(
-                line,
+                connection,
                 table,
-                leave=leave,
-                places=places_of(edition),
-                waits=waits,
+                permissions=permissions,
+                sources=spec_lines(edition),
+                timing=timing,
                 repeat=repeat,
                 retries=retries,
                 optional=names,
@@ -89,26 +108,43 @@ def device(
 
 
 def _run(tester: Tester) -> None:
-    """Run, and show how far it is; an end before the end leaves the report as it is."""
+    """Run with a progress bar; if the run is interrupted, the report holds what was tested."""
     try:
-        with Shown() as shown:
-            tester.run(shown.step)
+        with _progress() as show_step:
+            tester.run(show_step)
     except KeyboardInterrupt:
-        click.echo("interrupted: the arm was stopped, and set back", err=True)
+        click.echo("interrupted: the arm was stopped, and its settings were restored", err=True)
     except LinkError as error:
         click.echo(f"cobotwire: {error}", err=True)
 
 
 @contextmanager
-def _line(table: Table, port: str | None, simulated: bool, baudrate: int | None) -> Iterator[Line]:
+def _progress() -> Iterator[Callable[[Step, int, int], None]]:
+    """Give a function that shows the current step on standard error, if that is a terminal."""
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("")
+
+        def show_step(step: Step, index: int, count: int) -> None:
+            bar.update(task, description=step.name, completed=index, total=count)
+
+        yield show_step
+
+
+@contextmanager
+def _connection(
+    table: Table, port: str | None, simulated: bool, baudrate: int | None
+) -> Iterator[DeviceConnection]:
     if simulated == (port is not None):
-        raise UsageError("URL", port, "a port or URL; or --simulated in its place")
+        raise UsageError("URL", port, message="give either the URL of an arm or --simulated")
     if port is None:
         clock = SteppedClock()
-        yield Line(MemoryLink(SimulatedArm(table, clock=clock), clock), clock, IN_MEMORY)
+        yield DeviceConnection(
+            MemoryTransport(SimulatedArm(table, clock=clock), clock), clock, IN_MEMORY
+        )
         return
-    link = open_link(port, table.baudrate if baudrate is None else baudrate)
+    opened = open_transport(port, table.baudrate if baudrate is None else baudrate)
     try:
-        yield Line(link)
+        yield DeviceConnection(opened)
     finally:
-        link.close()
+        opened.close()

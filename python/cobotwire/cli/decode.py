@@ -1,12 +1,13 @@
-"""``cobotwire decode``: what each byte is."""
+"""``cobotwire decode``: explain bytes, byte streams and recordings."""
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Literal
+from typing import NamedTuple
 
 import click
 from rich.console import Console
@@ -15,59 +16,75 @@ from rich.progress import Progress
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture import CaptureReader
-from cobotwire.cli.recorded import capture_in, tell_the_end
-from cobotwire.cli.source import Form, Source, open_source
-from cobotwire.cli.strand import Look, Strand, Strands
-from cobotwire.cli.tally import Tally
-from cobotwire.codec.interface import Framer
-from cobotwire.diagnose import Item
+from cobotwire.capture.byte_source import ByteFormat, ByteSource, open_bytes
+from cobotwire.capture.streams import DirectionStream, diagnose_capture
+from cobotwire.cli.shared.exit_codes import OUTPUT_CLOSED
+from cobotwire.cli.shared.item_formats import Format, as_object, byte_by_byte, one_line
+from cobotwire.cli.shared.output import discard_output
+from cobotwire.cli.shared.recordings import ARROWS, recording_named, warn_if_incomplete
+from cobotwire.codec.interface import Codec, Listening
+from cobotwire.diagnose import Diagnoser, Item
+from cobotwire.diagnose.counts import StreamCounts
+from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
 
-# A bar is worth its place where a file takes some seconds.
+# Bytes from which a progress bar is worth showing: decoding them takes some seconds.
 LONG_FILE = 4 << 20
-# What a shell says of a process that SIGPIPE ended.
-READER_GONE = 141
 
 
-@click.command()
-@click.argument("words", nargs=-1, required=True, metavar="HEX...|FILE|-")
-@click.option("--raw", "form", flag_value="raw", help="The one word is a FILE of raw bytes.")
-@click.option("--hex", "form", flag_value="hex", help="The one word is a FILE of hex text.")
+class Options(NamedTuple):
+    """What to print, and how."""
+
+    edition: str
+    direction: Listening
+    accept_unknown: bool
+    each_byte: bool
+    as_json: bool
+    quiet: bool
+
+
+@click.command(short_help="Explain bytes, streams and recordings.")
+@click.argument("input", nargs=-1, required=True, metavar="HEX...|FILE|-")
+@click.option("--raw", "format", flag_value="raw", help="FILE holds raw bytes.")
+@click.option("--hex", "format", flag_value="hex", help="FILE holds hex text.")
 @click.option(
     "--direction",
     type=click.Choice(["request", "reply", "both"]),
     default="both",
     show_default=True,
-    help="Which way the bytes went.",
+    help="Which messages the bytes hold.",
 )
-@click.option("--accept-unknown", is_flag=True, help="Also take ids that the edition lacks.")
-@click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as for HEX words.")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a line.")
+@click.option(
+    "--accept-unknown", is_flag=True, help="Accept frames with ids unknown to the edition."
+)
+@click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as for HEX.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--summary", is_flag=True, help="Print counts at the end.")
-@click.option("--quiet", is_flag=True, help="Print no events, only what else is asked for.")
+@click.option("--quiet", is_flag=True, help="Do not print frames and noise.")
 @click.pass_obj
 def decode(
     edition: str,
-    words: tuple[str, ...],
-    form: Form | None,
-    direction: Literal["request", "reply", "both"],
+    input: tuple[str, ...],
+    format: ByteFormat | None,
+    direction: Listening,
     accept_unknown: bool,
     each_byte: bool,
     as_json: bool,
     summary: bool,
     quiet: bool,
 ) -> None:
-    """Explain bytes: frames with what they say, noise with what it is.
+    """Print the meaning of each frame, and the diagnosis of everything else.
 
-    Words that are HEX (pairs of digits, with or without blanks, commas or 0x) are the bytes. Any
-    other single word is a FILE, and - is the standard input. A word that is hex and the name of a
-    file is refused: say ./NAME or 0xNAME.
+    HEX is bytes as pairs of hex digits, with or without blanks, commas or 0x. Any other single
+    argument is a FILE; - is standard input. If an argument is both hex and an existing file, write
+    ./NAME for the file or 0xNAME for the bytes.
 
-    A FILE that is a recording (pcapng, see --record) is read packet by packet: each frame has its
-    time, and is read in the direction in which it went; --direction is for packets that tell none.
+    A recording (pcapng, see --record) is decoded packet by packet: each frame is printed with its
+    time, and decoded in the direction in which it was sent. --direction applies to packets of
+    unknown direction only.
 
-    Any other FILE or - holds raw bytes or hex text. It is hex if its first 512 bytes are nothing
-    but hex; other plain text is refused, so that it is not taken for raw bytes by mistake. --raw
-    and --hex say it without guessing.
+    Any other FILE holds raw bytes or hex text. It is hex text if its first 512 bytes are nothing
+    but hex; other text is rejected, so that it is not decoded by mistake. --raw and --hex choose
+    the format.
 
     \b
       cobotwire decode FE FE 06 21 01 00 1D 14 FA
@@ -75,80 +92,147 @@ def decode(
       cobotwire decode arm.pcapng
       cat capture.hex | cobotwire decode - --hex --json
 
-    Exit code 1 if there is anything among the bytes that is no legal frame; 141 if whoever read
-    the output went away.
-    """  # noqa: D301  (\b is the control character by which click keeps the lines)
-    look = Look(edition, direction, accept_unknown, each_byte, as_json, _colour())
-    capture = capture_in(words) if form is None else None
-    framers: list[Framer] = []
-    tally = Tally(framers)
+    Exit codes: 0 all bytes are legal frames; 1 some are not; 141 the reader of the output closed
+    it.
+    """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
+    options = Options(edition, direction, accept_unknown, each_byte, as_json, quiet)
+    capture = recording_named(input) if format is None else None
+    counts = StreamCounts()
     try:
         if capture is None:
-            _bytes(open_source(words, form), look, framers, tally, quiet)
+            _decode_bytes(open_bytes(input, format, _notify), options, counts)
         else:
-            _packets(capture, look, framers, tally, quiet)
+            _decode_recording(capture, options, counts)
     finally:
-        # Also what was counted until Ctrl-C.
+        # Ctrl-C prints the counts up to that point.
         if summary:
-            _write(tally.as_json() if as_json else tally.lines())
-    sys.exit(0 if tally.clean else 1)
+            _print(_counts_json(counts) if as_json else "\n".join(_counts_lines(counts)))
+    sys.exit(0 if counts.only_legal else 1)
 
 
-def _bytes(source: Source, look: Look, framers: list[Framer], tally: Tally, quiet: bool) -> None:
-    """Bytes that have no times, and all one direction."""
-    codec = codecs.load(editions.load(look.edition).TABLE)
-    strand = Strand(codec, look.direction, look._replace(each_byte=look.each_byte or source.words))
-    framers.append(strand.framer)
+def _notify(text: str) -> None:
+    click.echo(f"cobotwire: {text}", err=True)
 
-    def take(items: list[Item]) -> None:
-        tally.count(items, strand.read)
-        if items and not quiet:
-            _write("\n".join(map(strand.show, items)))
 
-    with _progress(source, quiet) as blocks:
+class _StreamPrinter:
+    """Counts the items of one stream, and prints them."""
+
+    def __init__(
+        self, codec: Codec, listening: Listening, options: Options, counts: StreamCounts
+    ) -> None:
+        directions = tuple(d for d in DIRECTIONS if listening in (d, "both"))
+        self.reader = FrameReader(codec, directions)
+        self._counts, self._options = counts, options
+        self._format = self._choose_format(codec)
+
+    def _choose_format(self, codec: Codec) -> Format:
+        if self._options.as_json:
+            return lambda item: json.dumps(as_object(self.reader, item))
+        if self._options.each_byte:
+            return byte_by_byte(self.reader, codec.table.frame)
+        colour = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+        return one_line(self.reader, colour)
+
+    def print(self, items: list[Item]) -> None:
+        self._counts.add(items, self.reader)
+        if items and not self._options.quiet:
+            _print("\n".join(map(self.format, items)))
+
+    def format(self, item: Item) -> str:
+        return self._format(item)
+
+
+class _TimedStreamPrinter(_StreamPrinter):
+    """Prints the time and direction of each item of a recorded stream."""
+
+    def __init__(
+        self,
+        stream: DirectionStream,
+        capture: CaptureReader,
+        start_ns: int,
+        options: Options,
+        counts: StreamCounts,
+    ) -> None:
+        super().__init__(stream.codec, stream.listening, options, counts)
+        counts.framers.append(stream.framer)
+        self._stream, self._start_ns = stream, start_ns
+        self._url = capture.interfaces[stream.interface].url
+        several = len(capture.interfaces) > 1
+        self._label = f" interface {stream.interface}" if several else ""
+
+    def format(self, item: Item) -> str:
+        time_ns = self._stream.time_of(item.offset)
+        after = (time_ns - self._start_ns) / 1e9
+        direction = self._stream.direction
+        if not self._options.as_json:
+            return f"{after:10.6f}{self._label} {ARROWS[direction]} {super().format(item)}"
+        when = {"time_ns": time_ns, "after": after, "url": self._url, "direction": direction}
+        return json.dumps({**when, **as_object(self.reader, item)})
+
+
+def _decode_bytes(source: ByteSource, options: Options, counts: StreamCounts) -> None:
+    """Decode bytes that have no times and one direction."""
+    codec = codecs.load(editions.load(options.edition).TABLE)
+    framer = codec.framer(options.direction, accept_unknown=options.accept_unknown)
+    counts.framers.append(framer)
+    if source.from_arguments:
+        options = options._replace(each_byte=True)
+    printer = _StreamPrinter(codec, options.direction, options, counts)
+    diagnoser = Diagnoser(codec, options.direction)
+    with _progress(source, options.quiet) as blocks:
         for block in blocks:
-            take(strand.feed(block))
-        take(strand.flush())
+            printer.print(diagnoser.feed(framer.feed(block)))
+        printer.print(diagnoser.feed(framer.flush()) + diagnoser.flush())
 
 
-def _packets(
-    capture: CaptureReader, look: Look, framers: list[Framer], tally: Tally, quiet: bool
-) -> None:
-    """A recording: each direction on its own, with its times."""
-    strands = Strands(capture, look)
+def _decode_recording(capture: CaptureReader, options: Options, counts: StreamCounts) -> None:
+    """Decode each direction of each interface on its own, with times."""
+    printers: dict[DirectionStream, _TimedStreamPrinter] = {}
+    start_ns = 0
     with capture:
-        for strand, items, start in strands.items():
-            framers[:] = [known.framer for known in strands.all.values()]
-            tally.count(items, strand.read)
-            if items and not quiet:
-                _write("\n".join(strand.shown(item, start) for item in items))
-        tell_the_end(capture)
+        for stream, items in diagnose_capture(
+            capture, options.edition, options.direction, accept_unknown=options.accept_unknown
+        ):
+            start_ns = start_ns or stream.start_ns
+            if stream not in printers:
+                printers[stream] = _TimedStreamPrinter(stream, capture, start_ns, options, counts)
+            printers[stream].print(items)
+        warn_if_incomplete(capture)
 
 
-def _write(text: str) -> None:
+def _counts_lines(counts: StreamCounts) -> Iterator[str]:
+    noise, kinds = counts.noise, counts.findings.kinds
+    yield f"{counts.bytes} bytes, {counts.frames.total()} frames, {counts.resyncs} resyncs"
+    yield from (f"  {count:>10} x {name}" for name, count in counts.frames.most_common())
+    yield f"{noise.total()} bytes of noise"
+    yield from (f"  {count:>10} {reason}" for reason, count in noise.most_common())
+    yield f"{kinds.total()} findings"
+    yield from (f"  {count:>10} x {kind}" for kind, count in kinds.most_common())
+    if diagnosis := str(counts.findings):
+        yield f"diagnosis: {diagnosis}"
+
+
+def _counts_json(counts: StreamCounts) -> str:
+    return json.dumps({"kind": "summary", **counts.as_dict()})
+
+
+def _print(text: str) -> None:
     try:
         sys.stdout.write(text + "\n")
-        # A block at a time, so that a live line is seen as it comes.
+        # After each block, so that live input is shown as it comes.
         sys.stdout.flush()
     except BrokenPipeError:
-        # Replaced, so that the flush at exit does not fail once more.
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-        os.close(nowhere)
-        sys.exit(READER_GONE)
-
-
-def _colour() -> bool:
-    return sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+        discard_output()
+        sys.exit(OUTPUT_CLOSED)
 
 
 @contextmanager
-def _progress(source: Source, quiet: bool) -> Iterator[Iterator[bytes]]:
-    """The blocks of the source, with a bar on a terminal that shows nothing else, if it is long."""
-    alone = quiet or not sys.stdout.isatty()
+def _progress(source: ByteSource, quiet: bool) -> Iterator[Iterator[bytes]]:
+    """Give the blocks of the source; show a bar for a long file if the terminal is free for it."""
+    free = quiet or not sys.stdout.isatty()
     long = source.size is not None and source.size >= LONG_FILE
     console = Console(stderr=True)
-    with Progress(console=console, disable=not (long and alone and console.is_terminal)) as bar:
+    with Progress(console=console, disable=not (long and free and console.is_terminal)) as bar:
         task = bar.add_task("decoding", total=source.size)
 
         def blocks() -> Iterator[bytes]:

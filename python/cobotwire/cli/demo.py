@@ -1,10 +1,9 @@
-"""``cobotwire demo``: the whole way, on this machine, without an arm."""
+"""``cobotwire demo``: drive a simulated arm, and check every reply."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import click
 from rich.console import Console
@@ -12,25 +11,26 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
 from cobotwire import codec as codecs
-from cobotwire.demo import Result, run
-from cobotwire.driver import Traffic
+from cobotwire.cli.shared.output import as_hex
+from cobotwire.cli.shared.recordings import ARROWS
+from cobotwire.client import Traffic
+from cobotwire.diagnose.explain import DIRECTIONS, FrameReader, Reading, format_message
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.explain import DIRECTIONS, explain, summary
-from cobotwire.table import Command
+from cobotwire.inspect.demo import Result, run
 
-# So many exchanges of a kind are shown before the rest of the polling is left out.
+# Polling repeats itself: this many requests and replies of a kind are shown, and the last ones.
 SHOWN_FIRST = 2
 
 
-@click.command()
-@click.option("--codec", type=click.Choice(["native", "reference"]), help="Force one codec.")
+@click.command(short_help="Drive a simulated arm; check every reply.")
+@click.option("--codec", type=click.Choice(["native", "reference"]), help="Use this codec.")
 def demo(codec: codecs.CodecName | None) -> None:
-    """Drive a simulated arm over a pseudo-terminal and check every answer."""
+    """Drive a simulated arm over a pseudo-terminal, and check every reply."""
     console = Console(highlight=False)
     columns = (TextColumn("  moving"), BarColumn(), TaskProgressColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task("moving", total=1.0)
-        # Where there is no terminal, a line for each quarter takes the place of the bar.
+        # Without a terminal a line for each quarter replaces the bar.
         quarters = iter((0.25, 0.5, 0.75, 1.0))
         due = next(quarters)
 
@@ -41,57 +41,53 @@ def demo(codec: codecs.CodecName | None) -> None:
                 console.print(f"  moving: {due:.0%}")
                 due = next(quarters, 2.0)
 
-        result = run(
-            lambda line: console.print(f"- {line}", soft_wrap=True, markup=False), progress, codec
-        )
-    _show_traffic(console, result.traffic)
-    _show_checks(console, result)
+        def report(step: str) -> None:
+            console.print(f"- {step}", soft_wrap=True, markup=False)
+
+        result = run(report, progress, codec)
+    _print_traffic(console, result.traffic)
+    _print_checks(console, result)
     sys.exit(0 if result.passed else 1)
 
 
-def _show_traffic(console: Console, traffic: tuple[Traffic, ...]) -> None:
-    console.print("\nOver the line (seconds, direction, bytes, meaning):", style="bold")
-    start = traffic[0].time
+def _print_traffic(console: Console, traffic: Sequence[Traffic]) -> None:
+    console.print("\nTraffic (seconds, direction, bytes, meaning):", style="bold")
+    readings = _readings(traffic)
     hidden = 0
-    lines = list(_lines(traffic))
-    for line, shown in zip(lines, _worth_showing(lines)):
+    for item, reading, shown in zip(traffic, readings, _worth_showing(readings)):
         if not shown:
             hidden += 1
             continue
         if hidden:
             console.print(f"          ... {hidden} more like these")
             hidden = 0
-        data = f"{line.data.hex(' ').upper()}  {line.meaning}"
-        console.print(f"{line.time - start:7.3f} {line.arrow} {data}", soft_wrap=True, markup=False)
+        message = reading.message if reading else None
+        meaning = format_message(message) if message else "noise"
+        time = item.time - traffic[0].time
+        line = f"{time:7.3f} {ARROWS[item.direction]} {as_hex(item.data)}  {meaning}"
+        console.print(line, soft_wrap=True, markup=False)
 
 
-class _Line(NamedTuple):
-    time: float
-    arrow: str
-    data: bytes
-    command: Command | None
-    meaning: str
-
-
-def _lines(traffic: tuple[Traffic, ...]) -> Iterator[_Line]:
+def _readings(traffic: Sequence[Traffic]) -> list[Reading | None]:
     codec = codecs.load(TABLE)
-    for one in traffic:
-        arrow, way = (">", DIRECTIONS[:1]) if one.direction == "sent" else ("<", DIRECTIONS[1:])
-        for explained in explain(codec, one.data, way):
-            messages = [r.message for r in explained.readings if r.message is not None]
-            command = messages[0].command if messages else None
-            meaning = summary(messages[0]) if messages else "noise"
-            yield _Line(one.time, arrow, explained.event.data, command, meaning)
+    readers = {
+        "sent": FrameReader(codec, DIRECTIONS[:1]),
+        "received": FrameReader(codec, DIRECTIONS[1:]),
+    }
+    found = (readers[item.direction].read(item.data) for item in traffic)
+    return [readings[0] if readings else None for readings in found]
 
 
-def _worth_showing(lines: Sequence[_Line]) -> list[bool]:
-    """Of the polling between two orders, the first and last exchange of each kind."""
-    shown = [False] * len(lines)
-    kinds: dict[tuple[str, Command | None], list[int]] = {}
-    for index, line in enumerate(lines):
-        if line.command is None or line.command.safety != "query":
+def _worth_showing(readings: Sequence[Reading | None]) -> list[bool]:
+    """Between two commands that are not queries, show the first and last messages of a kind."""
+    shown = [False] * len(readings)
+    kinds: dict[object, list[int]] = {}
+    for index, reading in enumerate(readings):
+        command = reading.message.command if reading and reading.message else None
+        if command is None or command.safety != "query":
             kinds.clear()
-        seen = kinds.setdefault((line.arrow, line.command), [])
+        kind = command, reading.direction if reading else None
+        seen = kinds.setdefault(kind, [])
         seen.append(index)
         shown[index] = True
         if len(seen) > SHOWN_FIRST + 1:
@@ -99,12 +95,12 @@ def _worth_showing(lines: Sequence[_Line]) -> list[bool]:
     return shown
 
 
-def _show_checks(console: Console, result: Result) -> None:
-    console.print("\nAnswers:", style="bold")
+def _print_checks(console: Console, result: Result) -> None:
+    console.print("\nReplies:", style="bold")
     for check in result.checks:
         style, verdict = ("green", "right") if check.passed else ("red", "WRONG")
-        expected = "" if check.passed else f", expected {check.right}"
-        said = escape(f"{check.what}: {check.got}{expected}")
-        console.print(f"  [{style}]{verdict}[/{style}]  {said}", soft_wrap=True)
+        expected = "" if check.passed else f", expected {check.expected}"
+        text = escape(f"{check.what}: {check.found}{expected}")
+        console.print(f"  [{style}]{verdict}[/{style}]  {text}", soft_wrap=True)
     right = sum(check.passed for check in result.checks)
-    console.print(f"{right} of {len(result.checks)} answers right", style="bold")
+    console.print(f"{right} of {len(result.checks)} replies are right", style="bold")

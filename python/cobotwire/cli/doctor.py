@@ -1,4 +1,4 @@
-"""``cobotwire doctor``: what ails an arm or its line, and what to do about it."""
+"""``cobotwire doctor``: find what is wrong with an arm or its port, and say what to do."""
 
 from __future__ import annotations
 
@@ -10,28 +10,27 @@ import click
 
 from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.cli.call import in_words, plain
-from cobotwire.cli.link import link_options, linked
-from cobotwire.driver import Driver
-from cobotwire.errors import LinkError
-from cobotwire.health import Examination, Report
-from cobotwire.health.examination import unopened
+from cobotwire.cli.shared.arm_options import arm_options, open_arm
+from cobotwire.cli.shared.exit_codes import LINK_FAILED
+from cobotwire.cli.shared.output import as_json_value, format_result
+from cobotwire.client import Client
+from cobotwire.inspect import Doctor, Report
+from cobotwire.protocol.errors import LinkError
 from cobotwire.session import RetryPolicy
 
 MOST = 10_000
-NO_LINK = 3
 
 
-@click.command()
+@click.command(short_help="Examine an arm and its port; give advice.")
 @click.argument("port", metavar="URL")
-@link_options
-@click.option("--timeout", type=float, default=0.5, show_default=True, help="Seconds to wait.")
+@arm_options
+@click.option("--timeout", type=float, default=0.5, show_default=True, help="Seconds per reply.")
 @click.option(
     "--count",
     type=click.IntRange(1, MOST),
     default=20,
     show_default=True,
-    help="How many round trips are timed.",
+    help="Round trips to time.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 @click.pass_obj
@@ -44,35 +43,33 @@ def doctor(
     count: int,
     as_json: bool,
 ) -> None:
-    """Examine the arm at URL: a port, or a URL such as socket://host:9000.
+    """Examine the arm at URL: a serial port, or a URL such as socket://host:9000.
 
-    Only harmless queries are asked, each once: nothing moves, nothing is set. Told are the times of
-    the round trips, what else came over the line, and what to do about it.
+    Only harmless queries are sent, each once: nothing moves, and nothing is set. The report holds
+    the arm's state, the times of the round trips, a diagnosis of all other traffic, and advice for
+    each problem.
 
-    Exit code 0 if it is healthy, 1 if not, 3 if there is no link.
+    Exit codes: 0 healthy; 1 there is a problem; 3 the port failed.
     """
     package = editions.load(edition)
-    table = package.TABLE
-    report, lost = unopened(port, table.edition), False
+    report, port_failed = Report(port, package.TABLE.edition), False
     try:
-        with linked(port, table, baudrate, record) as link:
-            # Asked once each: what is lost shall be seen.
-            arm: Driver = package.CLIENT(link, timeout=timeout, retry=RetryPolicy(tries=1))
-            examination = Examination(arm, link, codecs.load(table))
-            report = examination.report
-            examination.run(count)
+        with open_arm(port, package.TABLE, baudrate, record) as transport:
+            # Without retries, so that the report shows lost replies.
+            arm: Client = package.CLIENT(transport, timeout=timeout, retry=RetryPolicy(attempts=1))
+            Doctor(arm, transport, codecs.load(package.TABLE), report).examine(count)
     except LinkError as error:
-        lost = True
-        report.lost(error)
+        port_failed = True
+        report.add_port_failure(error)
     click.echo(json.dumps(_as_json(report), indent=1) if as_json else "\n".join(_lines(report)))
-    sys.exit(NO_LINK if lost else int(not report.healthy))
+    sys.exit(LINK_FAILED if port_failed else int(not report.healthy))
 
 
 def _lines(report: Report) -> list[str]:
     lines = [f"{report.url}: edition {report.edition}"]
-    lines += [f"  {name:<14} {in_words(value)}" for name, value in report.answers.items()]
-    if report.asked:
-        lines.append(f"  {report.answered} of {report.asked} questions answered")
+    lines += [f"  {name:<14} {format_result(value)}" for name, value in report.values.items()]
+    if report.requests:
+        lines.append(f"  {report.replies} replies to {report.requests} requests")
     if report.round_trip is not None:
         low, middle, high = (1e3 * seconds for seconds in report.round_trip)
         lines.append(f"  round trip {middle:.1f} ms ({low:.1f} to {high:.1f})")
@@ -80,18 +77,18 @@ def _lines(report: Report) -> list[str]:
         lines.append(f"  latency timer {report.latency_timer_ms} ms")
     if report.noise:
         lines.append(f"  {report.noise} bytes of noise: {report.diagnosis}")
-    for complaint in report.complaints:
-        mark = "!" if complaint.grave else "-"
-        lines += [f"{mark} {complaint.kind}: {complaint.says}", f"    {complaint.advice}"]
+    for problem in report.problems:
+        mark = "!" if problem.serious else "-"
+        lines += [f"{mark} {problem.kind}: {problem.text}", f"    {problem.advice}"]
     if report.healthy:
         lines.append("healthy")
     return lines
 
 
 def _as_json(report: Report) -> dict[str, Any]:
-    said = {name: getattr(report, name) for name in report.__dataclass_fields__}
-    said["answers"] = {name: plain(value) for name, value in report.answers.items()}
+    content = {name: getattr(report, name) for name in report.__dataclass_fields__}
+    content["values"] = {name: as_json_value(value) for name, value in report.values.items()}
     times = report.round_trip
-    said["round_trip"] = None if times is None else times._asdict()
-    said["complaints"] = [complaint._asdict() for complaint in report.complaints]
-    return {"healthy": report.healthy, **said}
+    content["round_trip"] = None if times is None else times._asdict()
+    content["problems"] = [problem._asdict() for problem in report.problems]
+    return {"healthy": report.healthy, **content}

@@ -1,4 +1,4 @@
-"""``cobotwire monitor``: where the arm is, as it moves, and how its line does."""
+"""``cobotwire monitor``: show where the arm is, and the state of its port."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ from rich.text import Text
 
 from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.cli.call import plain
-from cobotwire.cli.link import link_options, linked
-from cobotwire.cli.serving import say
-from cobotwire.health import Monitor, Sample
+from cobotwire.cli.shared.arm_options import arm_options, open_arm
+from cobotwire.cli.shared.output import as_json_value, print_line
+from cobotwire.inspect import Monitor, Observation
 
 
-@click.command()
+@click.command(short_help="Show joints, coordinates, rate, errors.")
 @click.argument("port", metavar="URL")
-@link_options
-@click.option("--rate", type=float, default=5.0, show_default=True, help="Looks a second, at most.")
-@click.option("--count", type=click.IntRange(1), help="So many looks [default: until Ctrl-C].")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a look.")
+@arm_options
+@click.option(
+    "--rate", type=float, default=5.0, show_default=True, help="Samples a second, at most."
+)
+@click.option("--count", type=click.IntRange(1), help="Number of samples [default: until Ctrl-C].")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per sample.")
 @click.pass_obj
 def monitor(
     edition: str,
@@ -35,59 +36,55 @@ def monitor(
     count: int | None,
     as_json: bool,
 ) -> None:
-    """Watch the arm at URL: its joints and coordinates, the rate reached, errors and noise.
+    """Show joints and coordinates of the arm at URL, the rate reached, errors and noise.
 
-    Only queries are sent. On a terminal it is a table; else, or with --json, a line a look. Ctrl-C
-    ends it: the port is given back, and a recording is whole.
+    Only queries are sent. On a terminal the output is a table that is updated; elsewhere, or with
+    --json, it is a line per sample. Ctrl-C ends it, closes the port and finishes the recording.
     """
     package = editions.load(edition)
     table = package.TABLE
     try:
-        with linked(port, table, baudrate, record) as link:
-            looking = Monitor(package.CLIENT(link), codecs.load(table), rate)
+        with open_arm(port, table, baudrate, record) as transport:
+            samples = Monitor(package.CLIENT(transport), codecs.load(table), rate).samples(count)
             if as_json or not sys.stdout.isatty():
-                for sample in looking.samples(count):
-                    say(_as_json(sample) if as_json else _line(sample))
+                for sample in samples:
+                    print_line(_as_json(sample) if as_json else _line(sample))
                 return
             with Live(console=Console(), auto_refresh=False) as live:
-                for sample in looking.samples(count):
+                for sample in samples:
                     live.update(_grid(port, sample), refresh=True)
     except KeyboardInterrupt:
-        # The usual end, and no failure; `with` has left everything in order.
+        # The usual way to end it: not a failure.
         sys.exit(0)
 
 
-def _as_json(sample: Sample) -> str:
-    values = {name: plain(value) for name, value in sample.values.items()}
+def _as_json(sample: Observation) -> str:
+    values = {name: as_json_value(value) for name, value in sample.values.items()}
     return json.dumps({**sample._asdict(), "values": values})
 
 
 def _numbers(value: object) -> str:
     if not isinstance(value, tuple):
-        return "no answer"
+        return "no reply"
     return " ".join(f"{part:8.2f}" for part in value)
 
 
-def _line(sample: Sample) -> str:
+def _line(sample: Observation) -> str:
     values = "  ".join(f"{name} {_numbers(value)}" for name, value in sample.values.items())
-    return f"{sample.time:9.3f}  {values}  {_state(sample)}"
+    state = [f"{sample.rate:.1f}/s", f"{sample.unanswered} unanswered", f"{sample.late} late"]
+    state.append(f"{sample.noise} bytes of noise" + f": {sample.diagnosis}" * bool(sample.noise))
+    return f"{sample.time:9.3f}  {values}  {', '.join(state)}"
 
 
-def _state(sample: Sample) -> str:
-    words = [f"{sample.rate:.1f}/s", f"{sample.unanswered} unanswered", f"{sample.late} late"]
-    words.append(f"{sample.noise} bytes of noise" + f": {sample.diagnosis}" * bool(sample.noise))
-    return ", ".join(words)
-
-
-def _grid(port: str, sample: Sample) -> Grid:
+def _grid(port: str, sample: Observation) -> Grid:
     grid = Grid(title=f"{port}   {sample.time:.1f} s", show_header=False)
     for name, value in sample.values.items():
         parts = value._asdict().items() if hasattr(value, "_asdict") else ()
         named = "  ".join(f"{part} {number:8.2f}" for part, number in parts)
-        grid.add_row(name, named or "[red]no answer[/red]")
+        grid.add_row(name, named or "[red]no reply[/red]")
     grid.add_row("rate", f"{sample.rate:.1f} a second")
     grid.add_row("unanswered", f"{sample.unanswered}   (late {sample.late})")
+    # As plain text, because received bytes may look like markup.
     grid.add_row("noise", Text(f"{sample.noise} bytes   {sample.diagnosis}"))
-    # Plain text: what came over the line may look like markup, and is none.
     grid.add_row("last error", Text(sample.error))
     return grid

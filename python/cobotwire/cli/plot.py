@@ -1,4 +1,4 @@
-"""``cobotwire plot``: a recording as a picture."""
+"""``cobotwire plot``: draw a recording."""
 
 from __future__ import annotations
 
@@ -9,54 +9,55 @@ import click
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture import CaptureReader
-from cobotwire.cli.drawing import drawing
-from cobotwire.cli.recorded import capture_in, codec_of, tell_the_end
-from cobotwire.cli.source import open_source
-from cobotwire.errors import UsageError
-from cobotwire.plot import Series, of_recording, of_stream
+from cobotwire.capture.byte_source import open_bytes
+from cobotwire.capture.streams import codec_of_interface, packets_of_interface
+from cobotwire.cli.shared.recordings import interface_option, recording_named, warn_if_incomplete
+from cobotwire.codec.interface import Codec
+from cobotwire.inspect.plot import (
+    Series,
+    check_output,
+    draw_charts,
+    draw_pose,
+    series_of_bytes,
+    series_of_packets,
+)
+from cobotwire.protocol.errors import UsageError
 
 
-@click.command()
+@click.command(short_help="Draw a recording.")
 @click.argument("file", type=click.Path())
-@click.option("-o", "--output", required=True, metavar="PICTURE", help="A .png, .svg or .pdf.")
-@click.option("--line", type=int, default=0, help="Which line, if the recording has several.")
-@click.option("--pose", is_flag=True, help="Draw the arm as it stood last: a stick figure.")
+@click.option("-o", "--output", required=True, metavar="PICTURE", help="A .png, .svg or .pdf file.")
+@interface_option
+@click.option("--pose", is_flag=True, help="Draw the last pose of the arm as a stick figure.")
 @click.pass_obj
-def plot(edition: str, file: str, output: str, line: int, pose: bool) -> None:
-    """Draw the recording FILE: joints, coordinates, frames, noise and reply times over time.
+def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> None:
+    """Draw joints, coordinates, frames, noise and reply times of the recording FILE over time.
 
-    A raw stream of what an arm said has no times: there it is all drawn over the bytes. Needs
-    matplotlib: pip install 'cobotwire[plot]'.
+    FILE may also hold the raw bytes that an arm sent. They have no times, so they are drawn over
+    the offset in bytes. Plotting needs matplotlib: pip install 'cobotwire[plot]'.
     """
-    pictures = drawing("drawing")
-    pictures.check_suffix(output)
-    capture = capture_in((file,))
-    name = Path(file).name
+    check_output(output)
+    capture = recording_named((file,))
+    title = Path(file).name
     if capture is None:
-        source = open_source((file,), None)
         codec = codecs.load(editions.load(edition).TABLE)
-        series, title = of_stream((block for block, _ in source.blocks), codec), name
+        blocks = open_bytes((file,), None, lambda text: click.echo(f"cobotwire: {text}", err=True))
+        series = series_of_bytes((block for block, _ in blocks.blocks), codec)
     else:
-        with capture:
-            series = _series(capture, line, edition)
-            tell_the_end(capture)
-            codec = codec_of(capture, line, edition)
-            title = f"{name}   {capture.interfaces[line].url}".strip()
-    if pose:
-        drawing("pose").draw_pose(codec.table, _last_joints(series, file), output)
+        series, codec = _read_recording(capture, interface, edition)
+        title = f"{title}   {capture.interfaces[interface].url}".strip()
+    if not pose:
+        draw_charts(series, output, title)
+    elif joints := series.tracks["joints"].rows:
+        draw_pose(codec.table, joints[-1], output)
     else:
-        pictures.draw(series, output, title)
+        message = f"{file} holds no reply with joint angles, so there is no pose to draw"
+        raise UsageError("FILE", file, message=message)
 
 
-def _last_joints(series: Series, file: str) -> tuple[float, ...]:
-    rows = series.tracks["joints"].rows
-    if not rows:
-        raise UsageError("FILE", file, "a recording in which the joints are told")
-    return rows[-1]
-
-
-def _series(capture: CaptureReader, line: int, edition: str) -> Series:
-    packets = [packet for packet in capture if packet.interface == line]
-    if not 0 <= line < len(capture.interfaces):
-        raise UsageError("line", line, f"0..{len(capture.interfaces) - 1}")
-    return of_recording(packets, codec_of(capture, line, edition))
+def _read_recording(capture: CaptureReader, interface: int, edition: str) -> tuple[Series, Codec]:
+    with capture:
+        packets = packets_of_interface(capture, interface)
+        warn_if_incomplete(capture)
+    codec = codec_of_interface(capture, interface, edition)
+    return series_of_packets(packets, codec), codec

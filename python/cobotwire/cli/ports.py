@@ -1,4 +1,4 @@
-"""``cobotwire ports``: where an arm may be."""
+"""``cobotwire ports``: list the serial ports that an arm may be connected to."""
 
 from __future__ import annotations
 
@@ -7,25 +7,26 @@ import sys
 
 import click
 
-from cobotwire.transport.serial.ports import Port, ports
+from cobotwire.transport.serial import ports as serial_ports
+from cobotwire.transport.serial.ports import Port
 
 NOT_ALLOWED = (
-    "you may not open it; on most systems: sudo usermod -aG dialout $USER, then log in anew"
+    "you may not open it; on most systems: sudo usermod -aG dialout $USER, then log in again"
 )
 
 
-@click.command(name="ports")
+@click.command(short_help="List serial ports, likely ones first.")
 @click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
-def ports_(as_json: bool) -> None:
-    """List the serial ports, those behind which an arm may stand first, and why.
+def ports(as_json: bool) -> None:
+    """List the serial ports, likely ones first, and say why an arm is likely there.
 
-    None of them is opened. Exit code 1 if there is no likely one.
+    No port is opened. Exit codes: 0 there is a likely port; 1 there is none.
     """
-    found = ports()
+    found = serial_ports.ports()
     if as_json:
         click.echo(json.dumps([port._asdict() for port in found], indent=1))
     elif not found:
-        click.echo("no serial port; is the arm's cable plugged in, and its power on?")
+        click.echo("no serial port; is the arm's cable plugged in, and is its power on?")
     for port in () if as_json else found:
         click.echo("\n".join(_lines(port)))
     sys.exit(0 if any(port.likely for port in found) else 1)

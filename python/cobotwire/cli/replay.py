@@ -1,4 +1,4 @@
-"""``cobotwire replay``: a recording as a timeline, or as an arm that answers as it did then."""
+"""``cobotwire replay``: print a recording, or serve an arm that replies as recorded."""
 
 from __future__ import annotations
 
@@ -8,68 +8,79 @@ from typing import Any
 import click
 
 from cobotwire.capture import CaptureReader, Packet, read
-from cobotwire.cli.recorded import ARROWS, codec_of, tell_the_end
-from cobotwire.cli.serving import say, serve
+from cobotwire.capture.streams import codec_of_interface, packets_of_interface
+from cobotwire.cli.shared.output import as_hex, print_line
+from cobotwire.cli.shared.recordings import ARROWS, interface_option, warn_if_incomplete
+from cobotwire.cli.shared.serving import serve
 from cobotwire.codec.interface import Codec
-from cobotwire.errors import ProtocolError, UsageError
-from cobotwire.explain import summary
-from cobotwire.sim import Heard, PtyPort, ReplayedArm
-from cobotwire.table import Direction
+from cobotwire.diagnose.explain import format_message
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.simulator import PtyServer, ReplayedArm, ReplayedRequest
+
+FASTEST = 1e6
 
 
-@click.command()
+@click.command(short_help="Print a recording, or serve it as an arm.")
 @click.argument("file", type=click.Path())
-@click.option("--serve", "as_arm", is_flag=True, help="Answer on a pseudo-terminal until Ctrl-C.")
-@click.option("--speed", type=float, default=1.0, help="With --serve: 2 halves the delays.")
-@click.option("--line", type=int, default=0, help="With --serve: which line, if there are several.")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a packet.")
+@click.option("--serve", "as_arm", is_flag=True, help="Serve the recorded arm until Ctrl-C.")
+@click.option(
+    "--speed", type=float, default=1.0, show_default=True, help="With --serve: 2 halves the delays."
+)
+@interface_option
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per packet.")
 @click.pass_obj
-def replay(edition: str, file: str, as_arm: bool, speed: float, line: int, as_json: bool) -> None:
+def replay(
+    edition: str, file: str, as_arm: bool, speed: float, interface: int, as_json: bool
+) -> None:
     """Print the recording FILE as a timeline: seconds, direction, bytes, meaning.
 
-    With --serve, the first line is the port to open; there a request that was recorded is answered
-    as it was, with the same delays and the same noise. The edition is the recording's own, as far
-    as it names one of ours.
+    With --serve a pseudo-terminal is served instead, and its name is printed. A request that was
+    recorded gets the recorded reply, with the same delay and the same noise.
+
+    The edition is the one that the recording names; --edition applies if it names none.
     """
     with read(file) as capture:
         if not as_arm:
-            _timeline(capture, edition, as_json)
-            tell_the_end(capture)
+            _print_timeline(capture, edition, as_json)
+            warn_if_incomplete(capture)
             return
-        arm = _arm(capture, edition, speed, line)
-        tell_the_end(capture)
-    serve(PtyPort(arm))
+        arm = _arm(capture, edition, speed, interface)
+        warn_if_incomplete(capture)
+    serve(PtyServer(arm))
 
 
-def _arm(capture: CaptureReader, edition: str, speed: float, line: int) -> ReplayedArm:
-    if not 0 < speed <= 1e6:
-        raise UsageError("speed", speed, "above 0, up to 1000000")
-    packets = [packet for packet in capture if packet.interface == line]
-    if not 0 <= line < len(capture.interfaces):
-        raise UsageError("line", line, f"0..{len(capture.interfaces) - 1}")
-    arm = ReplayedArm(packets, codec_of(capture, line, edition), speed=speed, watch=_show)
+def _arm(capture: CaptureReader, edition: str, speed: float, interface: int) -> ReplayedArm:
+    if not 0 < speed <= FASTEST:
+        raise UsageError("speed", speed, f"above 0, up to {FASTEST:.0f}")
+    packets = packets_of_interface(capture, interface)
+    codec = codec_of_interface(capture, interface, edition)
+    arm = ReplayedArm(packets, codec, speed=speed, on_request=_print_request)
     if not arm.requests:
-        raise UsageError("FILE", capture.name, "a recording in which something is sent")
+        message = f"{capture.name} holds no request, so there is nothing to reply to"
+        raise UsageError("FILE", capture.name, message=message)
     return arm
 
 
-def _show(heard: Heard) -> None:
-    answer = "was not recorded" if heard.answer is None else f"answered by {heard.answer} bytes"
-    say(f"heard   {heard.data.hex(' ').upper()}   {answer}")
+def _print_request(request: ReplayedRequest) -> None:
+    size = request.reply_size
+    reply = f"replied with {size} bytes" if size else "no reply"
+    if size is None:
+        reply = "was not recorded"
+    print_line(f"received {as_hex(request.data)}   {reply}")
 
 
-def _timeline(capture: CaptureReader, edition: str, as_json: bool) -> None:
+def _print_timeline(capture: CaptureReader, edition: str, as_json: bool) -> None:
     start: int | None = None
     for packet in capture:
         start = packet.time_ns if start is None else start
-        meaning = _meaning(packet, codec_of(capture, packet.interface, edition))
+        meaning = _meaning(packet, codec_of_interface(capture, packet.interface, edition))
         after = (packet.time_ns - start) / 1e9
         if as_json:
-            say(json.dumps(_as_json(capture, packet, after, meaning)))
+            print_line(json.dumps(_as_json(capture, packet, after, meaning)))
             continue
-        several = f" line {packet.interface}" if len(capture.interfaces) > 1 else ""
-        data = packet.data.hex(" ").upper()
-        say(f"{after:10.6f}{several} {ARROWS[packet.direction]} {data}   {meaning}{_late(packet)}")
+        interface = f" interface {packet.interface}" if len(capture.interfaces) > 1 else ""
+        data, pause = as_hex(packet.data), _pause(packet)
+        print_line(f"{after:10.6f}{interface} {ARROWS[packet.direction]} {data}   {meaning}{pause}")
 
 
 def _meaning(packet: Packet, codec: Codec) -> str:
@@ -78,17 +89,15 @@ def _meaning(packet: Packet, codec: Codec) -> str:
     if packet.kind == "bytes" or packet.direction == "unknown":
         return "bytes"
     try:
-        return summary(codec.decode(_way(packet), packet.data))
+        return format_message(
+            codec.decode("request" if packet.direction == "sent" else "reply", packet.data)
+        )
     except ProtocolError as error:
-        # Another edition than that by which it was cut.
+        # It was recorded with another edition.
         return str(error)
 
 
-def _way(packet: Packet) -> Direction:
-    return "request" if packet.direction == "sent" else "reply"
-
-
-def _late(packet: Packet) -> str:
+def _pause(packet: Packet) -> str:
     if not packet.pieces:
         return ""
     seconds = (packet.pieces[-1].time_ns - packet.time_ns) / 1e9
@@ -106,7 +115,7 @@ def _as_json(capture: CaptureReader, packet: Packet, after: float, meaning: str)
         "direction": packet.direction,
         "kind": packet.kind,
         "reason": packet.reason,
-        "data": packet.data.hex(" ").upper(),
+        "data": as_hex(packet.data),
         "meaning": meaning,
         "pieces": pieces,
     }

@@ -1,4 +1,4 @@
-"""``cobotwire sim``: a simulated arm to talk to."""
+"""``cobotwire sim``: serve a simulated arm."""
 
 from __future__ import annotations
 
@@ -11,33 +11,58 @@ from functools import partial
 
 import click
 
+from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.cli.faults import chosen, scenario_options, with_faults
-from cobotwire.cli.heard import SHOWN, Shown
-from cobotwire.cli.joints import JointTable
-from cobotwire.cli.serving import say, serve
-from cobotwire.cli.view import View
-from cobotwire.errors import UsageError
+from cobotwire.cli.shared.joint_table import JointTable
+from cobotwire.cli.shared.output import print_line
+from cobotwire.cli.shared.serving import serve
+from cobotwire.cli.shared.simulator_output import JsonLines, Lines
+from cobotwire.inspect.plot.live_pose import LivePose
+from cobotwire.protocol.errors import UsageError
 from cobotwire.session.device import DeviceEvent
-from cobotwire.sim import PtyPort, RunningClock, Server, SimulatedArm, TcpPort
-from cobotwire.sim.faults import Done, Scenario
-from cobotwire.sim.kinematics import prepare
-from cobotwire.sim.peer import Peer
-from cobotwire.sim.tcp import address
+from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
+from cobotwire.simulator.faults import AppliedFault, Scenario, find, shipped
+from cobotwire.simulator.kinematics import prepare
+from cobotwire.simulator.peer import Peer
+from cobotwire.simulator.tcp import address
 
 FASTEST = 1e6
-# Whoever serves for longer gets ready for answers that would else come late.
-PREPARED_SECONDS = 0.5
+# After this time the imports that slow replies need are loaded, so that none comes late.
+PREPARE_AFTER_SECONDS = 0.5
 
 
-@click.command()
+def _list_scenarios(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+    """Print the scenarios of the package, and exit."""
+    if not wanted or context.resilient_parsing:
+        return
+    names = shipped()
+    width = max(map(len, names))
+    for name in names:
+        click.echo(f"{name:<{width}}  {find(name).about}")
+    context.exit()
+
+
+@click.command(short_help="Serve a simulated arm.")
 @click.option("--pty", "on_pty", is_flag=True, help="Serve a pseudo-terminal [default].")
 @click.option("--tcp", metavar="HOST:PORT", help="Serve TCP; :0 is any free port on loopback.")
-@click.option("--speed", type=float, default=1.0, help="The arm's time: 2 runs twice as fast.")
-@click.option("--quiet", is_flag=True, help="Print the port, but not what goes over the line.")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a line.")
-@click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf.")
-@scenario_options
+@click.option(
+    "--speed", type=float, default=1.0, show_default=True, help="2 runs the arm twice as fast."
+)
+@click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
+@click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf file.")
+@click.option(
+    "--scenario", help="Inject faults: a YAML file, or a name that --list-scenarios prints."
+)
+@click.option("--seed", type=int, help="With --scenario: replace the seed of the scenario.")
+@click.option(
+    "--list-scenarios",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_list_scenarios,
+    help="Print the fault scenarios of the package.",
+)
 @click.pass_obj
 def sim(
     edition: str,
@@ -46,56 +71,58 @@ def sim(
     speed: float,
     quiet: bool,
     as_json: bool,
+    view: str | None,
     scenario: str | None,
     seed: int | None,
-    view: str | None,
 ) -> None:
     """Serve a simulated arm on a pseudo-terminal, or over TCP, until Ctrl-C.
 
-    The first line is the port to open; then a line for everything that is heard and answered, for
-    every order that is refused or ignored, with the reason, and for every fault that is done; and
-    on a terminal a table of the joints. Over TCP several clients see the same arm; each line says
-    whose it is. --view draws the arm at the beginning, whenever it has come to rest, and at the
-    end.
+    The first line of output is the port to open. Then comes a line for each request with its reply,
+    for each request that the arm rejects or ignores, with the reason, and for each injected fault.
+    On a terminal a table shows the joints. Over TCP several clients share the arm; each line names
+    the client by number. --view draws the arm at the start, whenever it has come to rest, and at
+    the end.
     """
     if on_pty and tcp is not None:
-        raise UsageError("--tcp", tcp, "one of --pty and --tcp")
+        raise UsageError("--tcp", tcp, message="use one of --pty and --tcp")
     if not 0 < speed <= FASTEST:
-        raise UsageError("speed", speed, f"above 0, up to {FASTEST:g}")
+        raise UsageError("speed", speed, f"above 0, up to {FASTEST:.0f}")
+    if scenario is None and seed is not None:
+        raise UsageError("seed", seed, message="--seed needs --scenario")
     package = editions.load(edition)
-    shown = SHOWN["json" if as_json else "words"]
+    output = JsonLines() if as_json else Lines()
     clock = RunningClock(speed)
-    remark = None if quiet else lambda note: say(shown.note(note))
-    arm = SimulatedArm(package.TABLE, clock=clock, remark=remark)
-    faults = chosen(scenario, seed, package.TABLE)
-    lines = _Lines(arm, clock, faults, seed, None if quiet else shown)
-    server = _server(lines, clock, tcp)
+    on_note = None if quiet else lambda note: print_line(output.note(note))
+    arm = SimulatedArm(package.TABLE, clock=clock, on_note=on_note)
+    faults = None if scenario is None else find(scenario, package.TABLE)
+    peers = _Peers(arm, clock, faults, seed, None if quiet else output)
+    server = _server(peers, clock, tcp)
     with ExitStack() as stack:
-        looks: list[Callable[[], None]] = []
+        between: list[Callable[[], None]] = []
         if sys.stdout.isatty() and not (quiet or as_json):
-            looks.append(stack.enter_context(JointTable(package, arm, clock)).look)
+            between.append(stack.enter_context(JointTable(package, arm, clock)).update)
         if view is not None:
-            looks.append(stack.enter_context(View(package, arm, clock, view)).look)
-        ready = threading.Timer(PREPARED_SECONDS, prepare)
-        ready.daemon = True
-        ready.start()
-        stack.callback(ready.cancel)
-        serve(server, shown.serving(server.url), looks)
+            between.append(stack.enter_context(LivePose(package, arm, clock, view)).update)
+        preparation = threading.Timer(PREPARE_AFTER_SECONDS, prepare)
+        preparation.daemon = True
+        preparation.start()
+        stack.callback(preparation.cancel)
+        serve(server, output.serving(server.url), between)
 
 
-def _server(lines: _Lines, clock: RunningClock, tcp: str | None) -> Server:
+def _server(peers: _Peers, clock: RunningClock, tcp: str | None) -> Server:
     if tcp is None:
-        return PtyPort(lines.new(None), clock)
+        return PtyServer(peers.new(None), clock)
     numbers = itertools.count(1)
     host, port = address(tcp)
-    server = TcpPort(lambda: lines.new(next(numbers)), host, port, clock)
+    server = TcpServer(lambda: peers.new(next(numbers)), host, port, clock)
     if not server.loopback:
-        click.echo(f"cobotwire: whoever can reach {host} moves this arm unasked", err=True)
+        click.echo(f"cobotwire: everybody who can reach {host} can move this arm", err=True)
     return server
 
 
-class _Lines:
-    """Makes what answers each client: the one arm, behind faults, with all of it shown."""
+class _Peers:
+    """Makes the arm's end of each client connection: with faults, and with printed traffic."""
 
     def __init__(
         self,
@@ -103,20 +130,27 @@ class _Lines:
         clock: RunningClock,
         scenario: Scenario | None,
         seed: int | None,
-        shown: Shown | None,
+        output: Lines | JsonLines | None,
     ) -> None:
         self._arm, self._clock = arm, clock
-        self._scenario, self._seed, self._shown = scenario, seed, shown
+        self._scenario, self._seed, self._output = scenario, seed, output
 
     def new(self, client: int | None) -> Peer:
-        line = self._arm.another_line(partial(self._heard, client))
-        faulted = partial(self._faulted, client)
-        return with_faults(line, self._scenario, self._seed, self._clock, faulted)
+        arm = self._arm.connect(partial(self._print_event, client))
+        if self._scenario is None:
+            return arm
+        return self._scenario.wrap(
+            arm,
+            codecs.load(self._arm.table),
+            clock=self._clock,
+            seed=self._seed,
+            on_fault=partial(self._print_fault, client),
+        )
 
-    def _heard(self, client: int | None, event: DeviceEvent, answer: bytes) -> None:
-        if self._shown is not None:
-            say(self._shown.event(client, event, answer))
+    def _print_event(self, client: int | None, event: DeviceEvent, reply: bytes) -> None:
+        if self._output is not None:
+            print_line(self._output.event(client, event, reply))
 
-    def _faulted(self, client: int | None, done: Done) -> None:
-        if self._shown is not None:
-            say(self._shown.fault(client, done))
+    def _print_fault(self, client: int | None, done: AppliedFault) -> None:
+        if self._output is not None:
+            print_line(self._output.fault(client, done))

@@ -1,6 +1,6 @@
-"""Chooses the codec: the Rust one where its binary is there, else the Python reference.
+"""Choice of the codec: the Rust codec if its binary is installed, else the Python reference.
 
-``COBOTWIRE_CODEC=reference`` or ``=native`` in the environment forces one.
+The environment variable ``COBOTWIRE_CODEC`` (``reference`` or ``native``) forces one.
 """
 
 from __future__ import annotations
@@ -10,18 +10,18 @@ from functools import lru_cache
 from typing import Literal
 
 from cobotwire.codec.interface import Codec
-from cobotwire.errors import UsageError
-from cobotwire.table import Table
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Table
 
 VARIABLE = "COBOTWIRE_CODEC"
 CodecName = Literal["reference", "native"]
 
 
 def chosen() -> CodecName:
-    """The name of the codec in use.
+    """Return the name of the codec in use.
 
     Raises:
-        UsageError: ``COBOTWIRE_CODEC`` names no codec, or forces the native one in vain.
+        UsageError: ``COBOTWIRE_CODEC`` names no codec, or the native one and it has no binary here.
     """
     forced = os.environ.get(VARIABLE, "")
     if forced not in ("", "reference", "native"):
@@ -31,13 +31,13 @@ def chosen() -> CodecName:
     if native_available():
         return "native"
     if forced == "native":
-        raise UsageError(VARIABLE, forced, "reference: this installation has no binary")
+        raise _no_binary(f"{VARIABLE}=native")
     return "reference"
 
 
 @lru_cache(maxsize=1)
 def native_available() -> bool:
-    """Whether the Rust codec's binary can be loaded here."""
+    """Return whether the Rust codec's binary can be loaded here."""
     try:
         import cobotwire.codec.native  # noqa: F401  (asking whether it loads is the point)
     except ImportError:
@@ -46,7 +46,7 @@ def native_available() -> bool:
 
 
 def load(table: Table, name: CodecName | None = None) -> Codec:
-    """A codec for an edition: the one named, else the one in use.
+    """Return a codec for an edition: the named one, else the one in use.
 
     Raises:
         UsageError: there is no codec of that name, or the native one has no binary here.
@@ -56,7 +56,7 @@ def load(table: Table, name: CodecName | None = None) -> Codec:
     elif name not in ("reference", "native"):
         raise UsageError("codec", name, "native or reference, or None")
     elif name == "native" and not native_available():
-        raise UsageError("codec", name, "reference: this installation has no binary")
+        raise _no_binary("codec='native'")
     if name == "reference":
         from cobotwire.codec.reference import ReferenceCodec
 
@@ -64,3 +64,8 @@ def load(table: Table, name: CodecName | None = None) -> Codec:
     from cobotwire.codec.native import NativeCodec
 
     return NativeCodec(table)
+
+
+def _no_binary(what: str) -> UsageError:
+    message = f"{what}: the native codec is not installed here; use 'reference'"
+    return UsageError(what, "native", "reference", message=message)

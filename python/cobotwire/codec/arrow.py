@@ -1,14 +1,13 @@
-"""Rows as an Arrow table, on the same memory. The only importer of pyarrow."""
+"""Columns as an Arrow table on the same memory. The only importer of pyarrow."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pyarrow as pa
 
-from cobotwire.codec.columns import Rows
-
-# A memoryview's format, as the type that Arrow knows.
+# The Arrow type of each memoryview format.
 TYPES = {
     "d": pa.float64(),
     "b": pa.int8(),
@@ -22,22 +21,23 @@ TYPES = {
 }
 
 
-def table_of(rows: Rows) -> pa.Table:
-    """The rows as a table: ``offset``, then a column for each field.
+def arrow_table(
+    columns: Mapping[str, memoryview],
+    units: Mapping[str, Sequence[str]],
+    metadata: Mapping[str, str],
+) -> pa.Table:
+    """Return columns as a table on the same memory, without nulls.
 
-    A row of ``k`` numbers is a fixed-size list; each field carries its unit as metadata, or units,
-    where its numbers have several.
+    A two-dimensional column becomes fixed-size lists. Each field carries its units as metadata.
     """
-    fields = [pa.field("offset", pa.uint64(), nullable=False)]
-    arrays = [_array(rows.offset)]
-    for field in rows.layout.fields:
-        array = _array(rows[field.name])
-        units = dict.fromkeys(number.unit for case in field.cases for number in case.numbers)
-        metadata = {"unit": ", ".join(units)} if any(units) else None
-        fields.append(pa.field(field.name, array.type, nullable=False, metadata=metadata))
+    fields, arrays = [], []
+    for name, column in columns.items():
+        array = _array(column)
+        found = units.get(name, ())
+        described = {"unit": ", ".join(found)} if any(found) else None
+        fields.append(pa.field(name, array.type, nullable=False, metadata=described))
         arrays.append(array)
-    metadata = {"command": rows.command.name, "direction": rows.direction, "form": str(rows.form)}
-    return pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata=metadata))
+    return pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata=dict(metadata)))
 
 
 def _array(column: memoryview) -> Any:

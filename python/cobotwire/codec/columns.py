@@ -1,4 +1,4 @@
-"""Whole captures as columns: one for each field of each message, in the order of the stream."""
+"""Streams as columns: one for each field of each message, in the order of the stream."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from cobotwire.codec.events import Counters
-from cobotwire.errors import UsageError
-from cobotwire.table import Command, Direction, Layout, Table
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command, Direction, Table, Variant
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class Spans(NamedTuple):
-    """The noise of a stream, adjacent stretches joined.
+    """The noise of a stream; adjacent stretches are joined.
 
     ``offset`` and ``size`` are one-dimensional memoryviews of 64-bit unsigned integers: where each
-    span starts in the stream, and its bytes.
+    span starts in the stream, and how many bytes it has.
     """
 
     offset: memoryview
@@ -26,7 +26,7 @@ class Spans(NamedTuple):
 
 
 class Scan:
-    """Where the frames of a stream are, and the noise between them; ``counters`` are in numbers."""
+    """Where the frames of a stream are, and the noise between them; ``counters`` count both."""
 
     def __init__(self, offset: Buffer, noise: tuple[Buffer, Buffer], counters: Counters) -> None:
         self._offset = offset
@@ -49,37 +49,37 @@ class Scan:
 
 
 class Rows:
-    """All messages of one form in a stream: a column of offsets and a column for each field.
+    """All messages of one variant in a stream: a column of offsets and a column for each field.
 
-    A column is a memoryview, of shape ``(n,)``, or ``(n, k)`` for a field that is a row of ``k``
-    numbers. ``offset`` holds 64-bit unsigned integers; fields hold float64 in physical units, or,
-    where raw numbers were asked for, the smallest integers that hold all that the field allows.
-    Nothing is copied on the way to NumPy or Arrow.
+    A column is a memoryview of shape ``(n,)``, or ``(n, k)`` for a field that is a row of ``k``
+    numbers. ``offset`` holds 64-bit unsigned integers. Fields hold physical values as float64; with
+    ``raw`` they hold raw values, in the smallest integer type for all that the field allows.
+    NumPy and Arrow use the same memory.
     """
 
     def __init__(
         self,
         command: Command,
         direction: Direction,
-        form: int,
+        variant_index: int,
         offset: Buffer,
         columns: Sequence[Buffer],
     ) -> None:
         self.command = command
         self.direction: Direction = direction
-        self.form = form
+        self.variant_index = variant_index
         self._offset = offset
         self._columns = columns
 
     @property
-    def layout(self) -> Layout:
-        """The form's fields."""
-        return self.command.layouts(self.direction)[self.form]
+    def variant(self) -> Variant:
+        """The variant's fields."""
+        return self.command.variants(self.direction)[self.variant_index]
 
     @property
     def names(self) -> tuple[str, ...]:
         """The names of the fields' columns."""
-        return tuple(field.name for field in self.layout.fields)
+        return tuple(field.name for field in self.variant.fields)
 
     @property
     def offset(self) -> memoryview:
@@ -90,68 +90,79 @@ class Rows:
         return len(self.offset)
 
     def __getitem__(self, name: str) -> memoryview[Any]:
-        """A field's column.
+        """Return the column of a field.
 
         Raises:
-            UsageError: the form has no such field.
+            UsageError: the variant has no such field.
         """
         if name not in self.names:
-            fields = ", ".join(self.names) or "none: it has no fields"
-            raise UsageError(f"column of {self.command.name}", name, fields)
+            argument = f"column of {self.command.name}"
+            message = "" if self.names else f"{self.command.name} {self.direction} has no fields"
+            raise UsageError(argument, name, ", ".join(self.names), message=message)
         return memoryview(self._columns[self.names.index(name)])
 
     def __repr__(self) -> str:
-        return f"<Rows {self.command.name} {self.direction} {self.form}: {len(self)}>"
+        return f"<Rows {self.command.name} {self.direction} {self.variant_index}: {len(self)}>"
 
     def to_numpy(self) -> dict[str, np.ndarray[Any, Any]]:
-        """The columns as arrays on the same memory, by name; ``offset`` among them.
+        """Return the columns as arrays on the same memory, by name, ``offset`` included.
 
         Raises:
             ImportError: NumPy, the extra ``numpy``, is not installed.
         """
         import numpy as np
 
-        named = {"offset": self.offset} | {name: self[name] for name in self.names}
-        return {name: np.asarray(column) for name, column in named.items()}
+        return {name: np.asarray(column) for name, column in self._by_name().items()}
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
-        """The Arrow PyCapsule stream: polars, DuckDB, pandas and pyarrow take rows as they are.
+        """Return the Arrow PyCapsule stream, which polars, DuckDB, pandas and pyarrow read.
+
+        Each field's unit is its metadata.
 
         Raises:
             ImportError: pyarrow, the extra ``arrow``, is not installed.
         """
-        from cobotwire.codec.arrow import table_of
+        from cobotwire.codec.arrow import arrow_table
 
-        return table_of(self).__arrow_c_stream__(requested_schema)
+        fields = self.variant.fields
+        units = {f.name: tuple(dict.fromkeys([n.unit for n in f.numbers])) for f in fields}
+        metadata = {
+            "command": self.command.name,
+            "direction": self.direction,
+            "variant": str(self.variant_index),
+        }
+        return arrow_table(self._by_name(), units, metadata).__arrow_c_stream__(requested_schema)
+
+    def _by_name(self) -> dict[str, memoryview]:
+        return {"offset": self.offset} | {name: self[name] for name in self.names}
 
 
 class Columns(Sequence[Rows]):
-    """What a stream holds: the rows of each form that came, in the order of the table.
+    """The messages of a stream: the rows of each variant that occurred, in the order of the table.
 
-    ``counters`` account for every byte, since the start of the stream; ``noise`` says where the
-    bytes are that belong to no frame. ``refused`` is a memoryview of the offsets of frames that are
-    legal but hold a value that the edition does not allow: they are in no row, and decoding one
-    tells why.
+    ``counters`` account for every byte since the start of the stream. ``noise`` holds the places of
+    the bytes that belong to no frame. ``rejected`` holds the offsets of legal frames with a value
+    that the edition does not allow: they are in no rows, and decoding one raises the reason.
     """
 
     def __init__(
         self,
         table: Table,
         rows: Sequence[Rows],
-        refused: Buffer,
+        rejected: Buffer,
         noise: tuple[Buffer, Buffer],
         counters: Counters,
     ) -> None:
         self._table = table
         self._rows = rows
-        self._refused = refused
+        self._rejected = rejected
         self._noise = noise
         self.counters = counters
 
     @property
-    def refused(self) -> memoryview:
+    def rejected(self) -> memoryview:
         """Where the frames start whose values the edition does not allow."""
-        return memoryview(self._refused)
+        return memoryview(self._rejected)
 
     @property
     def noise(self) -> Spans:
@@ -172,36 +183,41 @@ class Columns(Sequence[Rows]):
     def __iter__(self) -> Iterator[Rows]:
         return iter(self._rows)
 
-    def rows(self, command: str, direction: Direction = "reply", form: int | None = None) -> Rows:
-        """The rows of one message; none, if it did not come.
+    def rows(
+        self, command: str, direction: Direction = "reply", variant: int | None = None
+    ) -> Rows:
+        """Return the rows of one message; empty rows if it did not occur.
 
-        ``form`` picks one of several forms by its index; without it there must be only one that
-        came.
+        ``variant`` picks one of several variants by its index. It may be left out unless several
+        of them occurred.
 
         Raises:
-            UsageError: no such command or form, or several forms came.
+            UsageError: no such command or variant, or several variants occurred.
         """
-        layouts = self._table.command(command).layouts(direction)
-        legal = range(len(layouts))
-        if not legal or (form is not None and form not in legal):
-            allowed = ", ".join(map(str, legal)) or f"none: it has no framed {direction}"
-            raise UsageError(f"form of {command} {direction}", form, allowed)
+        variants = self._table.command(command).variants(direction)
+        legal = range(len(variants))
+        argument = f"variant of {command} {direction}"
+        if not legal:
+            raise UsageError(argument, variant, message=f"{command} has no {direction} in a frame")
+        if variant is not None and variant not in legal:
+            raise UsageError(argument, variant, ", ".join(map(str, legal)))
         found = [
             rows
             for rows in self
             if rows.command.name == command
             and rows.direction == direction
-            and form in (None, rows.form)
+            and variant in (None, rows.variant_index)
         ]
         if len(found) > 1:
-            came = " or ".join(str(rows.form) for rows in found)
-            raise UsageError(f"form of {command} {direction}", form, f"{came}: all of them came")
+            occurred = " and ".join([str(rows.variant_index) for rows in found])
+            message = f"variants {occurred} of the {command} {direction} occurred: choose variant="
+            raise UsageError(argument, variant, occurred, message=message)
         if found:
             return found[0]
-        chosen = form or 0
-        # One-dimensional also for rows of numbers: a memoryview has no other empty shape.
+        chosen = variant or 0
+        # One-dimensional even for rows of numbers: an empty memoryview has no other shape.
         empty = memoryview(b"").cast("Q")
-        columns = [memoryview(b"").cast("d") for _ in layouts[chosen].fields]
+        columns = [memoryview(b"").cast("d") for _ in variants[chosen].fields]
         return Rows(self._table.command(command), direction, chosen, empty, columns)
 
     def __repr__(self) -> str:

@@ -1,73 +1,105 @@
-"""What a framer gives: frames, and the noise between them."""
+"""Frames, and the noise between them, as a framer returns them."""
 
 from __future__ import annotations
 
 from abc import ABCMeta
-from collections.abc import Callable
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
 
-from cobotwire.errors import UsageError
-from cobotwire.table import Command, Direction, Layout
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.messages import Reply, Request
+from cobotwire.protocol.table import Command, Direction, Variant
 
 NoiseReason = Literal[
     "no-header", "bad-address", "bad-length", "unknown-id", "bad-check", "truncated"
 ]
 
 
-class Message(NamedTuple):
-    """A decoded frame; ``address`` is its address byte, None where the format has none."""
+class DecodedMessage(NamedTuple):
+    """A decoded frame; ``address`` is its address byte, None if the format has none."""
 
     command: Command
     direction: Direction
-    layout: Layout
+    variant: Variant
     values: tuple[Any, ...]
     address: int | None = None
 
     @property
     def fields(self) -> dict[str, Any]:
-        """The values by field name. A field that an optional form leaves out is not in it."""
-        return {field.name: value for field, value in zip(self.layout.fields, self.values)}
+        """The values by field name, without fields that this variant of the message leaves out."""
+        return {field.name: value for field, value in zip(self.variant.fields, self.values)}
+
+    @property
+    def typed(self) -> Request[Any] | Reply[Any]:
+        """The same message as an object of its own type, for ``match`` and attributes."""
+        command = self.command
+        if self.direction == "request":
+            return command.request_type.from_fields(self.fields)
+        assert command.reply_type is not None, "a decoded reply has a type"
+        return command.reply_type.from_fields(self.fields)
 
 
-class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as one of its kind)
-    """A whole, legal frame with its command id; ``offset`` is where it starts in the stream.
+class Read(Protocol):
+    """Reads a frame that was judged before; None is every direction that the framer listened to."""
 
-    What it says is read when it is first asked for. A framer that listens to both directions reads
-    it as a request where it can be one. The native codec's frames are of this kind as well.
+    def __call__(
+        self, data: bytes, direction: Direction | None = None, of: str | None = None
+    ) -> DecodedMessage:
+        """Return the first message that allows the values."""
+        ...
+
+
+class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a virtual subclass)
+    """A legal frame with its command id; ``offset`` is where it starts in the stream.
+
+    Its message is decoded on first use. The frames of the native codec are instances of this class
+    too.
     """
 
     __slots__ = ("_message", "_read", "command", "data", "offset")
 
-    def __init__(
-        self, offset: int, data: bytes, command: int, read: Callable[[bytes], Message] | None = None
-    ) -> None:
+    def __init__(self, offset: int, data: bytes, command: int, read: Read | None = None) -> None:
         self.offset = offset
         self.data = data
         self.command = command
         self._read = read
-        self._message: Message | None = None
+        self._message: DecodedMessage | None = None
 
-    @property
-    def message(self) -> Message:
-        """What it says, as the first message that allows its values.
+    def decode(
+        self, direction: Direction | None = None, *, of: str | None = None
+    ) -> DecodedMessage:
+        """Return what ``codec.decode(direction, frame.data, of=of)`` returns.
+
+        The framer has judged the frame, so its LEN and check are not examined again. Without a
+        direction, the result is the first message that allows the values, of any direction that
+        the framer listened to, requests first.
 
         Raises:
-            ProtocolError: a field holds a value that the edition does not allow, or the framer was
-                told to accept ids that the edition lacks, and this is one.
-            UsageError: no framer gave this frame.
+            ProtocolError: it is not a frame of that direction or command, or a field holds a value
+                that the edition does not allow, or the edition lacks its id and the framer
+                accepted it.
+            UsageError: ``of`` names no command, or the frame was not cut by a framer.
+        """
+        if self._read is None:
+            raise UsageError("frame", self, message=f"{self!r} was not cut by a framer")
+        return self._read(self.data, direction, of)
+
+    @property
+    def message(self) -> DecodedMessage:
+        """Its message: the first one that allows its values, requests first.
+
+        Raises:
+            ProtocolError, UsageError: as :meth:`decode`.
         """
         if self._message is None:
-            if self._read is None:
-                raise UsageError("frame", self, "one that a framer gave")
-            self._message = self._read(self.data)
+            self._message = self.decode()
         return self._message
 
     @property
     def values(self) -> tuple[Any, ...]:
-        """The values of its message, one a field.
+        """The values of its message, one for each field.
 
         Raises:
-            ProtocolError, UsageError: as ``message``.
+            ProtocolError, UsageError: as :meth:`decode`.
         """
         return self.message.values
 
@@ -86,7 +118,7 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as on
 
 
 class Noise(NamedTuple):
-    """Bytes that belong to no frame; every one of them was refuted for the same reason."""
+    """Bytes that belong to no frame, all refuted for the same reason."""
 
     offset: int
     data: bytes
@@ -97,11 +129,11 @@ Event = Frame | Noise
 
 
 class Counters(NamedTuple):
-    """What came over a line since the framer was made. Chunks do not show in it.
+    """What a framer has received since it was made, however the stream was cut into chunks.
 
-    ``bytes`` were fed, the pending ones included. ``frames`` are counted by command id, ``noise``
-    in bytes by reason; what never came is not listed. ``resyncs``: how often a frame came right
-    behind noise.
+    ``bytes`` is what was fed, pending bytes included. ``frames`` counts frames by command id,
+    ``noise`` counts bytes by reason; what did not occur is not listed. ``resyncs`` counts the
+    frames that directly followed noise.
     """
 
     bytes: int

@@ -1,7 +1,7 @@
-"""What a codec is: the one interface behind which the reference and the native codec stand.
+"""The interface that the reference codec and the native codec implement.
 
-Values are positional, one a field of the layout: an ``int`` where the scale is one, a ``float``
-where it is not, a tuple of these for a ``many`` field.
+Values are positional, one for each field of the variant: an ``int`` if the number has no scale, a
+``float`` if it has one, a tuple of these for a ``many`` field.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from mmap import mmap
 from typing import Any, Literal, Protocol
 
 from cobotwire.codec.columns import Columns, Rows, Scan
-from cobotwire.codec.events import Counters, Event, Frame, Message, Noise, NoiseReason
-from cobotwire.table import Direction, Table
+from cobotwire.codec.events import Counters, DecodedMessage, Event, Frame, Noise, NoiseReason
+from cobotwire.protocol.table import Direction, Table
 
 __all__ = [
     "Codec",
@@ -20,11 +20,11 @@ __all__ = [
     "Columns",
     "Counters",
     "Data",
+    "DecodedMessage",
     "Event",
     "Frame",
     "Framer",
     "Listening",
-    "Message",
     "Noise",
     "NoiseReason",
     "Rows",
@@ -40,41 +40,41 @@ class Framer(Protocol):
     """Cuts frames out of a byte stream; see the law of framing in ``docs/framing.md``."""
 
     def feed(self, data: Data) -> list[Event]:
-        """Take bytes; give what is certain by now, in the order of the stream."""
+        """Take bytes; return what is certain by now, in the order of the stream."""
         ...
 
     def flush(self) -> list[Event]:
-        """Refute what still waits (the line has been idle): a true frame behind it comes now."""
+        """Refute what still waits, because the line is idle; return it and what follows it."""
         ...
 
     @property
     def pending(self) -> int:
-        """Bytes fed that no event covers yet; less than the longest frame."""
+        """How many fed bytes no event covers yet; fewer than the longest frame has."""
         ...
 
     @property
     def counters(self) -> Counters:
-        """What came so far, in numbers."""
+        """The counts since the framer was made."""
         ...
 
 
 class ColumnReader(Protocol):
-    """Decodes a stream, chunk by chunk, into columns; the chunks do not show in the rows."""
+    """Decodes a stream into columns chunk by chunk; how it is cut makes no difference."""
 
     def feed(self, data: Data) -> Columns:
-        """Take bytes; give what is certain by now, and was not given before.
+        """Take bytes; return what has become certain since the last call.
 
-        A span of noise is given with the frame that ends it. The counters are of all that was fed.
+        A span of noise is returned with the frame that ends it. The counters cover all fed bytes.
         """
         ...
 
     def flush(self) -> Columns:
-        """Refute what still waits, and give the rest."""
+        """Refute what still waits; return the rest."""
         ...
 
     @property
     def pending(self) -> int:
-        """Bytes fed that are not accounted for yet; less than the longest frame."""
+        """How many fed bytes are not accounted for yet; fewer than the longest frame has."""
         ...
 
 
@@ -83,7 +83,7 @@ class Codec(Protocol):
 
     @property
     def name(self) -> Literal["reference", "native"]:
-        """Which of the two it is."""
+        """Which of the two codecs it is."""
         ...
 
     @property
@@ -97,25 +97,26 @@ class Codec(Protocol):
         direction: Direction,
         values: Sequence[Any],
         *,
-        form: int | None = None,
+        variant: int | None = None,
         address: int | None = None,
     ) -> bytes:
-        """Build one whole frame.
+        """Build one frame.
 
-        The form is the first one with that number of fields that takes the values, unless ``form``
-        picks one by its index. ``address`` is only for formats with an address byte.
+        The variant is the first one with that number of fields that allows the values, unless
+        ``variant`` picks one by its index. ``address`` is only for formats with an address byte.
 
         Raises:
-            UsageError: no such command or form, or a value that the field does not allow (where
-                several forms fit in number, the first one's complaint).
+            UsageError: no such command or variant, or a value that the field does not allow. If
+                several variants have that number of fields, the error is that of the first one.
         """
         ...
 
-    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> Message:
-        """Read ``data``, which must be one whole frame and nothing else.
+    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> DecodedMessage:
+        """Read ``data``, which must be one frame and nothing else.
 
-        Calls that share an id and a size read as the first of them that allows the values, unless
-        ``of`` names the one that it must be.
+        If commands share an id and a size, the result is the first that allows the values; ``of``
+        names the only command that it may be. Frames that a framer returned have
+        :meth:`Frame.decode`, which does not judge them again.
 
         Raises:
             UsageError: ``of`` names no command.
@@ -125,7 +126,7 @@ class Codec(Protocol):
         ...
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> Framer:
-        """A new framer; ``accept_unknown`` also takes ids that the edition lacks as frames."""
+        """Return a new framer; with ``accept_unknown`` it accepts ids that the edition lacks."""
         ...
 
     def scan(
@@ -136,12 +137,12 @@ class Codec(Protocol):
         accept_unknown: bool = False,
         out: Scan | None = None,
     ) -> Scan:
-        """Where the frames of a whole stream are.
+        """Return where the frames of a stream are.
 
-        ``out``, an earlier result, may give its memory to the new one, and is then empty.
+        The result may reuse the memory of ``out``, an earlier result, which is then empty.
 
         Raises:
-            BufferError: ``out`` is still looked at, by a memoryview or an array.
+            BufferError: a memoryview or an array still uses ``out``.
         """
         ...
 
@@ -153,17 +154,17 @@ class Codec(Protocol):
         raw: bool = False,
         out: Columns | None = None,
     ) -> Columns:
-        """The values of a whole stream, as columns.
+        """Return the values of a stream as columns: physical values, or raw ones with ``raw``.
 
-        With ``raw`` they are the whole numbers of the wire, after the sign rule. A frame that can
-        be a request and a reply is taken for a request, unless only replies are listened to.
-        ``out``, an earlier result, may give its memory to the new one, and is then empty.
+        A frame that can be a request or a reply counts as a request, unless ``listening`` is
+        ``"reply"``. The result may reuse the memory of ``out``, an earlier result, which is then
+        empty.
 
         Raises:
-            BufferError: ``out`` is still looked at, by a memoryview or an array.
+            BufferError: a memoryview or an array still uses ``out``.
         """
         ...
 
     def column_reader(self, listening: Listening = "both", *, raw: bool = False) -> ColumnReader:
-        """A reader for a stream that comes in pieces, or is larger than memory."""
+        """Return a reader for a stream that comes in pieces, or is larger than memory."""
         ...

@@ -1,4 +1,4 @@
-"""The Rust codec behind the same interface. Importing this fails where no binary was built."""
+"""The Rust codec. Importing this module fails if its binary is not installed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tests that ``pytest --conform-device`` makes; loaded when the option is there alone."""
+"""The tests that ``pytest --conform-device`` makes; loaded only with that option."""
 
 from __future__ import annotations
 
@@ -7,60 +7,72 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from cobotwire import editions
-from cobotwire.conformance.device import Leave, Line, Step, Tester, words, workspace_of
-from cobotwire.conformance.places import places_of
-from cobotwire.conformance.report import Result, Verdict
-from cobotwire.transport import open_link
+from cobotwire.conformance.device import (
+    DeviceConnection,
+    Permissions,
+    Step,
+    Tester,
+    parse_workspace,
+    words,
+)
+from cobotwire.conformance.report import Cause, Result, Verdict
+from cobotwire.conformance.sources import spec_lines
+from cobotwire.transport import open_transport
 
 
 class DeviceUnderTest:
-    """The device under test; each step is run once, whichever of its rules is asked for first."""
+    """Runs each step once, for the first of its test cases that pytest runs."""
 
     def __init__(self, config: pytest.Config) -> None:
         edition = config.getoption("--conform-edition") or editions.DEFAULT
         table = editions.load(edition).TABLE
         space = config.getoption("--conform-workspace")
-        leave = Leave.of(
+        permissions = Permissions.of(
             words(config.getoption("--conform-allow")),
             joints=table.joints,
             max_speed=config.getoption("--conform-max-speed"),
-            workspace=None if space is None else workspace_of(space, table.joints),
+            workspace=None if space is None else parse_workspace(space, table.joints),
         )
-        self._link = open_link(config.getoption("--conform-device"), table.baudrate)
-        self._tester = Tester(Line(self._link), table, leave=leave, places=places_of(edition))
+        self._transport = open_transport(config.getoption("--conform-device"), table.baudrate)
+        self._tester = Tester(
+            DeviceConnection(self._transport),
+            table,
+            permissions=permissions,
+            sources=spec_lines(edition),
+        )
         self._results: dict[int, dict[str, Result]] = {}
 
     def items(self, session: pytest.Session) -> Iterator[pytest.Item]:
-        """A test for each rule and command that there is leave for."""
+        """Yield a test for each test case and command that the permissions allow."""
         for number, step in enumerate(self._tester.steps()):
-            if self._tester.bench.leave.lacks(step.trial.needs(step.command)):
+            if self._tester.missing(step):
                 continue
-            for rule in step.trial.rules:
-                if step.command is None or rule.of(step.command):
-                    name = f"{step.command.name if step.command else 'line'}::{rule.id}"
-                    yield ConformItem.of(session, name, self, number, step, rule.id)
+            for case in step.group.cases:
+                if step.command is None or case.applies(step.command):
+                    name = f"{step.command.name if step.command else 'line'}::{case.id}"
+                    yield ConformItem.of(session, name, self, number, step, case.id)
 
-    def result(self, number: int, step: Step, rule: str) -> Result | None:
-        """What a rule says of a command; None where it has no meaning for it."""
+    def result(self, number: int, step: Step, case: str) -> Result | None:
+        """Return the result of a test case; None if it has no meaning for the command."""
         if number not in self._results:
             found = self._tester.results(step)
-            self._results[number] = {result.rule: result for result in found}
-        return self._results[number].get(rule)
+            self._results[number] = {result.case: result for result in found}
+        return self._results[number].get(case)
 
     def close(self) -> None:
-        """Set back what the run has changed, and give the port back."""
+        """Restore what the run has changed, and close the port."""
         self._tester.end()
-        self._link.close()
+        self._transport.close()
 
 
 class NotConforming(Exception):
-    """The device breaks a rule."""
+    """The device fails a test case."""
 
 
 class ConformItem(pytest.Item):
-    """One rule for one command."""
+    """One test case for one command."""
 
-    ask: Callable[[], Result | None]
+    run_case: Callable[[], Result | None]
 
     @classmethod
     def of(
@@ -70,35 +82,35 @@ class ConformItem(pytest.Item):
         device: DeviceUnderTest,
         number: int,
         step: Step,
-        rule: str,
+        case: str,
     ) -> ConformItem:
-        """Make one."""
+        """Return the item for a test case of a step."""
         item: ConformItem = cls.from_parent(parent, name=name)
-        item.ask = lambda: device.result(number, step, rule)
+        item.run_case = lambda: device.result(number, step, case)
         return item
 
     def runtest(self) -> None:
-        """Pass, skip or fail, as the verdict says."""
-        result = self.ask()
-        if result is None or result.verdict is Verdict.NOT_SUPPORTED:
-            pytest.skip(result.reason if result else "the rule has no meaning for this command")
+        """Pass, skip or fail, by the verdict."""
+        result = self.run_case()
+        if result is None or result.cause is Cause.NOT_SUPPORTED:
+            pytest.skip(result.reason if result else "no meaning for this command")
         if result.verdict is not Verdict.PASS:
-            raise NotConforming(_told(result))
+            raise NotConforming(_in_full(result))
 
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: object = None
     ) -> str:
-        """The verdict with its evidence; our own faults as usual."""
+        """Return the verdict with its evidence; other exceptions as usual."""
         if isinstance(excinfo.value, NotConforming):
             return str(excinfo.value)
         return str(super().repr_failure(excinfo))
 
     def reportinfo(self) -> tuple[str, int | None, str]:
-        """Where it stands, for reports."""
+        """Return the place that pytest's reports show."""
         return "conform", None, self.name
 
 
-def _told(result: Result) -> str:
-    lines = [f"{result.rule} ({result.source}): {result.reason}"]
-    lines += [f"  {e.at:9.4f} {e.direction:5} {e.data.hex(' ').upper()}" for e in result.evidence]
+def _in_full(result: Result) -> str:
+    lines = [f"{result.case} ({result.source}): {result.reason}"]
+    lines += [f"  {e.at:9.4f} {e.direction:8} {e.data.hex(' ').upper()}" for e in result.evidence]
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""``pytest --conform-device URL``: every rule for every command of an edition is a test.
+"""``pytest --conform-device URL``: every test case for every command of an edition is a test.
 
 pytest --conform-device /dev/ttyUSB0 --conform-edition mycobot280 --conform-allow setting
 """
@@ -11,11 +11,11 @@ HELP = "Conformance of a device (cobotwire)"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The options; without the first of them nothing is collected."""
+    """Add the options; without the first of them nothing is collected."""
     group = parser.getgroup("conform", HELP)
     group.addoption("--conform-device", metavar="URL", help="Test the device at URL.")
     group.addoption("--conform-edition", help="The edition [mycobot].")
-    group.addoption("--conform-allow", default="", help="Classes of leave, with commas.")
+    group.addoption("--conform-allow", default="", help="Permissions, separated by commas.")
     group.addoption("--conform-max-speed", type=int, help="Percent; motion needs it.")
     group.addoption("--conform-workspace", help="LOW:HIGH in degrees; motion needs it.")
 
@@ -23,11 +23,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_collection_modifyitems(
     session: pytest.Session, config: pytest.Config, items: list[pytest.Item]
 ) -> None:
-    """Add the tests of the device behind the others."""
+    """Add the tests of the device after the others."""
     if config.getoption("--conform-device"):
-        # Here, not above: pytest loads this in every run, also where nobody wants it.
+        # Imported here because pytest loads this module in every run.
         from cobotwire.conformance.pytest_items import DeviceUnderTest
-        from cobotwire.errors import CobotwireError
+        from cobotwire.protocol.errors import CobotwireError
 
         try:
             device = DeviceUnderTest(config)

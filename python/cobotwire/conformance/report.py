@@ -1,4 +1,4 @@
-"""What every tester reports: results with their rule, its source, and the bytes that show it."""
+"""The report of every tester: verdicts, each with its reason and the bytes as evidence."""
 
 from __future__ import annotations
 
@@ -7,27 +7,34 @@ from enum import StrEnum
 from typing import Literal
 
 Kind = Literal["device", "client", "codec"]
-Direction = Literal["sent", "heard"]
+Direction = Literal["sent", "received"]
 
 
 class Verdict(StrEnum):
-    """What became of a test."""
+    """What a test case found, in the words of ISO/IEC 9646."""
 
     PASS = "pass"  # noqa: S105  (a verdict, not a password)
     FAIL = "fail"
-    # The caller gave no leave for what the test must send.
-    NOT_ALLOWED = "not allowed"
-    # The subject does not have what the test is about.
+    INCONCLUSIVE = "inconclusive"
+
+
+class Cause(StrEnum):
+    """The cause of an inconclusive verdict, or the kind of a failure."""
+
+    NONE = ""
+    # Inconclusive: the run lacks the permission for what must be sent.
+    NOT_PERMITTED = "not permitted"
+    # Inconclusive: the subject lacks what the test case is about, or is in the wrong state.
     NOT_SUPPORTED = "not supported"
-    # Repetitions of the same test differ.
+    # Fail: repetitions of the same test case differ.
     UNSTABLE = "unstable"
 
 
 @dataclass(frozen=True, slots=True)
 class Exchange:
-    """Bytes that went over the line: from the tester's side ``sent`` or ``heard``.
+    """Bytes on the line, ``sent`` or ``received`` by the tester.
 
-    ``at`` is seconds since the run began.
+    ``at`` is seconds since the run started.
     """
 
     at: float
@@ -38,29 +45,35 @@ class Exchange:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """One test of one command; ``command`` is empty where a rule is about the line as a whole.
+    """The verdict of one test case on one command.
 
-    ``rule`` is the rule's id (``reply-range``), ``source`` where the spec says so
-    (``spec/commands/motion.yaml:12``), ``reason`` a sentence for people: what was expected, and
-    what came.
+    ``command`` is empty if the test case is about the line as a whole. ``case`` is the id of the
+    test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
+    ``reason`` a sentence that states what was expected and what came.
     """
 
-    rule: str
+    case: str
     command: str
     verdict: Verdict
     reason: str
     evidence: tuple[Exchange, ...] = ()
     source: str = ""
+    cause: Cause = Cause.NONE
+
+    @property
+    def outcome(self) -> str:
+        """The verdict with its cause: ``fail (unstable)``."""
+        return f"{self.verdict} ({self.cause})" if self.cause else str(self.verdict)
 
 
 @dataclass(slots=True)
 class Report:
-    """A run. ``finished`` is False until its end, so that an interrupted one says what it is."""
+    """The results of a run. ``finished`` is False until the run has reached its end."""
 
     kind: Kind
     edition: str
     subject: str
-    began: str
+    started: str
     firmware: str = ""
     finished: bool = False
     results: list[Result] = field(default_factory=list)
@@ -68,7 +81,11 @@ class Report:
     deadline_seconds: dict[str, float] = field(default_factory=dict)
 
     @property
+    def failures(self) -> list[Result]:
+        """The results whose verdict is fail."""
+        return [result for result in self.results if result.verdict is Verdict.FAIL]
+
+    @property
     def conforms(self) -> bool:
-        """Whether the run went to its end and nothing failed."""
-        bad = (Verdict.FAIL, Verdict.UNSTABLE)
-        return self.finished and not any(result.verdict in bad for result in self.results)
+        """Whether the run reached its end without a failure."""
+        return self.finished and not self.failures

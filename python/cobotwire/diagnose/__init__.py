@@ -1,6 +1,6 @@
-"""What noise is: servo packets, the firmware's text, reboots, echoes, damaged frames.
+"""Diagnose noise: servo packets, firmware text, reboots, echoes, damaged frames.
 
-Sans-I/O, on top of a framer: :class:`Diagnoser` takes its events and gives findings.
+:class:`Diagnoser` takes the events of a framer, and returns frames and findings. It does no I/O.
 """
 
 from cobotwire.diagnose.diagnoser import Diagnoser, Item
@@ -11,7 +11,7 @@ from cobotwire.diagnose.findings import (
     Finding,
     Garbage,
     Nuls,
-    OtherWay,
+    OppositeFrame,
     Panic,
     ServoPacket,
     Span,
@@ -19,7 +19,7 @@ from cobotwire.diagnose.findings import (
     UnlistedFrame,
     Unrecognised,
 )
-from cobotwire.diagnose.words import Summary, summary, words
+from cobotwire.diagnose.summary import Summary, summarize
 
 __all__ = [
     "Boot",
@@ -30,7 +30,7 @@ __all__ = [
     "Garbage",
     "Item",
     "Nuls",
-    "OtherWay",
+    "OppositeFrame",
     "Panic",
     "ServoPacket",
     "Span",
@@ -38,6 +38,5 @@ __all__ = [
     "Text",
     "UnlistedFrame",
     "Unrecognised",
-    "summary",
-    "words",
+    "summarize",
 ]

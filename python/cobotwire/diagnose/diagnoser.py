@@ -1,4 +1,4 @@
-"""Diagnosis of noise: events of a framer in, the same frames and findings out."""
+"""Diagnose noise: take the events of a framer, return the same frames and findings."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from cobotwire.diagnose.servo import ServoBus
 
 Item = Frame | Finding
 
-# A packet or text goes on behind frames of at most so many bytes together: a merged acknowledgement
-# and the longest reply, twice. Behind more of them nobody could say what belongs together.
+# A packet or text may continue after frames of at most this many bytes together: an acknowledgement
+# and the longest reply, twice. After more bytes it is unlikely that the parts belong together.
 REACH = 64
 
 _TEXTS = (Text, CommandError, Boot, Panic)
-# Kinds that come in pieces, and how large the full ones are.
+# Kinds that are split into pieces, and the size of a full piece.
 _PIECES: dict[type[Finding], int] = {
     Text: firmware.LINE_LIMIT,
     Nuls: garbage.NUL_LIMIT,
@@ -41,12 +41,12 @@ _PIECES: dict[type[Finding], int] = {
 
 
 class Diagnoser:
-    """Says what noise is. Frames pass through, so all comes in the order of the stream.
+    """Turns noise into findings. Frames pass through, so the items are in the order of the stream.
 
-    Each byte of noise is in exactly one finding, and findings depend on the stream, on where the
-    framer was flushed and on what was told to be sent, but not on chunks. What may still change
-    waits, and so do the frames behind it: at most a panic dump (8 KiB) and 64 bytes of frames for
-    each of its bytes, in practice far less. :meth:`flush` decides with what is there.
+    Each byte of noise is in exactly one finding. The findings depend on the stream, on where the
+    framer was flushed and on the requests passed to :meth:`sent`, but not on the chunks. Noise that
+    more bytes could change waits, and so do the frames after it: at most a panic dump (8 KiB) and
+    64 bytes of frames for each of its bytes, in practice far less. :meth:`flush` ends the waiting.
     """
 
     def __init__(self, codec: Codec, listening: Listening = "reply") -> None:
@@ -57,9 +57,9 @@ class Diagnoser:
         self._gap = 0
         self._last: Finding | None = None
         self._in_text = False
-        # So many bytes from the start of the residue are known to start nothing, whatever comes.
+        # At this many bytes from the start of the residue nothing can start, whatever comes.
         self._plain = 0
-        # Where, in bytes of the residue, something may be recognised.
+        # Matches the bytes of the residue at which something may be recognised.
         self._interesting = re.compile(
             re.escape(codec.table.frame.header[:1])
             + rb"|\xff(?:\xff|\Z)|\0{%d}|\0+\Z" % garbage.NUL_MINIMUM
@@ -67,11 +67,11 @@ class Diagnoser:
         )
 
     def sent(self, data: bytes) -> None:
-        """Tell what goes out on this line: one request. Its echo is recognised as such."""
+        """Note a request that was sent, so that its echo is recognised."""
         self._frames.sent(data)
 
     def feed(self, events: Iterable[Event]) -> list[Item]:
-        """Take events of one framer, in order; give frames and findings as far as is certain."""
+        """Take events of the framer, in order; return the frames and findings that are certain."""
         items: list[Item] = []
         for event in events:
             if isinstance(event, Noise):
@@ -92,7 +92,7 @@ class Diagnoser:
         return items
 
     def flush(self) -> list[Item]:
-        """Decide what waits: nothing more comes, or not soon. To be called after the framer's."""
+        """Return findings for what waits for more bytes; call it after the framer's ``flush``."""
         items: list[Item] = []
         self._scan(items, closed=True)
         self._in_text = False
@@ -120,13 +120,13 @@ class Diagnoser:
             finding = replace(finding, continued=True)
         self._last, self._in_text = finding, isinstance(finding, _TEXTS)
         if isinstance(finding, ServoPacket):
-            self._bus.heard(finding)
+            self._bus.received(finding)
         while self._held and self._held[0].offset < finding.offset:
             items.append(self._held.popleft())
         items.append(finding)
 
     def _continues(self, finding: Finding) -> bool:
-        """Whether the finding before was cut at its limit, and this is the rest."""
+        """Return whether this continues the previous finding, which was cut at its limit."""
         last = self._last
         if last is None or type(last) is not type(finding):
             return False
@@ -135,7 +135,7 @@ class Diagnoser:
         return full and end == finding.offset
 
     def _next(self, start: int) -> Finding | None:
-        """The finding that starts at ``start``; None if that cannot be told yet."""
+        """Return the finding that starts at ``start``; None if more bytes are needed."""
         if not self._plain:
             verdict = self._recognise(start, self._in_text)
             if verdict is not None:
@@ -155,8 +155,8 @@ class Diagnoser:
         return self._unknown(start, limit) if cut or final else None
 
     def _place(self, start: int, limit: int) -> int:
-        """Where something may be recognised, from ``start`` on; ``limit`` or more: not before."""
-        # The pattern also finds what the limit cuts; whoever recognises it sees the whole.
+        """Return the first place at which something may be recognised, or ``limit`` or more."""
+        # The match may reach beyond the limit; the recogniser looks at all bytes.
         found = self._interesting.search(self._residue.data, start, limit)
         return found.start() if found else limit
 

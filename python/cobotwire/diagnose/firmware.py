@@ -1,8 +1,8 @@
-"""What the controller's firmware says in plain text, and its panics.
+"""Recognise text and panics of the controller's firmware.
 
-The panic handler's words are ESP-IDF's (its "Fatal Errors" page): ``Guru Meditation Error: Core 1
+The panic handler's texts are ESP-IDF's (its "Fatal Errors" page): ``Guru Meditation Error: Core 1
 panic'ed (LoadProhibited)``, registers, ``Backtrace:`` with pairs of a program and a stack address,
-``Rebooting...``. Older versions say ``of type LoadProhibited occurred on core 1``.
+``Rebooting...``. Older versions print ``of type LoadProhibited occurred on core 1``.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from cobotwire.diagnose.residue import Residue, Verdict, Wait
 
 # Bytes of text; ESC starts a colour of ESP-IDF's log.
 READABLE = rb"\t\n\r\x1b -~"
-# So many readable bytes in a row are text. Of random bytes one place in 300 starts as many.
+# This many readable bytes in a row are text; in random bytes one place in 300 starts as many.
 TEXT_MINIMUM = 6
-# A line is cut there; a dump of 2.4 kB is usual, so that one is hardly ever cut.
+# Longer lines are cut. Dumps have about 2.4 kB, so they are hardly ever cut.
 LINE_LIMIT = 1024
 PANIC_LIMIT = 8192
 
@@ -27,10 +27,10 @@ REBOOTING = b"Rebooting..."
 _RUN = re.compile(rb"[" + READABLE + rb"]+")
 _LINE = re.compile(rb"[\r\n]*[^\r\n]*")
 _LINE_END = re.compile(rb"\r?\n|\r")
-# In a dump, up to four spoilt bytes do not end it, if readable ones follow.
-_SPOILT = rb"[^" + READABLE + rb"]{1,4}(?=[" + READABLE + rb"]{6})"
-_DUMP = re.compile(rb"(?:[" + READABLE + rb"]+|" + _SPOILT + rb")*")
-_SPOILT_LOOKAHEAD = 4 + TEXT_MINIMUM
+# Up to four damaged bytes do not end a dump, if readable ones follow.
+_DAMAGED = rb"[^" + READABLE + rb"]{1,4}(?=[" + READABLE + rb"]{6})"
+_DUMP = re.compile(rb"(?:[" + READABLE + rb"]+|" + _DAMAGED + rb")*")
+_DAMAGED_LOOKAHEAD = 4 + TEXT_MINIMUM
 
 _CAUSE = re.compile(r"Core\s+(\d+) panic'ed \(([^)]*)\)|of type (.*?) occurred on core\s+(\d+)")
 _PC = re.compile(r"\bPC\s*:\s*0x([0-9a-fA-F]{8})")
@@ -40,9 +40,9 @@ _RESET = re.compile(r"\brst:0x[0-9a-fA-F]+ \((\w+)\)")
 
 
 def recognise(residue: Residue, at: int, in_text: bool) -> Verdict:
-    """The line at ``at``; ``in_text``: what stands before it is text, so it may be short.
+    """Recognise the line at ``at``; after other text (``in_text``) it may be short.
 
-    Text goes on behind a frame in its middle.
+    A line may be interrupted by a frame.
     """
     data = residue.data
     run = _RUN.match(data, at, at + LINE_LIMIT + len(PANIC))
@@ -64,7 +64,7 @@ def recognise(residue: Residue, at: int, in_text: bool) -> Verdict:
 
 
 def _line(residue: Residue, at: int, end: int, may_grow: bool) -> Verdict:
-    """A line that says nothing special, up to its end or to a word within it that does."""
+    """Return an ordinary line, up to its end or to the start of a special message in it."""
     data = residue.data
     ends_text = end == len(data) or not _RUN.match(data, end, end + 1)
     marks = [data.find(word, at + 1, end) for word in (PANIC, COMMAND_ERROR)]
@@ -80,7 +80,7 @@ def _line(residue: Residue, at: int, end: int, may_grow: bool) -> Verdict:
 
 
 def _line_end(residue: Residue, at: int) -> int | Wait:
-    """Behind the line end at ``at``, if one stands there before the next frame."""
+    """Return the place after the line end at ``at``, if there is one before the next frame."""
     limit, final = residue.stretch(at)
     found = _LINE_END.match(residue.data, at, limit)
     end = found.end() if found else at
@@ -97,21 +97,21 @@ def _text(residue: Residue, start: int, end: int) -> Finding:
     return Text(spans=spans, reason=reason, text=text)
 
 
-def _command_error(residue: Residue, at: int, behind: int) -> Verdict:
-    limit, final = residue.stretch(behind - 1)
-    if limit == behind:
-        closing: int | Wait = behind if final else Wait.WAIT
+def _command_error(residue: Residue, at: int, end: int) -> Verdict:
+    limit, final = residue.stretch(end - 1)
+    if limit == end:
+        closing: int | Wait = end if final else Wait.WAIT
     else:
-        closing = _line_end(residue, behind)
+        closing = _line_end(residue, end)
     if isinstance(closing, Wait):
         return closing
     return CommandError(spans=residue.spans(at, closing), reason=residue.reason(at))
 
 
 def _panic(residue: Residue, at: int, start: int) -> Verdict:
-    """The dump, up to ``Rebooting...``, the next panic, the end of the text, or the limit."""
+    """Return the dump up to ``Rebooting...``, the next panic, the end of the text or the limit."""
     data = residue.data
-    dump = _DUMP.match(data, start, at + PANIC_LIMIT + _SPOILT_LOOKAHEAD)
+    dump = _DUMP.match(data, start, at + PANIC_LIMIT + _DAMAGED_LOOKAHEAD)
     assert dump is not None, "the pattern matches anything"
     end = min(dump.end(), at + PANIC_LIMIT)
     again = data.find(PANIC, start + len(PANIC), end)
@@ -120,7 +120,7 @@ def _panic(residue: Residue, at: int, start: int) -> Verdict:
     if rebooting >= 0:
         closing = _line_end(residue, rebooting + len(REBOOTING))
         return closing if isinstance(closing, Wait) else _dump(residue, at, closing)
-    undecided = len(data) - end < _SPOILT_LOOKAHEAD and end - at < PANIC_LIMIT and again < 0
+    undecided = len(data) - end < _DAMAGED_LOOKAHEAD and end - at < PANIC_LIMIT and again < 0
     return Wait.WAIT if undecided and not residue.closed else _dump(residue, at, end)
 
 

@@ -1,4 +1,4 @@
-"""Frames that the framer did not take: of the other direction, unknown, or damaged."""
+"""Recognise frames that the framer rejected: of the other direction, unlisted, or damaged."""
 
 from __future__ import annotations
 
@@ -6,47 +6,42 @@ from collections import deque
 
 from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.diagnose import firmware, servo
-from cobotwire.diagnose.findings import DamagedFrame, Finding, OtherWay, UnlistedFrame
+from cobotwire.diagnose.findings import DamagedFrame, Finding, OppositeFrame, UnlistedFrame
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
-from cobotwire.table import Command, Direction
+from cobotwire.protocol.frame_index import FrameIndex
+from cobotwire.protocol.table import Direction
 
 _DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
-# So many requests are remembered, to tell their echo.
+# The last requests are remembered, to recognise their echoes.
 REMEMBERED = 8
-# A damaged frame may have so many bytes more or less than an undamaged one; nearest first.
+# A damaged frame may have a few bytes more or less than an undamaged one; nearest first.
 _SLACK = (0, -1, 1, -2, 2)
 _DAMAGES = ("bad-length", "bad-check", "truncated")
 _OTHER: dict[Listening, Direction] = {"request": "reply", "reply": "request"}
 
 
 class Frames:
-    """Recognises what starts like a frame of the edition, in noise heard in one direction."""
+    """Recognises what starts like a frame of the edition, in the noise of one direction."""
 
     def __init__(self, codec: Codec, listening: Listening) -> None:
         self._format = codec.table.frame
         self._longest = self._format.overhead + self._format.maximum_length
-        self._by_id: dict[int, list[Command]] = {}
-        for command in codec.table.commands:
-            self._by_id.setdefault(command.id, []).append(command)
+        self._indexes = {d: FrameIndex(codec.table, d) for d in _DIRECTIONS}
+        # Of commands that share an id, the first gives the name.
+        self._names = {command.id: command.name for command in reversed(codec.table.commands)}
         self._other = _OTHER.get(listening)
-        # A framer is the law of framing itself, so that it is not said a second time here.
+        # Framers are used, so that the law of framing is not repeated here.
         self._other_framer = None if self._other is None else codec.framer(self._other)
         self._any_framer = codec.framer(listening, accept_unknown=True)
-        self._listed = {
-            command.id
-            for command in codec.table.commands
-            for direction in _DIRECTIONS
-            if direction != self._other and command.layouts(direction)
-        }
         self._sent: deque[bytes] = deque(maxlen=REMEMBERED)
 
     def sent(self, data: bytes) -> None:
-        """Note a request that goes out."""
+        """Note a request that was sent."""
         if data:
             self._sent.append(bytes(data))
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
-        """The frame, or what is left of one, at ``at``."""
+        """Recognise the frame, or what is left of one, at ``at``."""
         limit, final = residue.stretch(at)
         echo = self._echo(residue, at, limit, final)
         if echo is not None:
@@ -61,9 +56,9 @@ class Frames:
         if at + len(head) <= end <= at + self._longest:
             if end > limit and not final:
                 return Wait.WAIT
-            whole = self._whole(residue, at, end) if end <= limit else None
-            if whole is not None:
-                return whole
+            complete = self._complete(residue, at, end) if end <= limit else None
+            if complete is not None:
+                return complete
         return self._damaged(residue, at)
 
     def _echo(self, residue: Residue, at: int, limit: int, final: bool) -> Verdict:
@@ -71,12 +66,10 @@ class Frames:
         for request in self._sent:
             here = residue.data[at : min(limit, at + len(request))]
             if here == request:
-                command = self._named(request, "request")
-                name = command.name if command else "unknown"
-                return OtherWay(
+                return OppositeFrame(
                     spans=residue.spans(at, at + len(request)),
                     reason=residue.reason(at),
-                    command=name,
+                    command=self._name(request, "request") or "unknown",
                     direction="request",
                     sent=True,
                 )
@@ -84,60 +77,58 @@ class Frames:
         return Wait.WAIT if waits else None
 
     def _start_only(self, residue: Residue, at: int, limit: int) -> Finding | None:
-        """A start of a frame that broke off before its id."""
+        """Return the start of a frame that is cut before its id."""
         if residue.reason(at) != "truncated":
             return None
         spans = residue.spans(at, limit)
         return DamagedFrame(spans=spans, reason="truncated", command=None, id=None)
 
-    def _whole(self, residue: Residue, at: int, end: int) -> Finding | None:
+    def _complete(self, residue: Residue, at: int, end: int) -> Finding | None:
         data, spans, reason = residue.data[at:end], residue.spans(at, end), residue.reason(at)
         id = data[self._format.overhead]
         if self._other is not None and self._other_framer is not None:
-            heard = [*self._other_framer.feed(data), *self._other_framer.flush()]
-            if len(heard) == 1 and isinstance(heard[0], Frame):
-                command = self._named(data, self._other)
-                assert command is not None, "the framer knows its id"
-                return OtherWay(
+            events = [*self._other_framer.feed(data), *self._other_framer.flush()]
+            if len(events) == 1 and isinstance(events[0], Frame):
+                name = self._name(data, self._other)
+                assert name is not None, "the framer accepted its id"
+                return OppositeFrame(
                     spans=spans,
                     reason=reason,
-                    command=command.name,
+                    command=name,
                     direction=self._other,
                     sent=False,
                 )
-        if id in self._listed:
+        if any(index.has(id) for d, index in self._indexes.items() if d != self._other):
             return None
-        heard = [*self._any_framer.feed(data), *self._any_framer.flush()]
-        if len(heard) != 1 or not isinstance(heard[0], Frame):
+        events = [*self._any_framer.feed(data), *self._any_framer.flush()]
+        if len(events) != 1 or not isinstance(events[0], Frame):
             return None
-        name = self._by_id[id][0].name if id in self._by_id else None
-        return UnlistedFrame(spans=spans, reason=reason, id=id, command=name)
+        return UnlistedFrame(spans=spans, reason=reason, id=id, command=self._names.get(id))
 
-    def _named(self, data: bytes, direction: Direction) -> Command | None:
-        """The command of a frame; of those that share its id, the first of that size."""
-        if len(data) <= self._format.overhead:
+    def _name(self, data: bytes, direction: Direction) -> str | None:
+        """Return the name of a frame's command; of those with its id, the first with its size."""
+        length = len(data) - self._format.overhead
+        if length <= 0:
             return None
-        commands = self._by_id.get(data[self._format.overhead], [])
-        size = len(data) - self._format.overhead - self._format.length(0)
-        fitting = [c for c in commands if any(f.size == size for f in c.layouts(direction))]
-        return next(iter([*fitting, *commands]), None)
+        id = data[self._format.overhead]
+        found = self._indexes[direction].find(id, length)
+        return found[0].command.name if found else self._names.get(id)
 
     def _damaged(self, residue: Residue, at: int) -> Verdict:
-        commands = self._by_id.get(residue.data[at + self._format.overhead], [])
-        reason = residue.reason(at)
-        if reason not in _DAMAGES or not commands:
+        id, reason = residue.data[at + self._format.overhead], residue.reason(at)
+        if reason not in _DAMAGES or id not in self._names:
             return None
-        extent = self._extent(residue, at, commands)
+        extent = self._extent(residue, at, id)
         if isinstance(extent, Wait):
             return extent
         spans = residue.spans(at, extent)
-        return DamagedFrame(spans=spans, reason=reason, command=commands[0].name, id=commands[0].id)
+        return DamagedFrame(spans=spans, reason=reason, command=self._names[id], id=id)
 
-    def _extent(self, residue: Residue, at: int, commands: list[Command]) -> int | Wait:
-        """How far the damaged frame reaches: to a footer near a legal end, else as LEN says.
+    def _extent(self, residue: Residue, at: int, id: int) -> int | Wait:
+        """Return the end of the damaged frame: after a footer near a legal end, or else by LEN.
 
-        A byte may have been inserted or lost, so the footer is also looked for behind the end. A
-        frame, a servo packet or a message of the firmware that starts inside ends it.
+        A byte may have been inserted or lost, so the footer is also searched after the end. A
+        frame, a servo packet or a firmware message that starts inside ends the damaged frame.
         """
         limit, final = residue.stretch(at)
         reach = at + self._longest + max(_SLACK)
@@ -152,23 +143,23 @@ class Frames:
                 limit = inside
                 break
         format = self._format
-        sizes = {format.length(f.size) for c in commands for f in (*c.request, *c.reply)}
+        lengths = {length for index in self._indexes.values() for length in index.lengths_of(id)}
         claimed = residue.data[at + format.length_at]
-        for size in sorted(sizes, key=lambda size: (size != claimed, size)):
+        for length in sorted(lengths, key=lambda length: (length != claimed, length)):
             for extra in _SLACK if format.check == "footer" else ():
-                end = at + format.overhead + size + extra
+                end = at + format.overhead + length + extra
                 if end <= limit and residue.data.startswith(format.footer, end - format.check_size):
                     return end
-        return min(limit, at + format.overhead + (claimed if claimed in sizes else max(sizes)))
+        return min(limit, at + format.overhead + (claimed if claimed in lengths else max(lengths)))
 
     def _stops(self, residue: Residue, at: int) -> bool | Wait:
-        """Whether something else starts at ``at``, inside a damaged frame."""
+        """Return whether something else starts at ``at``, inside a damaged frame."""
         data = residue.data
         packet = servo.size_of(data[at : at + servo.LONGEST])
-        said = _said(data[at : at + len(firmware.PANIC)])
-        if packet or said:
+        message = _starts_message(data[at : at + len(firmware.PANIC)])
+        if packet or message:
             return True
-        if (packet is None or said is None) and not residue.closed:
+        if (packet is None or message is None) and not residue.closed:
             return Wait.WAIT
         limit, final = residue.stretch(at)
         head = data[at : min(limit, at + self._format.overhead + 1)]
@@ -176,12 +167,12 @@ class Frames:
             return False
         if len(head) <= self._format.overhead:
             return False if final else Wait.WAIT
-        return residue.reason(at) in _DAMAGES and head[-1] in self._by_id
+        return residue.reason(at) in _DAMAGES and head[-1] in self._names
 
 
-def _said(data: bytes) -> bool | None:
-    """Whether the firmware speaks here; None: more bytes decide."""
-    words = (firmware.PANIC, firmware.COMMAND_ERROR)
-    if data.startswith(words):
+def _starts_message(data: bytes) -> bool | None:
+    """Return whether a firmware message starts here; None if more bytes are needed."""
+    starts = (firmware.PANIC, firmware.COMMAND_ERROR)
+    if data.startswith(starts):
         return True
-    return None if any(word.startswith(data) for word in words) else False
+    return None if any(start.startswith(data) for start in starts) else False

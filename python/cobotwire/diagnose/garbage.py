@@ -1,10 +1,10 @@
-"""What can be said of bytes in which nothing was recognised.
+"""Classify bytes in which nothing was recognised: NULs, a wrong baud rate, or unknown.
 
-A receiver that is at least twice as fast as the sender sees each bit several times over: the start
-bit fills the low bits with zeros, and ones come in one block. ``78 80 78``, seen on a line at the
-wrong rate, is of that kind. So a byte *fits* if it is even, not zero, and its ones are one block.
-Of random bytes 28 in 256 do; of the small numbers that protocols are full of, many. Where the
-receiver is the slower one, nothing tells garbage from data. Hence the finding is a guess.
+A receiver that is at least twice as fast as the sender samples each bit several times: the start
+bit fills the low bits with zeros, and the ones are consecutive. ``78 80 78``, seen at a wrong rate,
+is an example. So a byte *fits* if it is even, not zero, and its ones are consecutive. Of random
+bytes 28 in 256 fit; of the small numbers that protocols often send, many more. If the receiver is
+the slower one, garbage looks like data. Hence the finding is a guess.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from math import comb
 from cobotwire.diagnose.findings import REBOOT_NULS, Finding, Garbage, Nuls, Unrecognised
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 
-# So many NULs in a row are told apart from what they stand in.
+# This many NULs in a row are a finding of their own.
 NUL_MINIMUM = 4
 NUL_LIMIT = 4096
-# What cannot be recognised is reported in pieces of that size.
+# Unrecognised bytes are reported in pieces of this size.
 PIECE_LIMIT = 256
 
-# Fewer bytes say nothing; a real line's garbage is mixed with some that do not fit.
+# Fewer bytes prove nothing; real garbage has some bytes that do not fit.
 GARBAGE_MINIMUM = 3
 GARBAGE_SHARE = 0.75
-# Smaller numbers come in any protocol; at least half of the bytes must fit and be larger.
+# Every protocol sends small numbers; at least half of the bytes must fit and be larger.
 SMALL = 0x40
 
 _FITTING = frozenset(
@@ -35,7 +35,7 @@ _FITTING = frozenset(
 
 
 def recognise_nuls(residue: Residue, at: int) -> Verdict:
-    """A run of NULs at ``at``, in pieces of ``NUL_LIMIT``."""
+    """Recognise a run of NULs at ``at``, in pieces of ``NUL_LIMIT``."""
     limit, final = residue.stretch(at)
     rest = residue.data[at : min(limit, at + NUL_LIMIT)]
     count = len(rest) - len(rest.lstrip(b"\0"))
@@ -54,7 +54,7 @@ def _nuls(residue: Residue, start: int, end: int) -> Nuls:
 
 
 def classify(residue: Residue, start: int, end: int) -> Finding:
-    """The best word for bytes in which nothing was recognised."""
+    """Return the best finding for bytes in which nothing was recognised."""
     data = residue.data[start:end]
     if not any(data):
         return _nuls(residue, start, end)
@@ -68,7 +68,7 @@ def classify(residue: Residue, start: int, end: int) -> Finding:
 
 
 def _chance(size: int, fitting: int) -> float:
-    """How often at least ``fitting`` of ``size`` random bytes fit."""
+    """Return the probability that at least ``fitting`` of ``size`` random bytes fit."""
     share = len(_FITTING) / 256
     return sum(
         comb(size, count) * share**count * (1 - share) ** (size - count)

@@ -1,14 +1,14 @@
-"""Names in the memory table of Feetech's STS and SMS servos.
+"""Name the registers of Feetech's STS and SMS servos.
 
-Facts as the maker's memory tables and the public control tables of people who drive these servos
-give them (Feetech's "STS memory table analysis" at wiki.juxitech.com; RIOT OS,
-``feetech_protocol.h``, for the SCS15). The SCS series puts some of the lower ones elsewhere; those
-of position, speed, load, voltage and temperature are the same.
+The sources are the maker's memory tables (Feetech's "STS memory table analysis" at
+wiki.juxitech.com) and public drivers (RIOT OS, ``feetech_protocol.h``, for the SCS15). The SCS
+series has some of the lower registers elsewhere; those of position, speed, load, voltage and
+temperature are the same.
 """
 
 from __future__ import annotations
 
-# Address to name and width in bytes; words are little-endian (STS and SMS).
+# Address to name and width in bytes; two bytes are little-endian (STS and SMS).
 REGISTERS: dict[int, tuple[str, int]] = {
     0x00: ("firmware major version", 1),
     0x01: ("firmware minor version", 1),
@@ -59,7 +59,7 @@ REGISTERS: dict[int, tuple[str, int]] = {
 
 
 def register_name(address: int) -> str | None:
-    """What stands at ``address``; None if it is not publicly known."""
+    """Return the name of the register at ``address``; None if it is not publicly known."""
     if address in REGISTERS:
         return REGISTERS[address][0]
     before, width = REGISTERS.get(address - 1, ("", 1))

@@ -1,4 +1,4 @@
-"""The noise of a stream with the frames taken out, as far as no finding covers it yet."""
+"""Hold the noise of a stream that no finding covers yet, without the frames in between."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from cobotwire.diagnose.findings import Finding, Span
 
 
 class Wait(Enum):
-    """What a recogniser says if bytes that may still come decide."""
+    """What a recogniser returns if it needs more bytes."""
 
     WAIT = 0
 
 
-# A finding that starts just there; or nothing does; or that cannot be told yet.
+# A finding that starts there, or None if nothing does, or Wait if more bytes are needed.
 Verdict = Finding | Wait | None
 
 
 class Residue:
-    """Bytes in a row, with marks where frames stood between them.
+    """Consecutive bytes of noise, with marks where frames interrupted them.
 
-    A packet or a line of text may go on behind a frame, and sees all of ``data``. For everything
-    else a mark is an end: it sees a :meth:`stretch`.
+    A servo packet or a line of text may continue after a frame, so its recogniser sees all of
+    ``data``. For everything else a mark is an end: its recogniser sees a :meth:`stretch`.
     """
 
     def __init__(self) -> None:
         self.data = b""
-        # Nothing comes behind ``data`` that could belong to it.
+        # Whether no later byte can belong to ``data``.
         self.closed = False
         self._marks: list[int] = []
         self._starts: list[int] = []
@@ -41,35 +41,35 @@ class Residue:
         return self._size > 0
 
     def add(self, noise: Noise) -> None:
-        """More noise; :meth:`join` makes it visible."""
+        """Add noise; :meth:`join` appends it to ``data``."""
         self._starts.append(self._size)
         self._pieces.append((noise.offset, noise.reason))
         self._added.append(noise.data)
         self._size += len(noise.data)
 
     def mark(self) -> None:
-        """A frame stands here."""
+        """Mark that a frame interrupts the noise here."""
         if self._size and self._marks[-1:] != [self._size]:
             self._marks.append(self._size)
 
     def join(self) -> None:
-        """Put what was added behind ``data``."""
+        """Append what was added to ``data``."""
         self.data = b"".join((self.data, *self._added))
         self._added.clear()
 
     def stretch(self, at: int) -> tuple[int, bool]:
-        """Where the bytes at ``at`` end before the next frame; whether that is known for good."""
+        """Return where the bytes at ``at`` end before the next frame, and whether that is final."""
         index = bisect_right(self._marks, at)
         if index < len(self._marks):
             return self._marks[index], True
         return len(self.data), self.closed
 
     def reason(self, at: int) -> NoiseReason:
-        """The framer's reason for the byte at ``at``."""
+        """Return the framer's reason for the byte at ``at``."""
         return self._pieces[bisect_right(self._starts, at) - 1][1]
 
     def spans(self, start: int, end: int) -> tuple[Span, ...]:
-        """Where the bytes from ``start`` to ``end`` stand in the stream."""
+        """Return the spans of the stream that the bytes from ``start`` to ``end`` come from."""
         first, last = bisect_right(self._marks, start), bisect_right(self._marks, end - 1)
         cuts = [start, *self._marks[first:last], end]
         return tuple(Span(self._offset(a), self.data[a:b]) for a, b in pairwise(cuts))
@@ -79,7 +79,7 @@ class Residue:
         return self._pieces[index][0] + at - self._starts[index]
 
     def drop(self, count: int) -> None:
-        """Forget the first ``count`` bytes: findings cover them."""
+        """Remove the first ``count`` bytes, because findings cover them."""
         if not count:
             return
         first = bisect_right(self._starts, count) - 1

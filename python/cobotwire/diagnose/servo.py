@@ -1,10 +1,10 @@
-"""Packets of the Feetech servo bus that leak onto the line.
+"""Recognise packets of the Feetech servo bus that leak onto the serial line.
 
 ``FF FF ID LEN INSTRUCTION|ERROR PARAMETERS CHECKSUM``: LEN counts what follows it, and the checksum
 is the inverted low byte of the sum of ID to PARAMETERS. Instructions and error bits are those of
 Feetech's "SCS servo communication protocol" and STS memory table (wiki.aifitlab.com,
-wiki.juxitech.com). Requests and replies look alike: only the byte behind LEN tells them apart, and
-an error byte may have the value of an instruction.
+wiki.juxitech.com). Instructions and status packets differ only in the byte after LEN, and an
+error byte may have the value of an instruction.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ ERROR_BITS = 0x2F
 
 
 def size_of(packet: bytes) -> int | None:
-    """Bytes of the packet that starts ``packet``, 6..259; 0: none does; None: not told yet."""
+    """Return the size of the packet that ``packet`` starts with, 6..259, or 0 for no packet.
+
+    None means that more bytes are needed.
+    """
     if not packet.startswith(HEADER[: len(packet)]):
         return 0
     if len(packet) > 2 and packet[2] > BROADCAST:
@@ -49,14 +52,14 @@ def size_of(packet: bytes) -> int | None:
 
 
 class ServoBus:
-    """Recognises packets; remembers who was asked for what, as a status reply does not say it."""
+    """Recognises packets; remembers instructions, as a status packet does not name its register."""
 
     def __init__(self) -> None:
-        # Servo id to the register and number of bytes that its next status reply tells.
-        self._asked: dict[int, tuple[int | None, int]] = {}
+        # Servo id to the register and number of bytes that its next status packet holds.
+        self._expected: dict[int, tuple[int | None, int]] = {}
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
-        """The packet at ``at``. It may go on behind a frame, as the checksum holds it together."""
+        """Recognise the packet at ``at``; a frame may interrupt it, as its checksum is checked."""
         size = size_of(residue.data[at : at + LONGEST])
         if size is None:
             return None if residue.closed else Wait.WAIT
@@ -66,11 +69,11 @@ class ServoBus:
         packet = residue.data[start:end]
         servo, code, parameters = packet[2], packet[4], packet[5:-1]
         register, count, servos = _targets(code, parameters)
-        # A reply with the error bits of an instruction's value is rare: an instruction, if it fits.
+        # A status packet with the error bits of an instruction is rare: assume an instruction.
         is_instruction = fits_instruction(servo, code, parameters)
-        role_is_status = not is_instruction and fits_status(servo, code)
-        if role_is_status:
-            register, count = self._asked.get(servo, (None, -1))
+        is_status = not is_instruction and fits_status(servo, code)
+        if is_status:
+            register, count = self._expected.get(servo, (None, -1))
             if count != len(parameters):
                 register = None
             count, servos = None, ()
@@ -78,10 +81,10 @@ class ServoBus:
             spans=residue.spans(start, end),
             reason=residue.reason(start),
             servo=servo,
-            role="status" if role_is_status else "instruction",
+            role="status" if is_status else "instruction",
             ambiguous=is_instruction and fits_status(servo, code),
-            instruction=None if role_is_status else INSTRUCTIONS.get(code, f"0x{code:02X}"),
-            error=code if role_is_status else None,
+            instruction=None if is_status else INSTRUCTIONS.get(code, f"0x{code:02X}"),
+            error=code if is_status else None,
             register=register,
             register_name=None if register is None else register_name(register),
             count=count,
@@ -89,35 +92,35 @@ class ServoBus:
             parameters=parameters,
         )
 
-    def heard(self, packet: ServoPacket) -> None:
-        """Remember what ``packet`` asks for."""
+    def received(self, packet: ServoPacket) -> None:
+        """Remember what ``packet`` requests."""
         if packet.role == "status":
-            self._asked.pop(packet.servo, None)
+            self._expected.pop(packet.servo, None)
         elif packet.instruction == "sync read":
             count = packet.count or 0
-            self._asked = {servo: (packet.register, count) for servo in packet.servos}
+            self._expected = {servo: (packet.register, count) for servo in packet.servos}
         elif packet.instruction == "read":
-            self._asked = {packet.servo: (packet.register, packet.count or 0)}
+            self._expected = {packet.servo: (packet.register, packet.count or 0)}
         else:
-            self._asked = {} if packet.servo == BROADCAST else {packet.servo: (None, 0)}
+            self._expected = {} if packet.servo == BROADCAST else {packet.servo: (None, 0)}
 
 
 def fits_instruction(servo: int, code: int, parameters: bytes) -> bool:
-    """Whether the packet has the form of an instruction."""
+    """Return whether the packet has the parameters of an instruction."""
     size = len(parameters)
     if code in (0x82, 0x83):
         return servo == BROADCAST and size >= 3
-    forms = {0x01: size == 0, 0x02: size == 2, 0x03: size >= 2, 0x04: size >= 2}
-    return forms.get(code, code in INSTRUCTIONS and size == 0)
+    fits = {0x01: size == 0, 0x02: size == 2, 0x03: size >= 2, 0x04: size >= 2}
+    return fits.get(code, code in INSTRUCTIONS and size == 0)
 
 
 def fits_status(servo: int, code: int) -> bool:
-    """Whether it can be a status reply: servos answer with their own id and set few error bits."""
+    """Return whether it can be a status packet: an id of one servo, and known error bits."""
     return servo != BROADCAST and not code & ~ERROR_BITS
 
 
 def _targets(code: int, parameters: bytes) -> tuple[int | None, int | None, tuple[int, ...]]:
-    """The register, the number of bytes and the servos that an instruction names."""
+    """Return the register, the number of bytes and the servos that an instruction names."""
     if code not in (0x02, 0x03, 0x04, 0x82, 0x83) or len(parameters) < 2:
         return None, None, ()
     register, count, rest = parameters[0], parameters[1], parameters[2:]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol, cast
 
-from cobotwire.errors import UsageError
+from cobotwire.protocol.errors import UsageError
 
 if TYPE_CHECKING:
-    from cobotwire.driver import Driver
-    from cobotwire.driver.aio import AsyncDriver
-    from cobotwire.table import Table
+    from cobotwire.client import Client
+    from cobotwire.client.aio import AsyncClient
+    from cobotwire.protocol.table import Table
 
 DEFAULT = "mycobot"
 
@@ -18,8 +18,8 @@ class Edition(Protocol):
     """What an edition's package holds."""
 
     TABLE: Table
-    CLIENT: type[Driver]
-    ASYNC_CLIENT: type[AsyncDriver]
+    CLIENT: type[Client]
+    ASYNC_CLIENT: type[AsyncClient]
 
 
 def names() -> list[str]:

@@ -1,44 +1,45 @@
-"""The conversation without a port, clock or thread: bytes and times in, events out."""
+"""The exchange of messages without a port, clock or thread: bytes and times in, events out."""
 
-from cobotwire.session.conversation import Conversation
-from cobotwire.session.device import Asked, DeviceSession, Malformed, Told
-from cobotwire.session.events import (
-    Acknowledged,
-    Answered,
-    Echoed,
-    Expired,
-    Late,
-    Refused,
-    SessionEvent,
-    Unasked,
+from cobotwire.session.device import (
+    DeviceSession,
+    MalformedRequest,
+    RequestReceived,
+    TextReceived,
 )
-from cobotwire.session.heard import Heard
-from cobotwire.session.host import HostSession
+from cobotwire.session.events import (
+    AckReceived,
+    EchoReceived,
+    LateReply,
+    ReplyMatched,
+    ReplyRejected,
+    RequestExpired,
+    SessionEvent,
+    Traffic,
+    UnexpectedFrame,
+)
+from cobotwire.session.exchange import Exchange
+from cobotwire.session.pending import Pending, PendingAck, PendingRequest
 from cobotwire.session.policy import RetryPolicy
-from cobotwire.session.request import Request
-from cobotwire.session.ticket import Order, Question, Ticket
-from cobotwire.session.traffic import Traffic
+from cobotwire.session.request import EncodedRequest
 
 __all__ = [
-    "Acknowledged",
-    "Answered",
-    "Asked",
-    "Conversation",
+    "AckReceived",
     "DeviceSession",
-    "Echoed",
-    "Expired",
-    "Heard",
-    "HostSession",
-    "Late",
-    "Malformed",
-    "Order",
-    "Question",
-    "Refused",
-    "Request",
+    "EchoReceived",
+    "EncodedRequest",
+    "Exchange",
+    "LateReply",
+    "MalformedRequest",
+    "Pending",
+    "PendingAck",
+    "PendingRequest",
+    "ReplyMatched",
+    "ReplyRejected",
+    "RequestExpired",
+    "RequestReceived",
     "RetryPolicy",
     "SessionEvent",
-    "Ticket",
-    "Told",
+    "TextReceived",
     "Traffic",
-    "Unasked",
+    "UnexpectedFrame",
 ]

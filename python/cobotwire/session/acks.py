@@ -1,112 +1,113 @@
-"""Acknowledgements that may come: of orders that an edition says may be acknowledged.
+"""Acknowledgements: which of the one-way requests that were sent has been acknowledged.
 
-They carry nothing but the id of the order. Where several orders of an id are out, and some
-acknowledgements are lost, nobody can say whose one is. So an order counts as acknowledged when more
-of them have come than the other orders can have caused. An order may seem to be unacknowledged
-although it was; never the other way round, as far as each comes once and within its time.
+An acknowledgement carries only the command's id. Where several requests of one id were sent and
+some acknowledgements are lost, it is unknown which request each belongs to. So a request counts
+as acknowledged once more acknowledgements have come than the other requests can have caused. It may
+seem unacknowledged although it was, never the reverse, if each acknowledgement comes once and in
+time.
 """
 
 from __future__ import annotations
 
 from collections import deque
+from typing import NamedTuple
 
-from cobotwire.codec.interface import Codec, Frame, Message
-from cobotwire.errors import ProtocolError
+from cobotwire.codec.interface import DecodedMessage, Frame
+from cobotwire.protocol.errors import ProtocolError
 from cobotwire.session.policy import GRACE_SECONDS
-from cobotwire.session.request import Request
+from cobotwire.session.request import EncodedRequest
 
-# Some firmware acknowledges a motion at its end only.
+# Some firmware acknowledges a motion only when it ends.
 MOTION_SECONDS = 60.0
 
 
-class _Count:
-    """The orders of one id."""
+class ExpectedAck(NamedTuple):
+    """An acknowledgement that may come, at ``offset`` of the stream or later.
 
-    __slots__ = ("heard", "open", "sent")
+    Attributes:
+        request: the one-way request that was sent.
+        until: the second after which it no longer counts.
+        offset: where in the received stream it can begin at the earliest.
+        balance: what the balance of its command must exceed for it to be certain.
+    """
+
+    request: EncodedRequest
+    until: float
+    offset: int
+    balance: int
+
+
+class _CommandAcks:
+    """The requests of one command id; ``balance`` is acknowledgements less requests sent."""
+
+    __slots__ = ("balance", "copied", "expected")
 
     def __init__(self) -> None:
-        self.sent = 0
-        self.heard = 0
-        # Those whose acknowledgement may still come, oldest first.
-        self.open: deque[Due] = deque()
+        self.balance = 0
+        # Those that may still come, oldest first.
+        self.expected: deque[ExpectedAck] = deque()
+        self.copied: ExpectedAck | None = None
 
-    def forget(self, now: float) -> None:
-        while self.open and self.open[0].until <= now:
-            self.open.popleft()
-
-
-class Due:
-    """An order whose acknowledgement may come ``until`` then, from ``since`` of the stream on."""
-
-    __slots__ = ("_before", "_count", "_heard", "copied", "request", "since", "until")
-
-    def __init__(self, request: Request, until: float, since: int, count: _Count) -> None:
-        self.request = request
-        self.until = until
-        self.since = since
-        # A copy of the order came: a bare acknowledgement of an order without data, or an echo.
-        self.copied = False
-        self._count = count
-        self._heard = count.heard
-        # Orders that were sent before it are its rivals; those sent after it are counted then.
-        self._before = len(count.open) - count.sent
-
-    @property
-    def done(self) -> bool:
-        """Whether it was acknowledged, whoever the other acknowledgements belong to."""
-        rivals = self._before + self._count.sent - 1
-        return self._count.heard - self._heard > rivals
-
-    def not_mine(self) -> None:
-        """One had begun to come before this order was sent: it was caused by one of the rivals."""
-        self._heard += 1
-        self._before -= 1
+    def forget_expired(self, now: float) -> None:
+        while self.expected and self.expected[0].until <= now:
+            self.expected.popleft()
 
 
 class Acks:
-    """The orders that were sent lately, by their ids."""
+    """Counts acknowledgements of the requests that were sent lately."""
 
-    def __init__(self, codec: Codec) -> None:
-        self._codec = codec
-        self._counts: dict[int, _Count] = {}
+    def __init__(self) -> None:
+        self._commands: dict[int, _CommandAcks] = {}
 
-    def expect(self, request: Request, now: float, wait: float, since: int) -> Due:
-        """An order goes out; its acknowledgement is expected for ``wait`` seconds at least.
+    def expect(self, request: EncodedRequest, now: float, wait: float, offset: int) -> ExpectedAck:
+        """Note that a request goes out; its acknowledgement can begin at ``offset``.
 
-        ``since`` is where in the stream that begins at the earliest.
+        It is expected for ``wait`` seconds at least.
         """
         usual = MOTION_SECONDS if request.command.safety == "motion" else GRACE_SECONDS
-        count = self._counts.setdefault(request.command.id, _Count())
-        count.forget(now)
-        due = Due(request, now + max(wait, usual), since, count)
-        count.open.append(due)
-        count.sent += 1
-        return due
+        acks = self._commands.get(request.command.id)
+        if acks is None:
+            acks = self._commands[request.command.id] = _CommandAcks()
+        acks.forget_expired(now)
+        balance = acks.balance + len(acks.expected) - 1
+        ack = ExpectedAck(request, now + max(wait, usual), offset, balance)
+        acks.expected.append(ack)
+        acks.balance -= 1
+        return ack
+
+    def is_certain(self, ack: ExpectedAck) -> bool:
+        """Return whether it has come, whichever requests the other ones belong to."""
+        return self._commands[ack.request.command.id].balance > ack.balance
+
+    def was_copied(self, ack: ExpectedAck) -> bool:
+        """Return whether a copy of the request came: its acknowledgement, or its echo."""
+        return self._commands[ack.request.command.id].copied is ack
 
     def note_copy(self, frame: Frame) -> None:
-        """A copy of an order came, which is its acknowledgement unless the line echoes."""
-        count = self._counts.get(frame.command)
-        if count is not None and len(count.open) == 1 and count.open[0].request.frame == frame.data:
-            count.open[0].copied = True
+        """Note a copy of a request, which is a bare acknowledgement unless the line echoes."""
+        acks = self._commands.get(frame.command)
+        if acks is not None and len(acks.expected) == 1:
+            [ack] = acks.expected
+            if ack.request.frame == frame.data:
+                acks.copied = ack
 
-    def match(self, frame: Frame, now: float) -> tuple[Request, Message] | None:
-        """The order that a frame acknowledges, the oldest if there are several; None: none."""
-        count = self._counts.get(frame.command)
-        if count is None:
+    def match(self, frame: Frame, now: float) -> tuple[EncodedRequest, DecodedMessage] | None:
+        """Count a frame that is an acknowledgement; None: it is not one.
+
+        Returns:
+            The oldest request that it can belong to, and the decoded frame.
+        """
+        acks = self._commands.get(frame.command)
+        if acks is None:
             return None
-        count.forget(now)
-        if not count.open or frame.offset < count.open[0].since:
+        acks.forget_expired(now)
+        if not acks.expected or frame.offset < acks.expected[0].offset:
             return None
-        request = count.open[0].request
+        request = acks.expected[0].request
         try:
-            message = self._codec.decode("reply", frame.data, of=request.command.name)
+            message = frame.decode("reply", of=request.command.name)
         except ProtocolError:
             return None
-        # One less may still come; whose it was, the next ones need not know.
-        count.open.popleft()
-        count.heard += 1
-        for due in reversed(count.open):
-            if due.since <= frame.offset:
-                break
-            due.not_mine()
+        acks.expected.popleft()
+        acks.balance += 1
         return request, message

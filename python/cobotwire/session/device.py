@@ -1,42 +1,42 @@
-"""The answering side: what a simulated arm, or a referee, hears and says."""
+"""The device side of the exchange: what a simulated arm, or a referee, receives and replies."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from cobotwire.codec.interface import Codec, Event, Frame, Message, Noise
-from cobotwire.errors import ProtocolError
+from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame, Noise
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Command
 from cobotwire.session import text
-from cobotwire.table import Command
 
 
-class Asked(NamedTuple):
+class RequestReceived(NamedTuple):
     """A legal request."""
 
     frame: Frame
-    message: Message
+    message: DecodedMessage
 
 
-class Malformed(NamedTuple):
-    """A frame with a value that the edition does not allow."""
+class MalformedRequest(NamedTuple):
+    """A request with a value that the edition does not allow."""
 
     frame: Frame
     error: ProtocolError
 
 
-class Told(NamedTuple):
+class TextReceived(NamedTuple):
     """The text that followed a request outside its frame."""
 
     command: Command
     fields: dict[str, str]
 
 
-DeviceEvent = Asked | Malformed | Told | Noise
+DeviceEvent = RequestReceived | MalformedRequest | TextReceived | Noise
 
 
 class DeviceSession:
-    """The conversation as the arm has it."""
+    """Sorts received bytes into requests, texts and noise; encodes replies."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
@@ -46,35 +46,35 @@ class DeviceSession:
 
     @property
     def pending(self) -> int:
-        """Bytes of a request that is not whole yet."""
+        """How many bytes of an unfinished request were received."""
         return self._framer.pending
 
     def receive(self, data: bytes) -> list[DeviceEvent]:
-        """Take what the line brought."""
+        """Take received bytes; return what they are."""
         return self._sort(self._framer.feed(data))
 
     def flush(self) -> list[DeviceEvent]:
-        """The line has been idle: what is not whole by now is refuted."""
+        """Give up what is unfinished, since the line has been idle; return what it is."""
         return self._sort(self._framer.flush())
 
-    def answer(self, name: str, values: Mapping[str, Any]) -> bytes:
-        """The bytes of a reply: the form that has just these fields.
+    def encode_reply(self, name: str, values: Mapping[str, Any]) -> bytes:
+        """Return the bytes of a reply: the variant that has exactly these fields.
 
         Raises:
-            UsageError: the reply cannot be said.
+            UsageError: the edition does not allow this reply.
         """
         command = self._codec.table.command(name)
         if command.text is not None:
-            return text.spell(command.text, values)
-        for form in command.reply:
-            names = [field.name for field in form.fields]
+            return text.encode(command.text, values)
+        for variant in command.reply:
+            names = [field.name for field in variant.fields]
             if set(names) == set(values):
                 return self._codec.encode(name, "reply", [values[field] for field in names])
         return self._codec.encode(name, "reply", tuple(values.values()))
 
-    def _sort(self, heard: Sequence[Event]) -> list[DeviceEvent]:
+    def _sort(self, received: Sequence[Event]) -> list[DeviceEvent]:
         events: list[DeviceEvent] = []
-        for event in heard:
+        for event in received:
             if isinstance(event, Noise):
                 events.append(event)
                 events.extend(self._read_text(event.data))
@@ -85,22 +85,22 @@ class DeviceSession:
     def _read(self, frame: Frame) -> DeviceEvent:
         self._text_of, self._text = None, b""
         try:
-            message = self._codec.decode("request", frame.data)
+            message = frame.decode("request")
         except ProtocolError as error:
-            return Malformed(frame, error)
+            return MalformedRequest(frame, error)
         if message.command.request_text is not None:
             self._text_of = message.command
-        return Asked(frame, message)
+        return RequestReceived(frame, message)
 
-    def _read_text(self, data: bytes) -> Iterator[Told]:
-        """What looks like noise may be the text of the last request; its suffix ends it."""
+    def _read_text(self, data: bytes) -> Iterator[TextReceived]:
+        """Yield the text of the last request, which looks like noise; its suffix ends it."""
         command = self._text_of
         if command is None or command.request_text is None:
             return
         self._text += data
         try:
-            fields = text.read(command.request_text, self._text)
+            fields = text.decode(command.request_text, self._text)
         except ProtocolError:
             return
         self._text_of, self._text = None, b""
-        yield Told(command, fields)
+        yield TextReceived(command, fields)

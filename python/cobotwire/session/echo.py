@@ -1,74 +1,92 @@
-"""Whether the line sends our own bytes back, as a loop, some adapters and a transponder do.
+"""Whether the line echoes: a loop, some adapters and a transponder send our own bytes back.
 
-A few requests read as replies too: ``FE FE 03 50 01 FA`` asks whether servo 1 is powered, and an
-older arm answers with these very bytes that it is. So the first copy of a question is only a
-candidate. If another answer follows, that one counts. If none does by the deadline, the candidate
-counts, but only on a line that was never seen to echo: there, a copy that can be no reply has not
-come yet.
+A few requests are legal replies too: ``FE FE 03 50 01 FA`` asks whether servo 1 is powered, and
+older firmware says with the same bytes that it is. So the first copy of a request is only a
+candidate. If another reply follows, that one counts. If none does by the deadline, the candidate
+counts, unless the line was ever seen to echo: to send back a request that cannot be a reply.
 """
 
 from __future__ import annotations
 
 from cobotwire.codec.interface import Frame, Noise
-from cobotwire.session.request import Request
+from cobotwire.session.request import EncodedRequest
 
 
 class _Sent:
-    """A request that went out: copies of it may come from ``since`` of the stream on."""
+    """A request that was sent; ``copies`` of it may begin at ``offset`` of the stream or later."""
 
-    __slots__ = ("copies", "frame", "since")
+    __slots__ = ("copies", "frame", "offset")
 
-    def __init__(self, frame: bytes, since: int) -> None:
+    def __init__(self, frame: bytes, offset: int) -> None:
         self.frame = frame
-        self.since = since
+        self.offset = offset
         self.copies = 1
 
 
-class EchoWatch:
-    """Looks for copies of the last question and the last order; ``proven`` once the line echoes.
+class EchoDetector:
+    """Looks for copies of the last request and of the last one-way request.
 
-    Both are kept, since an order may go out while a question waits.
+    It keeps both, since a one-way request may go out while another request waits for its reply.
+
+    Attributes:
+        proven: whether the line was seen to echo.
     """
 
     def __init__(self) -> None:
         self.proven = False
-        self._question: _Sent | None = None
-        self._order: _Sent | None = None
+        self._request: _Sent | None = None
+        self._one_way: _Sent | None = None
         self._noise = b""
 
-    def sent(self, request: Request, offset: int, *, again: bool = False) -> None:
-        """A request goes out; what comes from ``offset`` of the stream on may be its copy."""
-        if again and self._question is not None:
-            self._question.copies += 1
-        elif request.command.answers:
-            self._question = _Sent(request.frame, offset)
-        else:
-            self._order = _Sent(request.frame, offset)
-        if not self.proven:
-            self._noise = b""
+    def sent(self, request: EncodedRequest, offset: int) -> None:
+        """Note a request that goes out; its copy can begin at ``offset`` of the stream."""
+        self._request = _Sent(request.frame, offset)
+        self._restart()
 
-    def hear_noise(self, noise: Noise) -> None:
-        """Most requests are no legal replies, so that their copies come as noise."""
+    def sent_one_way(self, request: EncodedRequest, offset: int) -> None:
+        """Note a one-way request that goes out, likewise."""
+        self._one_way = _Sent(request.frame, offset)
+        self._restart()
+
+    def sent_again(self) -> None:
+        """Note that the last request that waits for a reply goes out once more."""
+        if self._request is not None:
+            self._request.copies += 1
+        self._restart()
+
+    def prove(self) -> None:
+        """Note that the line echoes."""
+        self.proven = True
+
+    def add_noise(self, noise: Noise) -> None:
+        """Look for copies in noise: most requests are not legal replies, so they come as noise."""
         if self.proven:
             return
-        watched = [sent for sent in (self._question, self._order) if sent is not None]
+        watched = [sent for sent in (self._request, self._one_way) if sent is not None]
         if not watched:
             return
-        since = min(sent.since for sent in watched)
-        self._noise += noise.data[max(0, since - noise.offset) :]
+        offset = min(sent.offset for sent in watched)
+        self._noise += noise.data[max(0, offset - noise.offset) :]
         self.proven = any(sent.frame in self._noise for sent in watched)
         self._noise = self._noise[-max(len(sent.frame) for sent in watched) :]
 
-    def is_copy(self, frame: Frame) -> bool:
-        """Whether this is a copy; one for each time of sending. A further one the arm said."""
+    def take_copy(self, frame: Frame) -> bool:
+        """Return whether a frame is a copy of a request.
+
+        Each sending has one copy; one that comes beyond that is the arm's own frame.
+        """
         self._noise = b""
-        for sent in (self._question, self._order):
+        for sent in (self._request, self._one_way):
             if (
                 sent is not None
                 and sent.copies
-                and frame.offset >= sent.since
+                and frame.offset >= sent.offset
                 and frame.data == sent.frame
             ):
                 sent.copies -= 1
                 return True
         return False
+
+    def _restart(self) -> None:
+        if not self.proven:
+            self._noise = b""

@@ -1,71 +1,100 @@
-"""What a host session tells: one of these, or noise, for everything that is heard or not heard."""
+"""What the session makes of received bytes, and the traffic that listeners see."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
-from cobotwire.codec.interface import Frame, Message, Noise
-from cobotwire.errors import ProtocolError
-from cobotwire.table import Command
+from cobotwire.codec.interface import DecodedMessage, Frame, Noise
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Command
 
 
-class Answered(NamedTuple):
+class ReplyMatched(NamedTuple):
     """The reply that was waited for.
 
-    ``message`` is None where it was text outside any frame. ``frame`` is None where its bytes were
-    told before: as noise, which a text is, or as :class:`Echoed`.
+    ``message`` is None where the reply was text outside any frame. ``frame`` is None where an
+    earlier event has reported the bytes: as noise, which text is, or as :class:`EchoReceived`.
     """
 
     command: Command
     fields: dict[str, Any]
-    message: Message | None
+    message: DecodedMessage | None
     frame: Frame | None = None
 
 
-class Refused(NamedTuple):
-    """The reply that was waited for came, but the edition does not allow it."""
+class ReplyRejected(NamedTuple):
+    """The reply that was waited for came, but the edition does not allow its values."""
 
     command: Command
     error: ProtocolError
     frame: Frame | None = None
 
 
-class Late(NamedTuple):
-    """The reply to a question that was given up, or was answered already when asked again."""
+class LateReply(NamedTuple):
+    """The reply to a request that was given up, or to an earlier attempt of one that has ended."""
 
     command: Command
     frame: Frame
 
 
-class Acknowledged(NamedTuple):
-    """The acknowledgement of an order."""
+class AckReceived(NamedTuple):
+    """The acknowledgement of a one-way request."""
 
     command: Command
-    message: Message
+    message: DecodedMessage
     frame: Frame
 
 
-class Unasked(NamedTuple):
-    """A legal frame that answers nothing."""
+class UnexpectedFrame(NamedTuple):
+    """A legal frame that replies to nothing."""
 
     frame: Frame
 
 
-class Echoed(NamedTuple):
-    """The very bytes of the question: an echo, or an answer that looks just like it.
+class EchoReceived(NamedTuple):
+    """The request's own bytes: an echo, or a reply that looks the same.
 
-    Which of the two shows only later; see :class:`cobotwire.session.echo.EchoWatch`.
+    Only what follows tells which; see :mod:`cobotwire.session.echo`.
     """
 
     frame: Frame
 
 
-class Expired(NamedTuple):
-    """The deadline passed; the question was asked ``tries`` times, first at ``asked_at``."""
+class RequestExpired(NamedTuple):
+    """The deadline passed; the request was sent ``attempts`` times, first at ``requested_at``."""
 
     command: Command
-    asked_at: float
-    tries: int = 1
+    requested_at: float
+    attempts: int = 1
 
 
-SessionEvent = Answered | Refused | Late | Acknowledged | Unasked | Echoed | Expired | Noise
+FrameEvent = LateReply | UnexpectedFrame | EchoReceived
+SessionEvent = ReplyMatched | ReplyRejected | AckReceived | RequestExpired | FrameEvent | Noise
+
+
+class Traffic(NamedTuple):
+    """One frame, text or span of noise that went over the line.
+
+    Every received byte stands in exactly one of these, in the order of the line. A sent frame is
+    reported when it has been written.
+
+    Attributes:
+        time: seconds of ``time.monotonic()``: after the write, or when the last byte was read.
+        direction: ``sent`` or ``received``.
+        data: a frame (with the text that follows some), or a span of noise.
+        event: what the session makes of it; None for what is sent.
+    """
+
+    time: float
+    direction: Literal["sent", "received"]
+    data: bytes
+    event: SessionEvent | None = None
+
+
+def as_traffic(event: SessionEvent, now: float) -> Traffic | None:
+    """Return an event as traffic; None where its bytes were reported before, or it has none."""
+    if isinstance(event, Noise):
+        return Traffic(now, "received", event.data, event)
+    if isinstance(event, RequestExpired) or event.frame is None:
+        return None
+    return Traffic(now, "received", event.frame.data, event)

@@ -1,7 +1,7 @@
-"""Waiting for the end of a motion: what to ask, and when to give up; times are numbers.
+"""When a motion is over: what to request, and when to give up; times are numbers.
 
-A generator yields what to do next, and is sent how that went. So the blocking and the asyncio
-driver wait in their own ways and decide nothing.
+A generator yields the next step and is sent how it went. So the blocking and the asyncio client
+wait in their own ways, and decide nothing.
 """
 
 from __future__ import annotations
@@ -9,22 +9,22 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import Any, NamedTuple
 
-from cobotwire.errors import MotionTimeout
-from cobotwire.table import Command, Table
+from cobotwire.protocol.errors import MotionTimeout
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Table
 
-# Ten rounds of two questions at most: an arm that moves answers 10 to 20 a second.
+# Ten rounds a second of at most two requests: a moving arm replies to 10 to 20 a second.
 POLL_SECONDS = 0.1
-# How long a motion is waited for, unless the caller says otherwise.
+# How long a motion is waited for by default.
 MOTION_SECONDS = 30.0
-# An arm that stands still for so long will not go on by itself.
+# An arm that stands still for this long does not continue by itself.
 STILL_SECONDS = 1.0
 
 
-class Ask(NamedTuple):
-    """Ask this, and wait ``longest`` seconds at most."""
+class Query(NamedTuple):
+    """Send this request, and wait at most ``longest`` seconds for its reply."""
 
-    name: str
-    values: tuple[Any, ...]
+    request: Request[Any]
     longest: float
 
 
@@ -34,18 +34,18 @@ class Pause(NamedTuple):
     until: float
 
 
-class Went(NamedTuple):
-    """How a step went: the time after it; the reply's fields, None where none came."""
+class Outcome(NamedTuple):
+    """How a step went: the time after it, and the request's result; None where no reply came."""
 
     now: float
-    fields: dict[str, Any] | None = None
+    result: Any = None
 
 
-Steps = Generator[Ask | Pause, Went, None]
+Steps = Generator[Query | Pause, Outcome, None]
 
 
 def kind_of(table: Table, label: str) -> int:
-    """The number by which the edition calls a kind of target, ANGLES or COORDS."""
+    """Return the edition's number for a kind of target, ANGLES or COORDS."""
     kind = table.in_role("reached").request[0].fields[1]
     return kind.choices[kind.labels.index(label)]
 
@@ -53,24 +53,26 @@ def kind_of(table: Table, label: str) -> int:
 def until_reached(
     table: Table, target: Sequence[float], kind: int, limit: float, started: float
 ) -> Steps:
-    """The steps of waiting until the arm is at a target.
+    """Yield the steps of waiting until the arm is at a target.
 
-    A question that stays unanswered is no failure: the arm is busy. It is asked again in the next
-    round, until the time is over.
+    A request without a reply is not an error: the arm is busy. The next round repeats it, until
+    the time is over.
 
     Raises:
         MotionTimeout: the target was not reached within ``limit`` seconds, or the arm has stood
             still for a second and is not there.
     """
-    reached, moving = table.in_role("reached"), table.in_role("moving")
+    # Their arguments are those of the role, which the type of any request does not say.
+    is_reached: Any = table.in_role("reached").request_type
+    reached, moving = is_reached(target, kind), table.in_role("moving").request_type()
     now, still_since = started, None
     while True:
         begun = now
-        now, answer = yield Ask(reached.name, (target, kind), _left(started, limit, now))
-        if _yes(reached, answer):
+        now, is_there = yield Query(reached, _left(started, limit, now))
+        if is_there:
             return
-        now, answer = yield Ask(moving.name, (), _left(started, limit, now))
-        if answer is None or _yes(moving, answer):
+        now, is_moving = yield Query(moving, _left(started, limit, now))
+        if is_moving is None or is_moving:
             still_since = None
         elif still_since is None:
             still_since = now
@@ -82,10 +84,5 @@ def until_reached(
 
 
 def _left(started: float, limit: float, now: float) -> float:
-    """What is left of the time; a question gets a tenth of a second at least."""
+    """Return the time that is left; a request gets a tenth of a second at least."""
     return max(0.1, started + limit - now)
-
-
-def _yes(command: Command, fields: dict[str, Any] | None) -> bool:
-    """What the one flag of a reply says."""
-    return fields is not None and bool(fields[command.reply[0].fields[0].name])

@@ -1,61 +1,203 @@
-"""The one question that waits for its reply."""
+"""Requests in progress: what a caller holds until the reply or acknowledgement has come."""
 
 from __future__ import annotations
 
-from cobotwire.codec.interface import Message
-from cobotwire.session.listening import TextListener
-from cobotwire.session.request import Request
-from cobotwire.table import Command
+from collections.abc import Callable
+from typing import Any
+
+from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
+from cobotwire.protocol.errors import CobotwireError, LinkError, ReplyTimeout
+from cobotwire.session.acks import ExpectedAck
+from cobotwire.session.events import FrameEvent
+from cobotwire.session.policy import RetryPolicy
+from cobotwire.session.received import ReceivedMeanwhile
+from cobotwire.session.request import EncodedRequest, as_call
+from cobotwire.session.text import TextCollector
 
 
 class Pending:
-    """A question that was asked; all times are the caller's seconds.
+    """A request whose caller waits.
 
     Attributes:
-        since: where in the stream its replies begin at the earliest.
-        asked: when it was asked, and asked again.
-        candidate: a copy of the question that reads as its answer.
+        request: what is sent.
+        done: whether it has ended; then :meth:`result` tells how.
+    """
+
+    __slots__ = ("_error", "_fields", "_on_done", "_received", "done", "request")
+
+    def __init__(self, request: EncodedRequest) -> None:
+        self.request = request
+        self.done = False
+        self._fields: dict[str, Any] = {}
+        self._error: CobotwireError | None = None
+        self._on_done: Callable[[], object] | None = None
+        # Made with the first event: most requests receive nothing but their reply.
+        self._received: ReceivedMeanwhile | None = None
+
+    def when_done(self, call: Callable[[], object]) -> None:
+        """Have ``call`` called once when the reply has come, or the wait has failed."""
+        self._on_done = call
+
+    def result(self) -> dict[str, Any]:
+        """Return the fields of the reply by name.
+
+        Raises:
+            CobotwireError: the reason why there is no reply.
+        """
+        error = self._error
+        if error is None:
+            return self._fields
+        if isinstance(error, LinkError):
+            # One fault of the transport ends many requests; each thread raises its own error.
+            raise LinkError(error.url, error.detail, error.written) from error
+        raise error
+
+    def note(self, event: FrameEvent | Noise) -> None:
+        """Remember an event that was not the reply, for the text of a timeout."""
+        if self._received is None:
+            self._received = ReceivedMeanwhile()
+        self._received.add(event)
+
+    def succeed(self, fields: dict[str, Any]) -> None:
+        """End it with a reply."""
+        self._fields = fields
+        self._end()
+
+    def fail(self, error: CobotwireError) -> None:
+        """End it with an error."""
+        self._error = error
+        self._end()
+
+    def expire(self, codec: Codec, waited: float, attempts: int) -> None:
+        """End it with a ReplyTimeout, which lists what was received meanwhile."""
+        received = () if self._received is None else self._received.lines(codec, self.request.frame)
+        call = as_call(self.request, codec)
+        self.fail(ReplyTimeout(self.request.command.name, waited, received, attempts, call))
+
+    def cancel(self) -> None:
+        """End it without a word: its caller does not wait any longer."""
+        self.done = True
+
+    def _end(self) -> None:
+        self.done = True
+        if self._on_done is not None:
+            self._on_done()
+
+
+class PendingRequest(Pending):
+    """A request that waits for its turn, then for its reply.
+
+    Attributes:
+        policy: how often it is sent.
+        queued_at: when it was submitted.
+        attempt_times: when it was sent; empty while it waits for its turn.
+        offset: where in the received stream its reply can begin at the earliest.
+        candidate: a copy of the request that is also a legal reply.
+        text: collects a reply that is text outside any frame.
+        replied_at: when its reply was received; None: not yet, or never.
     """
 
     __slots__ = (
-        "asked",
+        "_attempts",
+        "_deadline",
+        "_undrained_since",
+        "_wait",
+        "attempt_times",
         "candidate",
-        "command",
-        "deadline",
-        "request",
-        "since",
+        "offset",
+        "policy",
+        "queued_at",
+        "replied_at",
         "text",
-        "tries",
-        "turn",
     )
 
-    def __init__(self, request: Request, now: float, wait: float, tries: int, since: int) -> None:
-        self.request = request
-        self.command: Command = request.command
-        self.asked = [now]
-        self.deadline = now + wait
-        self.tries = tries
-        self.turn = wait / tries
-        self.since = since
-        form = self.command.text
-        self.text = None if form is None else TextListener(form)
-        self.candidate: Message | None = None
+    def __init__(
+        self, request: EncodedRequest, wait: float | None, policy: RetryPolicy, now: float
+    ) -> None:
+        """Queue a request; ``wait`` is its deadline in seconds, None: that of the edition."""
+        super().__init__(request)
+        command = request.command
+        self._wait = command.deadline_ms / 1000 if wait is None else wait
+        self._attempts = policy.attempts_of(command, self._wait)
+        self._deadline = 0.0
+        self._undrained_since: float | None = None
+        self.policy = policy
+        self.queued_at = now
+        self.attempt_times: tuple[float, ...] = ()
+        self.offset = 0
+        self.candidate: DecodedMessage | None = None
+        self.text = None if command.text is None else TextCollector(command.text)
+        self.replied_at: float | None = None
 
     @property
-    def over_at(self) -> float:
-        """When the wait ends, unless more is heard."""
-        if self.text is None:
-            return self.deadline
-        silent_at = self.text.silent_at
-        if silent_at is None:
-            return self.deadline
-        # A text that has begun may be finished behind the deadline; babble may not go on for ever.
-        return min(silent_at, self.deadline + self.text.silence)
+    def requested_at(self) -> float:
+        """When it was first sent."""
+        return self.attempt_times[0]
 
     @property
-    def again_at(self) -> float | None:
-        """When it is to be asked again; None: no more. Late drivers leave a try its time."""
-        if len(self.asked) >= self.tries:
+    def ends_at(self) -> float:
+        """When the wait ends unless more is received."""
+        if self.text is None or self.text.ends_at is None:
+            return self._deadline
+        # A text that has begun may end after the deadline, but a babbling line may not go on.
+        return min(self.text.ends_at, self._deadline + self.text.silence)
+
+    @property
+    def repeat_at(self) -> float | None:
+        """When it is to be sent again; None: not again.
+
+        An attempt that was sent late still gets its full time.
+        """
+        times = self.attempt_times
+        if len(times) >= self._attempts:
             return None
-        at = self.asked[-1] + self.turn
-        return at if at < self.deadline else None
+        at = times[-1] + self._wait / self._attempts
+        return at if at < self._deadline else None
+
+    def undrained(self, now: float) -> float:
+        """Return for how many seconds unread bytes have kept it from being sent, up to now."""
+        if self._undrained_since is None:
+            self._undrained_since = now
+        return now - self._undrained_since
+
+    def begin(self, now: float, offset: int) -> None:
+        """Note that it is sent for the first time; its reply can begin at ``offset``."""
+        self.offset = offset
+        self._deadline = now + self._wait
+        self.attempt_times = (now,)
+
+    def repeat(self, now: float) -> None:
+        """Note that it is sent again."""
+        self.attempt_times = (*self.attempt_times, now)
+
+    def accepts(self, frame: Frame) -> bool:
+        """Return whether a frame has its command id and began after it was sent."""
+        command = self.request.command
+        return frame.command == command.id and frame.offset >= self.offset and bool(command.reply)
+
+    def keep_candidate(self, message: DecodedMessage) -> None:
+        """Keep a copy of the request, which counts if no other reply comes."""
+        self.candidate = message
+
+    def reply(self, fields: dict[str, Any], now: float) -> None:
+        """End it with the reply that was received at ``now``."""
+        self.replied_at = now
+        self.succeed(fields)
+
+
+class PendingAck(Pending):
+    """A one-way request whose caller waits for its acknowledgement.
+
+    Attributes:
+        ack: the acknowledgement that is expected.
+        sent_at: when the request was sent.
+        until: when the wait ends.
+    """
+
+    __slots__ = ("ack", "sent_at", "until")
+
+    def __init__(self, request: EncodedRequest, ack: ExpectedAck, now: float, until: float) -> None:
+        super().__init__(request)
+        self.ack = ack
+        self.sent_at = now
+        self.until = until

@@ -1,15 +1,15 @@
-"""How a question is asked again, and for how long its answers are expected: the caller's choice."""
+"""How often a query is sent, and for how long late replies are expected: the caller's choice."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cobotwire.errors import UsageError
-from cobotwire.table import Command
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command
 
-# A reply was seen 727 ms after its request on a real line; none later.
+# The latest reply that was seen on a real line came 727 ms after its request.
 GRACE_SECONDS = 1.0
-MOST_TRIES = 100
+MOST_ATTEMPTS = 100
 
 
 def _is_number(value: object) -> bool:
@@ -18,41 +18,41 @@ def _is_number(value: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class RetryPolicy:
-    """Splits the time that an answer may take into a few tries. Only queries are asked again.
+    """Splits the deadline of a query into attempts. Only queries are ever sent again.
 
-    On real lines a reply comes within some 30 ms or never, so asking again beats waiting longer.
-    The deadline stays what it is: three tries within 500 ms are one every 167 ms.
+    On real lines a reply comes within some 30 ms or never, so sending again beats waiting longer.
+    The deadline does not change: three attempts within 500 ms are one every 167 ms.
 
     Attributes:
-        tries: how often a query is asked at most, 1..100; 1 is never again.
-        shortest: seconds that each try gets at least, above 0; a short deadline has fewer tries.
-        grace: seconds for which the reply to a try that seems lost is still expected, 0 or more.
-            The next question that it could be taken to answer is held so long, or until it came.
+        attempts: how often a query is sent at most, 1..100; 1 never repeats it.
+        shortest_attempt: seconds that each attempt gets at least, above 0; a short deadline has
+            fewer attempts.
+        grace: seconds after an attempt during which its late reply is still expected, 0 or more.
+            A later request whose reply would look the same is held until then, or until the late
+            reply has come.
     """
 
-    tries: int = 3
-    shortest: float = 0.1
+    attempts: int = 3
+    shortest_attempt: float = 0.1
     grace: float = GRACE_SECONDS
 
     def __post_init__(self) -> None:
-        """Check the parts."""
-        if not _is_number(self.tries) or self.tries not in range(1, MOST_TRIES + 1):
-            raise UsageError("retry.tries", self.tries, f"a whole number 1..{MOST_TRIES}")
-        if not _is_number(self.shortest) or not 0 < self.shortest < 3600:
-            raise UsageError("retry.shortest", self.shortest, "seconds above 0 and below 3600")
+        """Check the values."""
+        if not _is_number(self.attempts) or self.attempts not in range(1, MOST_ATTEMPTS + 1):
+            raise UsageError("retry.attempts", self.attempts, f"a whole number 1..{MOST_ATTEMPTS}")
+        if not _is_number(self.shortest_attempt) or not 0 < self.shortest_attempt < 3600:
+            allowed = "seconds above 0 and below 3600"
+            raise UsageError("retry.shortest_attempt", self.shortest_attempt, allowed)
         if not _is_number(self.grace) or not 0 <= self.grace < 3600:
             raise UsageError("retry.grace", self.grace, "seconds from 0 to below 3600")
 
-    def tries_of(self, command: Command, wait: float) -> int:
-        """Into how many tries the ``wait`` of a question is split.
+    def attempts_of(self, command: Command, wait: float) -> int:
+        """Return into how many attempts the ``wait`` of a request is split.
 
-        What is not a query is never asked twice. Nor is a text outside any frame: two that follow
-        each other could not be told from a longer one.
+        A command that is not a query gets one. So does a text reply: two that follow each other
+        look like one longer text.
         """
         if command.safety != "query" or command.text is not None:
             return 1
-        # 0.3 s are three times 0.1 s, whatever binary fractions say.
-        return max(1, min(self.tries, int(wait / self.shortest + 1e-9)))
-
-
-ASK_ONCE = RetryPolicy(tries=1)
+        # 0.3 s are three times 0.1 s, in spite of binary fractions.
+        return max(1, min(self.attempts, int(wait / self.shortest_attempt + 1e-9)))

@@ -1,100 +1,91 @@
-"""A request that has been checked and spelt, but not sent."""
+"""Requests that are validated and encoded, not yet sent."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from cobotwire.codec.interface import Codec, Message
+from cobotwire.codec.interface import Codec
+from cobotwire.protocol.messages import Request, Result
+from cobotwire.protocol.table import Command
 from cobotwire.session import text
-from cobotwire.table import Command
 
 
-class Request(NamedTuple):
-    """``frame`` and ``text`` go over the line; ``asked`` are the arguments as an echo spells them.
+class EncodedRequest(NamedTuple):
+    """A request as it goes over the line.
 
-    ``text`` is what follows some requests outside the frame; ``asked`` is empty where no reply
-    echoes anything.
+    ``arguments`` are those that a reply can repeat, with the values that it would repeat; empty
+    where no reply repeats any. ``text`` follows some requests outside the frame.
     """
 
     command: Command
     frame: bytes
     text: bytes
-    asked: dict[str, Any]
+    arguments: dict[str, Any]
 
 
-class Requests:
-    """Makes requests; what does not depend on the arguments is looked up once."""
+class RequestEncoder:
+    """Encodes requests; what does not depend on the arguments is computed once."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
-        self._commands = {command.name: command for command in codec.table.commands}
-        # Calls without arguments are always the same bytes.
-        self._known: dict[str, Request] = {}
-        asking = {command.id for command in self._commands.values() if command.answers}
-        self._mistakable = {c.name for c in codec.table.commands if c.ack and c.id in asking}
+        # The commands that were used, and whether a reply can repeat arguments of theirs.
+        self._commands: dict[str, tuple[Command, bool]] = {}
+        # A request without arguments is always the same bytes.
+        self._known: dict[str, EncodedRequest] = {}
 
-    def mistakable(self, command: Command) -> bool:
-        """Whether its acknowledgement could be taken for the answer to some question."""
-        return command.name in self._mistakable
-
-    def prepare(
-        self, name: str, values: Sequence[Any], text_values: Mapping[str, str] | None
-    ) -> Request:
-        """Check and spell a request.
+    def encode_request(self, request: Request[Any]) -> EncodedRequest:
+        """Validate and encode a typed request.
 
         Raises:
-            UsageError: there is no such command, or the arguments are not allowed.
+            UsageError: there is no such command, or an argument is not allowed.
         """
-        known = self._known.get(name)
+        values = request.values
+        known = self._known.get(request.command)
         if known is not None and not values:
             return known
-        # The table's own look-up is slower, and tells the nearest spelling.
-        command = self._commands.get(name) or self._codec.table.command(name)
+        command, _ = self._command(request.command)
+        texts = None if command.request_text is None else request.text_values
+        return self.encode(request.command, values, texts)
+
+    def encode(
+        self, name: str, values: Sequence[Any], text_values: Mapping[str, str] | None = None
+    ) -> EncodedRequest:
+        """Validate and encode a request by its command's name.
+
+        Raises:
+            UsageError: there is no such command, or an argument is not allowed.
+        """
+        command, can_repeat = self._command(name)
         frame = self._codec.encode(name, "request", values)
         if command.request_text is not None:
-            return Request(command, frame, text.spell(command.request_text, text_values or {}), {})
-        # Our own frame, read back, gives the arguments as an echo would spell them.
-        asked = self._codec.decode("request", frame).fields if _echoes(command) else {}
-        request = Request(command, frame, b"", asked)
+            sent_text = text.encode(command.request_text, text_values or {})
+            return EncodedRequest(command, frame, sent_text, {})
+        # Decoding our own frame gives the arguments as a reply would repeat them.
+        arguments = self._codec.decode("request", frame).fields if can_repeat else {}
+        request = EncodedRequest(command, frame, b"", arguments)
         if not values:
             self._known[name] = request
         return request
 
-
-def _echoes(command: Command) -> bool:
-    return any(field.echo for form in command.reply for field in form.fields)
-
-
-def fits(message: Message, request: Request) -> bool:
-    """Whether a reply of the request's command echoes the request's arguments."""
-    if not request.asked:
-        return True
-    echoed = (field.name for field in message.layout.fields if field.echo)
-    fields = message.fields
-    return all(request.asked.get(name, fields[name]) == fields[name] for name in echoed)
+    def _command(self, name: str) -> tuple[Command, bool]:
+        found = self._commands.get(name)
+        if found is None:
+            command = self._codec.table.command(name)
+            can_repeat = any(field.echo for variant in command.reply for field in variant.fields)
+            found = self._commands[name] = command, can_repeat
+        return found
 
 
-def told_apart(one: Request, other: Request) -> bool:
-    """Whether no reply to one could be taken for a reply to the other."""
-    command = other.command
-    if one.command.id != command.id:
-        return True
-    if one.command.name != command.name or not command.reply:
-        return False
-    # Older firmware leaves the echo out: every form of the reply must tell.
-    return all(
-        any(field.echo and _differ(field.name, one, other) for field in form.fields)
-        for form in command.reply
-    )
-
-
-def _differ(name: str, one: Request, other: Request) -> bool:
-    return name in one.asked and name in other.asked and one.asked[name] != other.asked[name]
-
-
-def in_words(request: Request, codec: Codec) -> str:
-    """The call as a person writes it: ``get_encoder(joint=1)``."""
+def as_call(request: EncodedRequest, codec: Codec) -> str:
+    """Return the request as a person writes it: ``get_encoder(joint=1)``."""
     fields = codec.decode("request", request.frame, of=request.command.name).fields
-    given = ", ".join(f"{name}={value}" for name, value in fields.items())
-    return f"{request.command.name}({given})" if given else request.command.name
+    arguments = ", ".join(f"{name}={value}" for name, value in fields.items())
+    return f"{request.command.name}({arguments})"
+
+
+def result_of(request: Request[Result], fields: Mapping[str, Any]) -> Result:
+    """Return what a client's method returns, given the decoded fields of the reply."""
+    assert request.reply_type is not None, "a request that is waited for has a reply"
+    result: Result = request.reply_type.from_fields(fields).result
+    return result

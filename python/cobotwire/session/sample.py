@@ -1,90 +1,92 @@
-"""What a stream gives: samples, and the report of how it went."""
+"""What a stream yields: samples, and a report of how it went."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
-# A query's name; or a tuple of its name and its arguments, for queries that take some.
-Query = str | tuple[str, *tuple[Any, ...]]
+from cobotwire.protocol.messages import Request
+
+Result = TypeVar("Result")
 
 
-class Reading(NamedTuple):
-    """The answer to one query, as its method gives it.
+class Reading(NamedTuple, Generic[Result]):
+    """The result of one request, and when it was read.
 
-    Times are those of ``time.monotonic()``, unless the link has a clock of its own.
+    Times are seconds of ``time.monotonic()``, unless the transport has a clock of its own. The arm
+    measured the value between the two.
     """
 
-    value: Any
-    asked_at: float
-    """When the question was written, in seconds."""
-    answered_at: float
-    """When its reply was read, in seconds: what the value tells, was so between the two."""
+    value: Result
+    """What the client's method for the request returns."""
+    requested_at: float
+    """When the request was written."""
+    replied_at: float
+    """When its reply was read."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """What the queries of a stream answered in one of its slots.
+    """The results of a stream's requests in one of its slots.
 
-    ``sample["get_angles"]`` and ``sample["get_encoder", 2]`` are the values of single queries.
+    ``sample[GetAngles()]`` is the result of one request, with its precise type.
 
     Attributes:
         number: counts the samples of a stream, from 0.
-        slot: counts the periods of a stream, from 0, those without a sample too.
-        queries: what was asked, in this order.
-        readings: a reading for each query.
+        slot: counts the periods of a stream, from 0, also those without a sample.
+        requests: the requests of the stream, in the order of sending.
+        readings: a reading for each request.
     """
 
     number: int
     slot: int
-    queries: tuple[Query, ...]
-    readings: tuple[Reading, ...]
+    requests: tuple[Request[Any], ...]
+    readings: tuple[Reading[Any], ...]
 
     @property
-    def asked_at(self) -> float:
-        """When its first question was written, in seconds of ``time.monotonic()``."""
-        return self.readings[0].asked_at
+    def requested_at(self) -> float:
+        """When its first request was written, in seconds."""
+        return self.readings[0].requested_at
 
     @property
-    def answered_at(self) -> float:
-        """When its last reply was read, in seconds of ``time.monotonic()``."""
-        return self.readings[-1].answered_at
+    def replied_at(self) -> float:
+        """When its last reply was read, in seconds."""
+        return self.readings[-1].replied_at
 
     @property
     def values(self) -> tuple[Any, ...]:
-        """The answers, in the order of the queries."""
+        """The results, in the order of the requests."""
         return tuple(reading.value for reading in self.readings)
 
-    def reading(self, *query: Any) -> Reading:
-        """The answer to one query with its times: ``sample.reading("get_encoder", 2)``.
+    def reading(self, request: Request[Result]) -> Reading[Result]:
+        """Return the result of one request with its times.
 
         Raises:
-            KeyError: the stream does not ask that.
+            KeyError: the stream does not send that request.
         """
-        wanted = query[0] if len(query) == 1 else query
-        # Not a dict: arguments may be lists, and there are few queries.
-        for known, reading in zip(self.queries, self.readings):
-            if known == wanted:
+        # Not a dict: arguments may be lists, and there are few requests.
+        for known, reading in zip(self.requests, self.readings):
+            if known == request:
                 return reading
-        raise KeyError(wanted)
+        raise KeyError(request)
 
-    def __getitem__(self, query: Query) -> Any:
-        return self.reading(*query).value if isinstance(query, tuple) else self.reading(query).value
+    def __getitem__(self, request: Request[Result]) -> Result:
+        return self.reading(request).value
 
 
 class StreamReport(NamedTuple):
-    """How a stream went so far. Every slot is a sample, or is missed for one of three reasons."""
+    """How a stream went so far. Every slot has a sample, or is missed for one of three reasons."""
 
     rate: float
-    """Slots a second: what was asked for."""
+    """Slots a second: what was requested."""
     samples: int
     """Slots with a sample."""
     unanswered: int
-    """Missed: a question had no answer in time, or one that the edition does not allow."""
+    """Missed: a request had no reply in time, or one that the edition does not allow."""
     overrun: int
     """Missed: the line or the process was still busy. The rate is more than they can do."""
     unread: int
-    """Missed: the consumer had not asked for a sample by then, so the arm was not asked either."""
+    """Missed: the consumer wanted no sample by then, so nothing was requested either."""
 
     @property
     def missed(self) -> int:

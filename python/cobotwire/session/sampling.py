@@ -1,22 +1,25 @@
-"""When a stream asks: slots of one period each; no clock, thread or port in here.
+"""When a stream sends its requests; times are numbers, and there is no clock, thread or port.
 
-Slot k belongs to the moment ``started + k * period``, and has one sample at most. It is asked at
-its moment, or up to half a period later; after that it is missed, and the moment of the next one is
-waited for. So nothing is caught up in bursts: two samples are asked half a period apart at least. A
-sample that was held up (by another thread's question, or by an owed reply) counts for the slot that
-is nearest to its asking.
+A stream is cut into slots of one period each. Slot k belongs to the moment ``started + k * period``
+and has at most one sample. Its requests are sent at that moment, or up to half a period later;
+after that the slot is missed, and the stream waits for the next one. So nothing is made up for in
+bursts: two samples are requested at least half a period apart. A sample that was held up (by
+another thread's request, or by an outstanding reply) counts for the slot nearest to its sending.
 
-Nothing is asked for that is not wanted: while the consumer is busy, slots pass unread. So there is
-no queue that could grow, and no sample is older than its wait for the consumer's call.
+Nothing is requested that nobody wants: while the consumer is busy, slots pass unread. So there is
+no queue that could grow, and no sample is older than the call that waits for it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
+from typing import Any
 
-from cobotwire.errors import UsageError
-from cobotwire.session.sample import Query, Reading, Sample, StreamReport
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Table
+from cobotwire.session.sample import Reading, Sample, StreamReport
 
 HIGHEST_RATE = 1000.0
 
@@ -24,24 +27,21 @@ HIGHEST_RATE = 1000.0
 class Sampler:
     """The slots of one stream; ``now`` is the caller's seconds and never goes back.
 
-    The driver takes turns with it: :meth:`plan`, wait until then, ask, :meth:`answered` or
-    :meth:`unanswered`. What breaks off in between is told by :meth:`interrupted`.
+    The stream takes turns with it: :meth:`plan`, wait until then, send the requests,
+    :meth:`answered` or :meth:`unanswered`; :meth:`interrupted` if it is stopped in between.
     """
 
-    def __init__(self, queries: tuple[Query, ...], rate: float) -> None:
-        """Queries in the order of asking; ``rate`` in slots a second.
+    def __init__(self, requests: tuple[Request[Any], ...], rate: float) -> None:
+        """Take the requests of each slot in the order of sending, and ``rate`` in slots a second.
 
         Raises:
-            UsageError: the rate is none.
+            UsageError: the rate is not allowed.
         """
-        if (
-            not isinstance(rate, int | float)
-            or isinstance(rate, bool)
-            or not 0 < rate <= HIGHEST_RATE
-        ):
+        right = isinstance(rate, int | float) and not isinstance(rate, bool)
+        if not right or not 0 < rate <= HIGHEST_RATE:
             allowed = f"samples a second, above 0 and up to {HIGHEST_RATE:g}"
             raise UsageError("rate", rate, allowed)
-        self._queries = queries
+        self._requests = requests
         self._rate = float(rate)
         self._started: float | None = None
         # The first slot that is neither used nor missed.
@@ -51,10 +51,10 @@ class Sampler:
         self._samples = self._unanswered = self._overrun = self._unread = 0
 
     def plan(self, now: float) -> float:
-        """The consumer wants a sample: when it is to be asked for; slots that passed are missed.
+        """Return when to send the next requests; slots that have passed are missed.
 
         Raises:
-            UsageError: another consumer waits for one.
+            UsageError: another consumer waits for a sample.
         """
         if self._free is None:
             raise UsageError("stream", "in use", "one consumer; others have streams of their own")
@@ -67,11 +67,11 @@ class Sampler:
         self._free = None
         return max(now, self._started + self._slot / self._rate)
 
-    def answered(self, readings: Sequence[Reading], now: float) -> Sample:
-        """Every question of the slot is answered."""
-        slot = max(self._slot, self._nearest(readings[0].asked_at))
-        sample = Sample(self._samples, slot, self._queries, tuple(readings))
-        # Counted here, since the slots before were neither used nor is the consumer to blame.
+    def answered(self, readings: Sequence[Reading[Any]], now: float) -> Sample:
+        """Return the sample of a slot in which every request has its reply."""
+        slot = max(self._slot, self._nearest(readings[0].requested_at))
+        sample = Sample(self._samples, slot, self._requests, tuple(readings))
+        # The slots before it were not used, and the consumer is not the reason.
         self._overrun += slot - self._slot
         self._samples += 1
         self._slot = slot + 1
@@ -79,20 +79,20 @@ class Sampler:
         return sample
 
     def unanswered(self, now: float) -> None:
-        """A question of the slot was not answered in time, or not as the edition allows."""
+        """Count a slot in which a request had no reply in time, or an illegal one."""
         self._unanswered += 1
         self._slot += 1
-        # What passed meanwhile passed because of that question, not of the consumer.
+        # The slots that passed meanwhile passed because of that request, not of the consumer.
         self._overrun += (late := max(0, self._nearest(now) - self._slot))
         self._slot += late
         self._free = now
 
     def interrupted(self, now: float) -> None:
-        """The consumer was interrupted while it waited; it may go on later."""
+        """Note that the consumer was interrupted while it waited; it may continue later."""
         self._free = now
 
     def report(self, now: float) -> StreamReport:
-        """How it went until ``now``; changes nothing."""
+        """Return how it went until ``now``; nothing changes."""
         overrun, unread = self._passed(now)
         return StreamReport(
             self._rate,
@@ -103,7 +103,7 @@ class Sampler:
         )
 
     def _passed(self, now: float) -> tuple[int, int]:
-        """Slots that have passed unused since: while the stream was busy, and the consumer."""
+        """Return how many slots passed unused while the stream was busy, and while it was not."""
         if self._started is None:
             return 0, 0
         passed = max(0, self._nearest(now) - self._slot)
@@ -112,6 +112,29 @@ class Sampler:
         return overrun, passed - overrun
 
     def _nearest(self, now: float) -> int:
-        """The slot whose moment is nearest; of two the earlier."""
+        """Return the slot whose moment is nearest; of two the earlier."""
         assert self._started is not None, "a stream starts with its first plan"
         return ceil((now - self._started) * self._rate - 0.5)
+
+
+def check_requests(requests: Sequence[Request[Any]], table: Table) -> None:
+    """Check that a stream may send these requests.
+
+    Raises:
+        UsageError: there is none, one comes twice, or one is not a query of the edition.
+    """
+    if not requests:
+        raise UsageError("requests", message=f"stream() needs a query: {_queries(table)}")
+    for index, request in enumerate(requests):
+        name = f"requests[{index}]"
+        if not isinstance(request, Request):
+            raise UsageError(name, request, "a request such as GetAngles()")
+        command = table.command(request.command)
+        if command.safety != "query" or not command.answers:
+            raise UsageError(name, request, f"a query: {_queries(table)}")
+        if request in requests[:index]:
+            raise UsageError(name, request, "each query once")
+
+
+def _queries(table: Table) -> str:
+    return ", ".join(c.name for c in table.commands if c.safety == "query" and c.answers)

@@ -3,57 +3,110 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
-from cobotwire.errors import ProtocolError, UsageError
-from cobotwire.table import TextReply, TextRequest
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import TextReply, TextRequest
 
 Text = TextReply | TextRequest
 
+# Names and passwords of a network have at most 32 and 63 characters.
+TEXT_LIMIT = 4096
 
-def spell(form: Text, values: Mapping[str, str]) -> bytes:
-    """The bytes of a text.
+
+def encode(variant: Text, values: Mapping[str, str]) -> bytes:
+    """Return the bytes of a text.
 
     Raises:
-        UsageError: a value is no ASCII text, or holds what would make the text read otherwise.
+        UsageError: a value is not printable ASCII, or would be decoded differently.
     """
-    for name in form.fields:
+    for name in variant.fields:
         value = values[name]
         if not isinstance(value, str) or not value.isascii() or not value.isprintable():
             raise UsageError(name, value, "printable ASCII text")
-    pieces = (prefix + values[name] for prefix, name in zip(form.prefixes, form.fields))
-    data = ("".join(pieces) + form.suffix).encode("ascii")
+    pieces = (prefix + values[name] for prefix, name in zip(variant.prefixes, variant.fields))
+    data = ("".join(pieces) + variant.suffix).encode("ascii")
     try:
-        unharmed = read(form, data) == {name: values[name] for name in form.fields}
+        unambiguous = decode(variant, data) == {name: values[name] for name in variant.fields}
     except ProtocolError:
-        unharmed = False
-    if not unharmed:
-        words = " or ".join(repr(word) for word in (*form.prefixes[1:], form.suffix) if word)
-        given = tuple(values[name] for name in form.fields)
-        raise UsageError(", ".join(form.fields), given, f"text without {words} inside")
+        unambiguous = False
+    if not unambiguous:
+        words = " or ".join(repr(word) for word in (*variant.prefixes[1:], variant.suffix) if word)
+        given = tuple(values[name] for name in variant.fields)
+        raise UsageError(", ".join(variant.fields), given, f"text without {words} inside")
     return data
 
 
-def read(form: Text, data: bytes) -> dict[str, str]:
-    """The fields of a text. They may contain spaces; a line end behind the last is dropped.
+def decode(variant: Text, data: bytes) -> dict[str, str]:
+    """Return the fields of a text by name. They may contain spaces; a final line end is dropped.
 
     Raises:
-        ProtocolError: it is no ASCII text, it does not start or end as it should, or a prefix
-            stands in it more than once, so that it can be read in two ways.
+        ProtocolError: the text is not ASCII, starts or ends in another way, or holds a prefix more
+            than once, so that it has two meanings.
     """
     try:
         text = data.decode("ascii").rstrip("\r\n")
     except UnicodeDecodeError as error:
-        raise ProtocolError("bad-text", error.start, data, "the text is no ASCII") from None
-    if not text.startswith(form.prefixes[0]):
-        raise ProtocolError("bad-text", 0, data, f"the text starts with {form.prefixes[0]!r}")
-    if not text.endswith(form.suffix) or len(text) < len(form.prefixes[0] + form.suffix):
-        raise ProtocolError("bad-text", len(data), data, f"the text ends with {form.suffix!r}")
-    rest = text[len(form.prefixes[0]) : len(text) - len(form.suffix)]
+        raise ProtocolError("bad-text", error.start, data, "the text is not ASCII") from None
+    if not text.startswith(variant.prefixes[0]):
+        raise ProtocolError("bad-text", 0, data, f"the text starts with {variant.prefixes[0]!r}")
+    if not text.endswith(variant.suffix) or len(text) < len(variant.prefixes[0] + variant.suffix):
+        raise ProtocolError("bad-text", len(data), data, f"the text ends with {variant.suffix!r}")
+    rest = text[len(variant.prefixes[0]) : len(text) - len(variant.suffix)]
     values = []
-    for prefix in form.prefixes[1:]:
+    for prefix in variant.prefixes[1:]:
         if rest.count(prefix) != 1:
             detail = f"{prefix!r} stands {rest.count(prefix)} times in the text, not once"
             raise ProtocolError("bad-text", len(text) - len(rest), data, detail)
         value, rest = rest.split(prefix)
         values.append(value)
-    return dict(zip(form.fields, (*values, rest)))
+    return dict(zip(variant.fields, (*values, rest)))
+
+
+class TextCollector:
+    """Collects a text reply from noise; only silence shows its end.
+
+    Bytes that come before its first prefix do not belong to it.
+    """
+
+    def __init__(self, variant: TextReply) -> None:
+        self.silence = variant.silence_ms / 1000
+        self._variant = variant
+        self._prefix = variant.prefixes[0].encode("ascii")
+        self._data = b""
+        self._last: float | None = None
+
+    @property
+    def ends_at(self) -> float | None:
+        """The second at which the text ends unless more of it comes; None: it has not begun."""
+        return None if self._last is None else self._last + self.silence
+
+    def is_over(self, now: float) -> bool:
+        """Return whether a text has begun, and has been silent for long enough."""
+        return self._last is not None and now >= self._last + self.silence
+
+    def add(self, data: bytes, now: float) -> None:
+        """Take bytes that belong to no frame."""
+        if not data:
+            return
+        self._data += data
+        if self._last is None:
+            start = self._data.find(self._prefix)
+            if start < 0:
+                # The prefix may have begun in the last bytes.
+                self._data = self._data[-len(self._prefix) :]
+                return
+            self._data = self._data[start:]
+        self._last = now
+        self._data = self._data[: TEXT_LIMIT + 1]
+
+    def decode(self) -> dict[str, Any]:
+        """Return the fields of the text by name.
+
+        Raises:
+            ProtocolError: the text is longer than allowed, or has another form.
+        """
+        if len(self._data) > TEXT_LIMIT:
+            detail = f"the text is longer than {TEXT_LIMIT} bytes"
+            raise ProtocolError("bad-text", TEXT_LIMIT, self._data[:64], detail)
+        return dict(decode(self._variant, self._data))

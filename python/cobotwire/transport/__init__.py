@@ -1,7 +1,7 @@
-"""The links that carry the bytes. They know errors, and nothing of the protocol."""
+"""Transports carry bytes: serial ports, TCP, and whatever else pyserial opens."""
 
-from cobotwire.transport.interface import Link, Transport
-from cobotwire.transport.opening import open_link
-from cobotwire.transport.tapped import TappedLink
+from cobotwire.transport.interface import OpenedTransport, Transport
+from cobotwire.transport.opening import open_transport
+from cobotwire.transport.tapped import TappedTransport
 
-__all__ = ["Link", "TappedLink", "Transport", "open_link"]
+__all__ = ["OpenedTransport", "TappedTransport", "Transport", "open_transport"]

@@ -1,4 +1,4 @@
-"""Links on an event loop: watched by the loop where that can be, else read by a thread."""
+"""Transports on an event loop: watched by the loop where possible, otherwise read by a thread."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 
-from cobotwire.errors import LinkError
-from cobotwire.transport.interface import AsyncLink, PollableTransport, Transport
+from cobotwire.protocol.errors import LinkError
+from cobotwire.transport.interface import AsyncTransport, PollableTransport, Transport
 
 WRITE_TIMEOUT = 1.0
-# How long the reading thread takes at most to hear that the link was closed.
+# After at most this long the reading thread notices that the transport was closed.
 SLICE_SECONDS = 0.1
 
-Told = Callable[[LinkError | None], None]
+Done = Callable[[LinkError | None], None]
 
 
-def attach(transport: Transport, ready: Callable[[], None]) -> AsyncLink:
-    """Bind an open transport to the running loop; ``ready`` is called when there is to be read."""
+def attach(transport: Transport, ready: Callable[[], None]) -> AsyncTransport:
+    """Bind an open transport to the running loop; ``ready`` is called when data has come."""
     if isinstance(transport, PollableTransport):
         descriptor = transport.fileno()
         if descriptor is not None:
             # Some loops (Windows' default one) cannot watch descriptors.
             with suppress(NotImplementedError):
-                return PolledLink(transport, descriptor, ready)
-    return ThreadedLink(transport, ready)
+                return PolledTransport(transport, descriptor, ready)
+    return ThreadedTransport(transport, ready)
 
 
-class PolledLink:
-    """Watched by the loop; see :class:`cobotwire.transport.interface.AsyncLink`."""
+class PolledTransport:
+    """An :class:`AsyncTransport` that the loop watches."""
 
     def __init__(
         self, transport: PollableTransport, descriptor: int, ready: Callable[[], None]
@@ -40,17 +40,17 @@ class PolledLink:
         self._descriptor = descriptor
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(descriptor, ready)
-        # Whole writes that were not taken yet, oldest first; the first one perhaps in part.
-        self._waiting: deque[tuple[bytes, Told]] = deque()
+        # Writes that were not taken yet, oldest first; the first one perhaps in part.
+        self._waiting: deque[tuple[bytes, Done]] = deque()
         self._stuck: asyncio.TimerHandle | None = None
         self._closed = False
 
     def read(self) -> bytes:
-        """What has come by now."""
+        """Return what has come by now."""
         return self._transport.read(0)
 
-    def write(self, data: bytes, told: Told) -> bool:
-        """Send ``data`` behind what was sent before."""
+    def write(self, data: bytes, done: Done) -> bool:
+        """Send ``data`` after what was sent before."""
         if not self._waiting:
             taken = self._transport.write_some(data)
             if taken == len(data):
@@ -58,26 +58,26 @@ class PolledLink:
             data = data[taken:]
             self._loop.add_writer(self._descriptor, self._write_on)
             self._stuck = self._loop.call_later(WRITE_TIMEOUT, self._give_up)
-        self._waiting.append((data, told))
+        self._waiting.append((data, done))
         return False
 
     def _write_on(self) -> None:
-        data, told = self._waiting[0]
+        data, done = self._waiting[0]
         try:
             taken = self._transport.write_some(data)
         except LinkError as error:
             self._end_writing(error)
             return
         if taken < len(data):
-            self._waiting[0] = (data[taken:], told)
+            self._waiting[0] = (data[taken:], done)
             return
         self._waiting.popleft()
-        told(None)
+        done(None)
         if not self._waiting:
             self._end_writing(None)
 
     def _give_up(self) -> None:
-        detail = f"does not take what is written: no byte was taken in {WRITE_TIMEOUT:.1f} s"
+        detail = f"cannot be written: no byte was taken in {WRITE_TIMEOUT:.1f} s"
         self._end_writing(LinkError(self._transport.url, detail))
 
     def _end_writing(self, error: LinkError | None) -> None:
@@ -85,11 +85,11 @@ class PolledLink:
         if self._stuck is not None:
             self._stuck.cancel()
         waiting, self._waiting = self._waiting, deque()
-        for _, told in waiting:
-            told(error)
+        for _, done in waiting:
+            done(error)
 
     def close(self) -> None:
-        """Stop watching and give the link back."""
+        """Stop watching and close the transport."""
         if not self._closed:
             self._closed = True
             self._loop.remove_reader(self._descriptor)
@@ -97,69 +97,69 @@ class PolledLink:
             self._transport.close()
 
 
-class ThreadedLink:
-    """Read and written by two threads; see :class:`cobotwire.transport.interface.AsyncLink`."""
+class ThreadedTransport:
+    """An :class:`AsyncTransport` that two threads read and write."""
 
     def __init__(self, transport: Transport, ready: Callable[[], None]) -> None:
         self._transport = transport
         self._loop = asyncio.get_running_loop()
         self._ready = ready
-        self._come: queue.SimpleQueue[bytes | LinkError] = queue.SimpleQueue()
-        self._going: queue.SimpleQueue[tuple[bytes, Told] | None] = queue.SimpleQueue()
+        self._read_queue: queue.SimpleQueue[bytes | LinkError] = queue.SimpleQueue()
+        self._write_queue: queue.SimpleQueue[tuple[bytes, Done] | None] = queue.SimpleQueue()
         self._lost: LinkError | None = None
         self._closed = False
         for work in (self._read_on, self._write_on):
             threading.Thread(target=work, name=f"cobotwire {transport.url}", daemon=True).start()
 
     def read(self) -> bytes:
-        """What has come by now."""
+        """Return what has come by now."""
         data = b""
         with suppress(queue.Empty):
             while self._lost is None:
-                come = self._come.get_nowait()
-                if isinstance(come, LinkError):
-                    self._lost = come
+                arrived = self._read_queue.get_nowait()
+                if isinstance(arrived, LinkError):
+                    self._lost = arrived
                 else:
-                    data += come
+                    data += arrived
         if self._lost is not None and not data:
             raise LinkError(self._lost.url, self._lost.detail)
         return data
 
-    def write(self, data: bytes, told: Told) -> bool:
-        """Send ``data`` behind what was sent before."""
-        self._going.put((data, told))
+    def write(self, data: bytes, done: Done) -> bool:
+        """Send ``data`` after what was sent before."""
+        self._write_queue.put((data, done))
         return False
 
     def close(self) -> None:
-        """Stop watching and give the link back."""
+        """Stop watching and close the transport."""
         if not self._closed:
             self._closed = True
-            self._going.put(None)
+            self._write_queue.put(None)
             self._transport.close()
 
     def _read_on(self) -> None:
         while not self._closed:
             try:
-                come: bytes | LinkError = self._transport.read(SLICE_SECONDS)
+                arrived: bytes | LinkError = self._transport.read(SLICE_SECONDS)
             except LinkError as error:
-                come = error
-            if come:
-                self._come.put(come)
+                arrived = error
+            if arrived:
+                self._read_queue.put(arrived)
                 self._in_loop(self._ready)
-            if isinstance(come, LinkError):
+            if isinstance(arrived, LinkError):
                 return
 
     def _write_on(self) -> None:
-        while (going := self._going.get()) is not None:
-            data, told = going
+        while (next_write := self._write_queue.get()) is not None:
+            data, done = next_write
             try:
                 self._transport.write(data)
             except LinkError as error:
-                self._in_loop(told, error)
+                self._in_loop(done, error)
             else:
-                self._in_loop(told, None)
+                self._in_loop(done, None)
 
     def _in_loop(self, call: Callable[..., None], *arguments: object) -> None:
-        # A loop that was closed meanwhile has nobody who waits.
+        # In a loop that was closed meanwhile nothing waits.
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(call, *arguments)

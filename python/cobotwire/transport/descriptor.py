@@ -1,34 +1,39 @@
-"""What a serial port and a socket have in common: a descriptor that never blocks."""
+"""What serial ports and sockets have in common: a descriptor that never blocks."""
 
 from __future__ import annotations
 
 import errno
 import logging
 import os
+import select
+import socket
 import threading
 import time
 from abc import ABC, abstractmethod
+from contextlib import suppress
 from typing import NoReturn
 
-from cobotwire.errors import LinkError
-from cobotwire.transport.waiting import Waiter
+from cobotwire.protocol.errors import LinkError
 
 READ_SIZE = 4096
-# A write may take twice the time that the line needs for the bytes, and this long besides.
+# A write may take this long, and twice the time besides that the line needs for the bytes.
 WRITE_SECONDS = 1.0
 # Start bit, eight data bits, stop bit.
 BITS_A_BYTE = 10
+# select() fails from this number of open files on. Below, it is preferred to poll(), which waits
+# for whole milliseconds.
+SELECTABLE = 1024
 
-_log = logging.getLogger("cobotwire.link")
+_log = logging.getLogger("cobotwire.transport")
 
 
 def write_limit(size: int, baudrate: int) -> float:
-    """How many seconds a write of ``size`` bytes may take before the link counts as stuck."""
+    """Return how many seconds a write of ``size`` bytes may take until the transport is stuck."""
     return WRITE_SECONDS + 2 * size * BITS_A_BYTE / baudrate
 
 
-class DescriptorLink(ABC):
-    """See :class:`cobotwire.transport.interface.Link`; the kinds differ in the last methods."""
+class DescriptorTransport(ABC):
+    """An :class:`OpenedTransport` over a descriptor; the kinds differ in the last methods."""
 
     kind = ""
     low_latency = False
@@ -37,8 +42,10 @@ class DescriptorLink(ABC):
         self.url = url
         self._baudrate = baudrate
         self._closed = True
+        # -1 while it is closed, which no wait takes.
+        self._descriptor = -1
         self._waiter = Waiter()
-        # Reentrant, since a signal may close the link in the very thread that waits for it.
+        # Reentrant, since a signal may close the transport in the very thread that waits for it.
         self._reading = threading.RLock()
         self._writing = threading.RLock()
         self.reopen()
@@ -47,12 +54,12 @@ class DescriptorLink(ABC):
         return f"<{type(self).__name__} {self.url}{', closed' if self._closed else ''}>"
 
     def read(self, timeout: float) -> bytes:
-        """What has come, as soon as there is something."""
+        """Return what has come, as soon as there is something."""
         deadline = time.monotonic() + timeout
         with self._reading:
             self._must_be_open("cannot be read")
             try:
-                while self._waiter.wait(self._descriptor(), timeout):
+                while self._waiter.wait(self._descriptor, timeout):
                     if self._closed:
                         break
                     try:
@@ -73,7 +80,7 @@ class DescriptorLink(ABC):
             return b""
 
     def write(self, data: bytes) -> None:
-        """Send all of ``data``; what was taken of it is told by the LinkError's ``written``."""
+        """Send all of ``data``; if it fails, the LinkError's ``written`` says how much was sent."""
         with self._writing:
             written = self.write_some(data)
             if written < len(data):
@@ -88,26 +95,26 @@ class DescriptorLink(ABC):
                 self._wait_for_room(deadline)
                 written += self.write_some(data[written:])
             except KeyboardInterrupt as error:
-                # The frame is finished first: behind half of one, the next would not be heard.
+                # The frame is finished first: after half a frame, the arm would miss the next one.
                 interrupt = error
             except LinkError as error:
                 error.written += written
                 raise
             if written < len(data) and time.monotonic() >= deadline:
-                taken = f"of {len(data)} bytes {written} were taken in {limit:.1f} s"
-                raise LinkError(self.url, f"does not take what is written: {taken}", written)
+                taken = f"only {written} of {len(data)} bytes were taken in {limit:.1f} s"
+                raise LinkError(self.url, f"cannot be written: {taken}", written)
         if interrupt is not None:
             raise interrupt
 
     def _wait_for_room(self, deadline: float) -> None:
         try:
-            self._waiter.wait(self._descriptor(), deadline - time.monotonic(), writing=True)
+            self._waiter.wait(self._descriptor, deadline - time.monotonic(), writing=True)
         except (OSError, ValueError) as error:
             self._fail("cannot be written", error)
         self._must_be_open("cannot be written", "it was closed meanwhile")
 
     def write_some(self, data: bytes) -> int:
-        """As much of ``data`` as the link takes without waiting."""
+        """Send as much of ``data`` as possible without waiting; return how many bytes."""
         with self._writing:
             self._must_be_open("cannot be written")
             try:
@@ -118,25 +125,26 @@ class DescriptorLink(ABC):
                 self._fail("cannot be written", error)
 
     def fileno(self) -> int | None:
-        """What select() waits for."""
+        """Return the descriptor that select() can wait for."""
         self._must_be_open("cannot be waited for")
-        return self._descriptor()
+        return self._descriptor
 
     def close(self) -> None:
-        """Give the link back; whoever waits for it in another thread hears of it at once."""
+        """Close it; a read or write in another thread ends at once."""
         self._closed = True
         self._waiter.wake()
-        # Only when nobody waits any longer: the number of a closed descriptor may be another
-        # file's a moment later.
+        # Only when no thread waits any longer: another file may get the number of a closed
+        # descriptor a moment later.
         with self._reading, self._writing:
             self._waiter.close()
+            self._descriptor = -1
             self._release()
 
     def reopen(self) -> None:
-        """Close and open again."""
+        """Close it and open it again."""
         with self._reading, self._writing:
             self.close()
-            self._connect()
+            self._descriptor = self._connect()
             self._waiter = Waiter()
             self._closed = False
         _log.info("%s: opened", self.url)
@@ -150,30 +158,70 @@ class DescriptorLink(ABC):
         raise LinkError(self.url, f"{what}: {reason}") from error
 
     def _end_of_data(self) -> str:
-        """Why a link that has something to read reads as nothing."""
+        """Return why a transport that is ready to be read has no data."""
         return "it is gone"
 
     @abstractmethod
-    def _connect(self) -> None:
-        """Open it, without blocking mode; raises the errors of ``open_link``."""
+    def _connect(self) -> int:
+        """Open it and return its non-blocking descriptor; raise what ``open_transport`` raises."""
 
     @abstractmethod
     def _release(self) -> None:
-        """Give the descriptor back, if there is one; raises nothing."""
-
-    @abstractmethod
-    def _descriptor(self) -> int:
-        """The descriptor; -1 for a closed one, which no wait takes."""
+        """Close the descriptor, if there is one; raise nothing."""
 
     def _receive(self, size: int) -> bytes:
-        return os.read(self._descriptor(), size)
+        return os.read(self._descriptor, size)
 
     def _send(self, data: bytes) -> int:
-        return os.write(self._descriptor(), data)
+        return os.write(self._descriptor, data)
+
+
+class Waiter:
+    """Waits until a descriptor can be read or written, the time is over, or :meth:`wake`."""
+
+    def __init__(self) -> None:
+        # A pair of sockets, not a pipe: every platform can wait for these.
+        self._wake_in, self._wake_out = socket.socketpair()
+        self._wake_out.setblocking(False)
+
+    def wait(self, descriptor: int, timeout: float, *, writing: bool = False) -> bool:
+        """Return whether it is ready, or gone: reading or writing it tells that.
+
+        A timeout of zero or less does not wait. After :meth:`wake` every wait ends at once; its
+        result means nothing then.
+        """
+        timeout = max(0.0, timeout)
+        if descriptor < SELECTABLE or not hasattr(select, "poll"):
+            incoming: list[int | socket.socket] = [self._wake_in]
+            outgoing: list[int] = []
+            if writing:
+                outgoing.append(descriptor)
+            else:
+                incoming.append(descriptor)
+            read, write, _ = select.select(incoming, outgoing, [], timeout)
+            return bool(read or write)
+        poll = select.poll()
+        poll.register(descriptor, select.POLLOUT if writing else select.POLLIN)
+        poll.register(self._wake_in, select.POLLIN)
+        return bool(poll.poll(timeout * 1000))
+
+    def wake(self) -> None:
+        """End the wait, and every later one."""
+        with suppress(OSError):
+            self._wake_out.send(b"x")
+
+    def close(self) -> None:
+        """Close the pair. Closing twice is harmless."""
+        self._wake_in.close()
+        self._wake_out.close()
+
+    def __del__(self) -> None:
+        # A transport that was not closed warns for itself; the pair is not the user's concern.
+        self.close()
 
 
 def reason_of(error: BaseException | None) -> str:
-    """What went wrong, in the system's words."""
+    """Return what went wrong, in the words of the system."""
     number = getattr(error, "errno", None)
     if number == errno.EBUSY or "exclusively lock" in str(error):
         return "another program has it open"

@@ -1,16 +1,16 @@
-"""What drivers need of a link."""
+"""What clients need of a transport."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Protocol, runtime_checkable
 
-from cobotwire.errors import LinkError
+from cobotwire.protocol.errors import LinkError
 
 
 @runtime_checkable
 class Transport(Protocol):
-    """An open link."""
+    """An open port, socket or memory transport that carries bytes."""
 
     @property
     def url(self) -> str:
@@ -21,43 +21,43 @@ class Transport(Protocol):
         """Send all of ``data``.
 
         Raises:
-            LinkError: the link is gone, or does not take the bytes.
+            LinkError: the transport is gone, or does not take the bytes.
         """
         ...
 
     def read(self, timeout: float) -> bytes:
-        """What has come, as soon as there is something; empty after ``timeout`` seconds.
+        """Return what has come, as soon as there is something; empty after ``timeout`` seconds.
 
         Raises:
-            LinkError: the link is gone.
+            LinkError: the transport is gone.
         """
         ...
 
     def close(self) -> None:
-        """Give the link back. Closing twice is harmless."""
+        """Close it. Closing twice is harmless."""
         ...
 
 
 @runtime_checkable
 class PollableTransport(Transport, Protocol):
-    """A link that an event loop can watch; the asyncio driver needs no threads for it."""
+    """A transport that an event loop can watch; the asyncio client needs no threads for it."""
 
     def fileno(self) -> int | None:
-        """The descriptor to watch; None: this one has none after all."""
+        """Return the descriptor to watch; None: this one has none after all."""
         ...
 
     def write_some(self, data: bytes) -> int:
-        """Send what is taken at once; gives how many bytes that was, perhaps 0.
+        """Send what is taken at once; return how many bytes that was, perhaps 0.
 
         Raises:
-            LinkError: the link is gone.
+            LinkError: the transport is gone.
         """
         ...
 
 
 @runtime_checkable
-class Link(PollableTransport, Protocol):
-    """A link that :func:`cobotwire.transport.open_link` opened.
+class OpenedTransport(PollableTransport, Protocol):
+    """A transport that :func:`cobotwire.transport.open_transport` opened.
 
     One thread may read while another one writes. ``close`` from a third one ends both at once, with
     a LinkError.
@@ -67,50 +67,51 @@ class Link(PollableTransport, Protocol):
     def kind(self) -> str:
         """``serial`` for a port, ``socket`` for TCP, else the URL's scheme (``rfc2217``, ``loop``).
 
-        It is there to tell people, and for what only one kind has, such as a latency timer.
+        It serves messages, and checks of what only one kind has, such as a latency timer.
         """
         ...
 
     @property
     def low_latency(self) -> bool:
-        """Whether the driver of the port was told not to hold short replies back, and agreed.
+        """Whether the driver of the port passes short replies on at once.
 
-        A USB bridge does so for up to 16 ms; TCP_NODELAY is the same thing for a socket.
+        By default a USB bridge holds them back for up to 16 ms. For a socket, TCP_NODELAY is the
+        same thing.
         """
         ...
 
     def reopen(self) -> None:
-        """Close the link if it is open, and open the same thing again; ``fileno`` may change.
+        """Close it if it is open, and open the same thing again; ``fileno`` may change.
 
-        What was underway in either direction is lost. The controller is not reset.
+        Bytes underway in either direction are lost. The controller is not reset.
 
         Raises:
-            LinkError: it cannot be opened; it is closed now, and may be tried again.
+            LinkError: it cannot be opened; it is closed now, and a further try may succeed.
         """
         ...
 
 
-class AsyncLink(Protocol):
-    """A link on an event loop. Every method is called in the loop's thread, and none waits."""
+class AsyncTransport(Protocol):
+    """A transport on an event loop. Every method is called in the loop's thread; none waits."""
 
     def read(self) -> bytes:
-        """What has come by now, perhaps nothing.
+        """Return what has come by now, perhaps nothing.
 
         Raises:
-            LinkError: the link is gone.
+            LinkError: the transport is gone.
         """
         ...
 
-    def write(self, data: bytes, told: Callable[[LinkError | None], None]) -> bool:
-        """Send ``data`` behind what was sent before. True: all of it was taken at once.
+    def write(self, data: bytes, done: Callable[[LinkError | None], None]) -> bool:
+        """Send ``data`` after what was sent before; return True if all of it was taken at once.
 
-        Else ``told`` is called when it was taken, with None; or with the reason why not.
+        Otherwise ``done`` is called later: with None when it was taken, or with the error.
 
         Raises:
-            LinkError: the link is gone.
+            LinkError: the transport is gone.
         """
         ...
 
     def close(self) -> None:
-        """Stop watching and give the link back. Closing twice is harmless."""
+        """Stop watching and close the transport. Closing twice is harmless."""
         ...

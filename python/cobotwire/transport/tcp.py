@@ -1,26 +1,23 @@
-"""``socket://host:port``: a serial line behind TCP, as ser2net and the arm's own server give it."""
+"""``socket://host:port``: a serial line over TCP, as ser2net and the arm's own server offer it."""
 
 from __future__ import annotations
 
 import socket
 from contextlib import suppress
 
-from cobotwire.errors import LinkError
-from cobotwire.transport.descriptor import DescriptorLink, reason_of
+from cobotwire.protocol.errors import LinkError
+from cobotwire.transport.descriptor import DescriptorTransport, reason_of
 
-# For each address of the host. The three-way handshake takes a round trip; this is three lost ones.
+# For each address of the host. A handshake takes one round trip; this is enough for three losses.
 CONNECT_SECONDS = 5.0
-# A peer that vanished without a word (its Wi-Fi, say) is given up after about this long, by probes
+# A peer that vanished silently (with its Wi-Fi, say) is given up after about this long: by probes
 # while nothing is sent, by missing acknowledgements while something is.
 IDLE_SECONDS, PROBE_SECONDS, PROBES = 5, 2, 3
 UNACKNOWLEDGED_MS = 10_000
 
 
-class TcpLink(DescriptorLink):
-    """A link over TCP; see :class:`cobotwire.transport.interface.Link`.
-
-    TCP keeps no boundaries: frames come merged and split at will, and so they are read.
-    """
+class TcpTransport(DescriptorTransport):
+    """An :class:`OpenedTransport` over TCP, which merges and splits frames at will."""
 
     kind = "socket"
     low_latency = True
@@ -29,20 +26,20 @@ class TcpLink(DescriptorLink):
         """Connect.
 
         Raises:
-            LinkError: nobody listens there, or does not answer within five seconds.
+            LinkError: no server listens there, or it does not accept within five seconds.
         """
         self._address = (host, port)
         self._socket: socket.socket | None = None
         super().__init__(url, baudrate)
 
-    def _connect(self) -> None:
+    def _connect(self) -> int:
         try:
             opened = socket.create_connection(self._address, CONNECT_SECONDS)
         # A host that cannot be encoded as a name is a UnicodeError.
         except (OSError, UnicodeError) as error:
             raise LinkError(self.url, f"cannot be opened: {reason_of(error)}") from error
         opened.setblocking(False)
-        # Or a frame waits for the acknowledgement of the one before it.
+        # Otherwise a frame waits for the acknowledgement of the one before it.
         opened.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         opened.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         for name, value in (
@@ -51,18 +48,16 @@ class TcpLink(DescriptorLink):
             ("TCP_KEEPCNT", PROBES),
             ("TCP_USER_TIMEOUT", UNACKNOWLEDGED_MS),
         ):
-            # Not every platform has all of these; without them only silence shows it.
+            # Some platforms lack some of these; there only silence shows that the peer is gone.
             with suppress(AttributeError, OSError):
                 opened.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
         self._socket = opened
+        return opened.fileno()
 
     def _release(self) -> None:
         if self._socket is not None:
             self._socket.close()
             self._socket = None
-
-    def _descriptor(self) -> int:
-        return -1 if self._socket is None else self._socket.fileno()
 
     def _receive(self, size: int) -> bytes:
         return b"" if self._socket is None else self._socket.recv(size)

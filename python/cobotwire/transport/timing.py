@@ -1,4 +1,4 @@
-"""By what clock a link goes: the system's, unless the link has one of its own."""
+"""The clock that a transport goes by: the system's, unless the transport has its own."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 
 @runtime_checkable
-class LinkClock(Protocol):
+class TransportClock(Protocol):
     """Seconds that only go forward, perhaps faster than real ones, or stepped by a test."""
 
     @property
@@ -17,16 +17,16 @@ class LinkClock(Protocol):
         ...
 
     def __call__(self) -> float:
-        """The time in seconds, from an arbitrary beginning."""
+        """Return the time in seconds, from an arbitrary beginning."""
         ...
 
     def sleep(self, seconds: float) -> None:
-        """Come back when so many of this clock's seconds are over."""
+        """Return when that many of this clock's seconds have passed."""
         ...
 
 
 class Times(NamedTuple):
-    """What a driver goes by: the time, and how to let some pass, both in seconds."""
+    """How a client reads the time and lets it pass, both in seconds."""
 
     now: Callable[[], float]
     sleep: Callable[[float], None]
@@ -36,7 +36,7 @@ class Times(NamedTuple):
 SYSTEM = Times(time.monotonic, time.sleep, True)
 
 
-def times_of(link: object) -> Times:
-    """The times of a link: those of its attribute ``clock``, if it has one; else the system's."""
-    clock = getattr(link, "clock", None)
-    return Times(clock, clock.sleep, clock.real) if isinstance(clock, LinkClock) else SYSTEM
+def times_of(transport: object) -> Times:
+    """Return the times of a transport: those of its ``clock`` if it has one, else the system's."""
+    clock = getattr(transport, "clock", None)
+    return Times(clock, clock.sleep, clock.real) if isinstance(clock, TransportClock) else SYSTEM

@@ -1,6 +1,6 @@
 //! The bytes that end a frame.
 
-/// What they are.
+/// The kinds of check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
     /// Always this byte.
@@ -12,7 +12,7 @@ pub enum Check {
 }
 
 impl Check {
-    /// How many they are.
+    /// Return the number of bytes of the check.
     #[must_use]
     pub fn size(self) -> usize {
         match self {
@@ -21,7 +21,7 @@ impl Check {
         }
     }
 
-    /// Whether a frame ends as it must; its CMD stands at `start`.
+    /// Return whether the check of a frame is right; its CMD is at `start`.
     #[inline]
     pub(crate) fn holds(self, frame: &[u8], start: usize) -> bool {
         match self {
@@ -31,7 +31,7 @@ impl Check {
         }
     }
 
-    /// End a frame of which only the check is missing; its CMD stands at `start`.
+    /// Append the check to a frame; its CMD is at `start`.
     pub(crate) fn end(self, frame: &mut Vec<u8>, start: usize) {
         match self {
             Self::Footer(footer) => frame.push(footer),
@@ -70,10 +70,10 @@ pub fn crc16_modbus(data: &[u8]) -> u16 {
     })
 }
 
-/// What one byte does to a CRC, for each byte: eight times faster than bit by bit.
+/// The effect of each byte on a CRC: the table is eight times as fast as a loop over bits.
 const STEPS: [u16; 256] = steps();
 
-// Runs in the compiler, where an index out of bounds is an error.
+// This runs in the compiler, where an index out of bounds is an error.
 #[allow(clippy::indexing_slicing)]
 const fn steps() -> [u16; 256] {
     let mut steps = [0; 256];

@@ -1,30 +1,46 @@
-//! Bytes to values. A frame that is not legal, or a number that the table rules out, is an error.
+//! Decodes bytes to values. An illegal frame, or a number that the table does not allow, is an
+//! error.
 
-use crate::error::{DecodeError, Reason};
 use crate::frame::{Frame, FrameFormat};
 use crate::judge::{Rules, Verdict};
-use crate::legal::Form;
-use crate::read::{Reader, Value};
-use crate::table::{Direction, Listening, Table};
+use crate::message::{Direction, Listening, VariantId};
+use crate::number::Value;
+use crate::read::{BadRaw, Reader};
+use crate::reason::Reason;
+use crate::table::Table;
+
+/// Why nothing was decoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DecodeError {
+    /// The bytes are not one whole legal frame.
+    Frame {
+        /// The reason.
+        reason: Reason,
+        /// The byte that shows it.
+        offset: usize,
+    },
+    /// The frame is legal, but a number in it is not.
+    Raw(BadRaw),
+}
 
 /// A decoded frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decoded {
     /// Which message it is.
-    pub form: Form,
-    /// Its values, one a field and those of rows.
+    pub variant: VariantId,
+    /// Its values: one for each field, and after a row its elements.
     pub values: Vec<Value>,
-    /// Its address byte, where the format has one.
+    /// Its address byte, if the format has one.
     pub address: Option<u8>,
 }
 
-/// Read `data`, which must be one whole frame and nothing else; `of`: one of this command, by its
-/// index. Where calls share an id and a size, it is the first of them that allows the values.
+/// Decode `data`, which must be one frame and nothing else, as the first message that allows its
+/// values. With `of`, only messages of the command with that index count.
 ///
 /// # Errors
-/// It is not, or a number in it is not allowed: then it is the first one, but a selector goes
-/// before the fields that it picks the case of. Where several forms refuse it, it is the first
-/// one's error.
+/// The bytes are not one legal frame, or a number in it is not allowed. The error names the first
+/// such number; a selector precedes the fields whose case it picks. If several variants reject the
+/// frame, the error is that of the first one.
 pub fn decode(
     table: &Table,
     direction: Direction,
@@ -32,74 +48,89 @@ pub fn decode(
     of: Option<usize>,
 ) -> Result<Decoded, DecodeError> {
     let rules = table.rules(Listening::To(direction));
-    let frame = whole_frame(table, rules, data, of)?;
-    let forms = rules.forms(frame).iter();
-    let named = forms.filter(|form| of.is_none_or(|of| of == form.command));
-    read_as(table, frame, named)
+    read(table, rules, judged(table, rules, data, of)?, of)
 }
 
-/// Read a frame that a framer with these rules gave: the first form that allows the values.
+/// Decode a frame that was judged before, without judging it again, as the first message of these
+/// rules that allows its values. With `of`, only messages of the command with that index count.
 ///
 /// # Errors
-/// None does, or the table lacks the id and the rules believed it.
-pub fn read(table: &Table, rules: &Rules, frame: Frame<'_>) -> Result<Decoded, DecodeError> {
-    read_as(table, frame, rules.forms(frame).iter())
-}
-
-fn read_as<'a>(
+/// No message allows the values, or these rules have no such message.
+pub fn read(
     table: &Table,
+    rules: &Rules,
     frame: Frame<'_>,
-    forms: impl Iterator<Item = &'a Form>,
+    of: Option<usize>,
 ) -> Result<Decoded, DecodeError> {
-    let mut refusal = None;
-    for form in forms {
-        let Some(layout) = table.layout(*form) else {
+    let mut rejection = None;
+    for id in rules.variants(frame) {
+        if of.is_some_and(|of| of != id.command) {
+            continue;
+        }
+        let Some(variant) = table.variant(*id) else {
             continue;
         };
         let reader = Reader {
-            form: *form,
-            layout,
+            id: *id,
+            variant,
             data: table.frame().data(frame),
             offset: table.frame().overhead() + 1,
         };
         match reader.values() {
             Ok(values) => {
                 return Ok(Decoded {
-                    form: *form,
+                    variant: *id,
                     values,
                     address: table.frame().address(frame),
                 });
             }
-            Err(bad) => refusal = refusal.or(Some(DecodeError::Raw(bad))),
+            Err(bad) => rejection = rejection.or(Some(DecodeError::Raw(bad))),
         }
     }
-    // Only of an id that was believed there is no form.
-    Err(refusal.unwrap_or_else(|| refuse(table.frame(), Reason::UnknownId, frame.bytes())))
+    Err(rejection.unwrap_or_else(|| no_message(table, rules, frame, of)))
 }
 
-fn whole_frame<'a>(
+fn judged<'a>(
     table: &Table,
     rules: &Rules,
     data: &'a [u8],
     of: Option<usize>,
 ) -> Result<Frame<'a>, DecodeError> {
-    let misnamed = of.and_then(|of| misnamed(table, rules, data, of));
+    let misnamed = misnamed(table, rules, data, of);
     let reason = match misnamed.map_or_else(|| rules.judge(data), Verdict::Refuted) {
-        Verdict::Stands(frame) if frame.bytes().len() == data.len() => return Ok(frame),
-        Verdict::Stands(frame) => {
+        Verdict::Frame(frame) if frame.bytes().len() == data.len() => return Ok(frame),
+        Verdict::Frame(frame) => {
             let (reason, offset) = (Reason::Trailing, frame.bytes().len());
             return Err(DecodeError::Frame { reason, offset });
         }
         Verdict::Waits => Reason::Truncated,
         Verdict::Refuted(reason) => reason,
     };
-    Err(refuse(table.frame(), reason, data))
+    Err(reject(table.frame(), reason, data))
 }
 
-/// Why `data` is no frame of that command, whatever follows its id and whatever others share it.
-fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: usize) -> Option<Reason> {
+/// Return the error of a frame for which the rules have no message: it has another direction or
+/// command, or an unknown id that its framer accepted.
+#[cold]
+fn no_message(table: &Table, rules: &Rules, frame: Frame<'_>, of: Option<usize>) -> DecodeError {
+    let data = frame.bytes();
+    let reason = misnamed(table, rules, data, of).unwrap_or_else(|| match rules.judge(data) {
+        Verdict::Refuted(reason) => reason,
+        _ => Reason::UnknownId,
+    });
+    reject(table.frame(), reason, data)
+}
+
+/// Return why `data` is not a frame of the command `of`, whatever follows its id; `None` if it may
+/// be one.
+fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: Option<usize>) -> Option<Reason> {
+    let of = of?;
     let claim = rules.claim(data).ok().flatten()?;
-    if rules.claimed(claim).iter().any(|form| form.command == of) {
+    if rules
+        .claimed(claim)
+        .iter()
+        .any(|variant| variant.command == of)
+    {
         return None;
     }
     let command = table.commands().get(of);
@@ -110,8 +141,8 @@ fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: usize) -> Option<Reas
     })
 }
 
-/// The error, with the byte that refutes a frame at the start of `data`.
-fn refuse(frame: &FrameFormat, reason: Reason, data: &[u8]) -> DecodeError {
+/// Return the error, with the index of the byte that refutes a frame at the start of `data`.
+fn reject(frame: &FrameFormat, reason: Reason, data: &[u8]) -> DecodeError {
     let at = frame.length_at();
     let offset = match reason {
         Reason::NoHeader => {

@@ -1,25 +1,24 @@
-//! Values to bytes: which form takes the values, and the frame around them.
+//! Encodes values: chooses the variant that allows the values, and builds the frame around them.
 
-use crate::error::EncodeError;
 use crate::frame::FrameFormat;
 use crate::given::{Given, Row};
-use crate::table::{Command, Direction, Layout};
-use crate::write::Writer;
+use crate::message::{Command, Direction, Variant};
+use crate::write::{EncodeError, Writer};
 
-/// What a caller can settle besides the values.
+/// The options of a caller besides the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Choice {
-    /// Only the form with this index; `None`: the first that takes the values.
-    pub form: Option<usize>,
+    /// The index of the variant; `None`: the first one that allows the values.
+    pub variant: Option<usize>,
     /// The address byte; `None`: the format's first, if it has any.
     pub address: Option<u8>,
 }
 
-/// Build one whole frame, of the first form with that number of fields that takes the values.
+/// Build one frame, of the first variant with that number of fields that allows the values.
 ///
 /// # Errors
-/// The format has no such address, there is no such form, or a value is not allowed: then it is
-/// the leftmost one, of the first form with that number of fields.
+/// The format has no such address, the command has no such variant, or a value is not allowed. The
+/// error names the leftmost such value in the first variant with that number of fields.
 pub fn encode<V: Given>(
     frame: &FrameFormat,
     command: &Command,
@@ -32,15 +31,16 @@ pub fn encode<V: Given>(
         return Err(EncodeError::Address);
     }
     let count = values.count();
-    let mut refusal = None;
-    for (index, layout) in command.layouts(direction).iter().enumerate() {
-        if layout.fields().len() != count || choice.form.is_some_and(|form| form != index) {
+    let mut rejection = None;
+    for (index, variant) in command.variants(direction).iter().enumerate() {
+        if variant.fields().len() != count || choice.variant.is_some_and(|variant| variant != index)
+        {
             continue;
         }
-        let mut bytes = start(frame, command, address, layout).ok_or(EncodeError::Form)?;
+        let mut bytes = start(frame, command, address, variant).ok_or(EncodeError::VariantId)?;
         let writer = Writer {
             index,
-            layout,
+            variant,
             values,
             bytes: &mut bytes,
         };
@@ -49,25 +49,25 @@ pub fn encode<V: Given>(
                 frame.check.end(&mut bytes, frame.overhead());
                 return Ok(bytes);
             }
-            Err(EncodeError::Value(bad)) => refusal = refusal.or(Some(bad)),
+            Err(EncodeError::Value(bad)) => rejection = rejection.or(Some(bad)),
             Err(error) => return Err(error),
         }
     }
-    Err(refusal.map_or(EncodeError::Form, EncodeError::Value))
+    Err(rejection.map_or(EncodeError::VariantId, EncodeError::Value))
 }
 
-/// A frame up to its id.
+/// Return the start of a frame, up to its id.
 fn start(
     frame: &FrameFormat,
     command: &Command,
     address: Option<u8>,
-    layout: &Layout,
+    variant: &Variant,
 ) -> Option<Vec<u8>> {
-    let length = frame.length(layout.size());
+    let length = frame.length(variant.size());
     let mut bytes = Vec::with_capacity(frame.overhead() + length);
     bytes.extend_from_slice(&frame.header);
     bytes.extend(address);
-    // That LEN fits a byte is checked when the table is made.
+    // LEN fits a byte: Table::new checked that.
     bytes.push(u8::try_from(length).ok()?);
     bytes.push(command.id);
     Some(bytes)

@@ -7,37 +7,37 @@ use crate::check::Check;
 pub struct FrameFormat {
     /// How a frame starts.
     pub header: [u8; 2],
-    /// The legal address bytes, first the one that is sent unless the caller says otherwise; empty:
-    /// a frame has none.
+    /// The legal address bytes; the first one is sent unless the caller chooses another. Empty: a
+    /// frame has none.
     pub addresses: Vec<u8>,
     /// How it ends.
     pub check: Check,
-    /// The largest LEN that is believed of an id that the table lacks.
+    /// The largest LEN that is accepted with an id that the table lacks.
     pub maximum_length: i64,
 }
 
 impl FrameFormat {
-    /// LEN of a frame with that many data bytes.
+    /// Return LEN of a frame with that many data bytes.
     #[must_use]
     pub fn length(&self, data_size: usize) -> usize {
         data_size.saturating_add(1 + self.check.size())
     }
 
-    /// Where LEN stands in a frame. CMD stands behind it.
+    /// Return the index of LEN in a frame. CMD follows it.
     #[inline]
     #[must_use]
     pub fn length_at(&self) -> usize {
         self.header.len() + usize::from(!self.addresses.is_empty())
     }
 
-    /// Bytes of a frame that LEN does not count: header, address and LEN itself.
+    /// Return the number of bytes that LEN does not count: header, address and LEN itself.
     #[inline]
     #[must_use]
     pub fn overhead(&self) -> usize {
         self.length_at() + 1
     }
 
-    /// The address byte of a frame.
+    /// Return the address byte of a frame.
     #[must_use]
     pub fn address(&self, frame: Frame<'_>) -> Option<u8> {
         let [_, _, address, ..] = *frame.bytes else {
@@ -46,7 +46,7 @@ impl FrameFormat {
         (!self.addresses.is_empty()).then_some(address)
     }
 
-    /// The data bytes of a frame, between id and check.
+    /// Return the data bytes of a frame, between id and check.
     #[must_use]
     pub fn data<'a>(&self, frame: Frame<'a>) -> &'a [u8] {
         let end = frame.bytes.len().saturating_sub(self.check.size());
@@ -55,7 +55,7 @@ impl FrameFormat {
     }
 }
 
-/// One whole frame. Only [`crate::Rules::judge`] makes them, so having one means that it is legal.
+/// A legal frame: only [`crate::Rules::judge`] makes these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     bytes: &'a [u8],
@@ -68,13 +68,13 @@ impl<'a> Frame<'a> {
         Self { bytes, length, id }
     }
 
-    /// All of it, from header to check.
+    /// Return all of it, from header to check.
     #[must_use]
     pub fn bytes(self) -> &'a [u8] {
         self.bytes
     }
 
-    /// The command id.
+    /// Return the command id.
     #[must_use]
     pub fn id(self) -> u8 {
         self.id
@@ -87,11 +87,11 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// A frame with its own bytes: those of an ordinary one in place, without an allocation.
+/// A frame that owns its bytes. A short frame stores them in place, without an allocation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OwnedFrame(Bytes);
 
-/// So many bytes stand in place: more than the longest frame of the arms known today.
+/// The number of bytes stored in place: more than the longest frame of the arms known today.
 const IN_PLACE: usize = 30;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -116,7 +116,7 @@ impl From<Frame<'_>> for OwnedFrame {
 }
 
 impl OwnedFrame {
-    /// All of it, from header to check.
+    /// Return all of it, from header to check.
     #[inline]
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
@@ -126,7 +126,7 @@ impl OwnedFrame {
         }
     }
 
-    /// The frame, in the format that it was found in.
+    /// Return the frame, in the format in which it was found.
     #[inline]
     #[must_use]
     pub fn get(&self, format: &FrameFormat) -> Frame<'_> {

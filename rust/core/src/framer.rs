@@ -1,14 +1,14 @@
 //! Cuts frames out of a byte stream and accounts for every other byte.
 //!
-//! The law: at position i a frame stands or the byte at i is noise; a candidate is refuted by the
-//! first byte that refutes it, and the scan goes on at i + 1, never skipping what a false header
-//! claimed; a candidate that more bytes could complete waits. Judging a position takes at
-//! most one look at the longest frame (for its CRC or sum, once all its bytes are there) and no
-//! position is refuted twice, so the work is linear whatever the input.
+//! Either a frame starts at position i, or the byte at i is noise. The first byte that contradicts
+//! a candidate refutes it. The scan then continues at i + 1: it never skips the bytes that a false
+//! header claims. A candidate that more bytes could complete waits. Judging a position reads at
+//! most the longest frame once (for its CRC or sum, when all its bytes are there), and no position
+//! is refuted twice, so the work is linear in the size of any input.
 
-use crate::error::Reason;
 use crate::frame::Frame;
 use crate::judge::Rules;
+use crate::reason::Reason;
 use crate::scan::{Sink, scan};
 use crate::seam::Seam;
 use crate::tally::Tally;
@@ -18,23 +18,23 @@ use crate::tally::Tally;
 pub enum Event<'a> {
     /// A whole, legal frame.
     Frame {
-        /// Where its first byte stands in the stream.
+        /// The position of its first byte in the stream.
         offset: u64,
         /// The frame.
         frame: Frame<'a>,
     },
     /// Bytes that belong to no frame.
     Noise {
-        /// Where the first of them stands in the stream.
+        /// The position of the first of them in the stream.
         offset: u64,
-        /// Why: each of them was refuted for this.
+        /// Why each of them was refuted.
         reason: Reason,
-        /// The bytes, in two pieces: the first may lie in what earlier calls kept.
+        /// The bytes, in two pieces: the first may come from earlier calls.
         data: [&'a [u8]; 2],
     },
 }
 
-/// Takes bytes, gives events. What it keeps between calls is less than the longest frame.
+/// Turns bytes into events. Between calls it keeps fewer bytes than the longest frame has.
 #[derive(Clone, Debug)]
 pub struct Framer {
     rules: Rules,
@@ -45,7 +45,7 @@ pub struct Framer {
 }
 
 impl Framer {
-    /// A framer at the start of a stream.
+    /// Return a framer at the start of a stream.
     #[must_use]
     pub fn new(rules: Rules) -> Self {
         Self {
@@ -56,24 +56,24 @@ impl Framer {
         }
     }
 
-    /// Bytes fed that no event covers yet.
+    /// Return the number of bytes fed that no event covers yet.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.seam.pending()
     }
 
-    /// What came so far.
+    /// Return the counts since the framer was made.
     #[must_use]
     pub fn tally(&self) -> &Tally {
         &self.tally
     }
 
-    /// Take bytes; give what is certain by now.
+    /// Feed bytes; pass the events that are certain to `sink`.
     pub fn feed(&mut self, chunk: &[u8], sink: impl FnMut(Event<'_>)) {
         self.cut(chunk, false, sink);
     }
 
-    /// Refute what still waits: a true frame behind it comes now.
+    /// Refute the candidate that waits; pass the events of all remaining bytes to `sink`.
     pub fn flush(&mut self, sink: impl FnMut(Event<'_>)) {
         self.cut(&[], true, sink);
     }
@@ -102,13 +102,13 @@ impl Framer {
     }
 }
 
-/// One call's way through its bytes. Positions in `run` count over the seam, those that a scan
-/// gives from `base`.
+/// The state of one call. Positions in `run` count from the first kept byte; those that a scan
+/// reports count from `base`.
 struct Pass<'a, S> {
     pieces: [&'a [u8]; 2],
     offset: u64,
     base: usize,
-    /// The current run of noise: from where, to where, why.
+    /// The current run of noise: start, end and reason.
     run: Option<(usize, usize, Reason)>,
     tally: &'a mut Tally,
     in_noise: &'a mut bool,
@@ -132,7 +132,7 @@ impl<'a, S: FnMut(Event<'_>)> Sink<'a> for Pass<'_, S> {
     fn noise(&mut self, from: usize, to: usize, reason: Reason) {
         let (from, to) = (self.base + from, self.base + to);
         match &mut self.run {
-            // Only over the seam: the two scans each give their part.
+            // This happens only across the seam, where each of the two scans reports its part.
             Some((_, end, current)) if *current == reason => *end = to,
             _ => {
                 self.close();
@@ -143,7 +143,7 @@ impl<'a, S: FnMut(Event<'_>)> Sink<'a> for Pass<'_, S> {
 }
 
 impl<S: FnMut(Event<'_>)> Pass<'_, S> {
-    /// The current run of noise, if there is one, is over.
+    /// End the current run of noise, if there is one.
     #[inline]
     fn close(&mut self) {
         let Some((from, to, reason)) = self.run.take() else {

@@ -1,56 +1,83 @@
-//! What a caller hands over to be encoded, as far as the encoder has to know it.
+//! The values that a caller wants to encode, as the encoder sees them.
 
-use crate::error::ValueFault;
+/// What is wrong with a value that was to be encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ValueFault {
+    /// It is not a number, or not a row of numbers.
+    Type,
+    /// It is infinite or not a number.
+    NotFinite,
+    /// It is below the minimum or above the maximum.
+    Range,
+    /// It is not one of the choices.
+    Choice,
+    /// The row has too few or too many elements.
+    Count,
+}
 
-/// Why a value gave no number, or no row.
+impl ValueFault {
+    /// Return the fault's name, as programs see it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Type => "type",
+            Self::NotFinite => "not-finite",
+            Self::Range => "range",
+            Self::Choice => "choice",
+            Self::Count => "count",
+        }
+    }
+}
+
+/// Why a value is not a number, or not a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unread<E> {
     /// It is not of that kind.
     Fault(ValueFault),
-    /// It is a whole number so large that no bound and no choice reaches it.
+    /// It is an integer beyond all bounds and choices.
     Beyond,
-    /// Converting it failed by itself; this passes through.
+    /// Converting it raised an error of its own, which is passed on.
     Foreign(E),
 }
 
-/// A value as the caller has it. It is converted when its turn comes, and not before: conversions
-/// may run the caller's code, and the leftmost mistake is the one to report.
+/// A value of the caller. It is converted only when the encoder reaches it, because conversions may
+/// run the caller's code, and the leftmost mistake is reported.
 pub trait Given: Sized {
-    /// How a conversion fails by itself.
+    /// The error of a conversion, other than a wrong type.
     type Error;
     /// A row of such values.
     type Row: Row<Item = Self>;
 
-    /// It as a whole number; a bool is one only for a flag.
+    /// Convert it to an integer; a bool is accepted only for a flag.
     ///
     /// # Errors
-    /// It is none.
-    fn whole(&self, flag: bool) -> Result<i64, Unread<Self::Error>>;
+    /// It is not an integer.
+    fn integer(&self, flag: bool) -> Result<i64, Unread<Self::Error>>;
 
-    /// It as a real number.
+    /// Convert it to a real number.
     ///
     /// # Errors
-    /// It is none.
+    /// It is not a real number.
     fn real(&self) -> Result<f64, Unread<Self::Error>>;
 
-    /// It as a row, which from then on stays as it is.
+    /// Convert it to a row, which no longer changes.
     ///
     /// # Errors
-    /// It is none.
+    /// It is not a row.
     fn row(&self) -> Result<Self::Row, Unread<Self::Error>>;
 }
 
 /// A row of values.
 pub trait Row {
-    /// One of them.
+    /// One of its values.
     type Item;
 
-    /// How many there are.
+    /// Return the number of values.
     fn count(&self) -> usize;
 
-    /// One of them.
+    /// Return one of the values.
     fn at(&self, index: usize) -> Option<Self::Item>;
 
-    /// The row itself as a value, to show to the caller.
+    /// Return the row itself as a value, for an error message.
     fn into_value(self) -> Self::Item;
 }

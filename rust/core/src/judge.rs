@@ -1,39 +1,39 @@
-//! Whether a frame stands at the start of some bytes: the one rule of framer and decoder.
+//! Judges whether a frame starts some bytes: the one legality check of framer and decoder.
 
-use crate::error::Reason;
 use crate::frame::{Frame, FrameFormat};
-use crate::legal::{Form, Heading, Legal};
-use crate::table::{Command, Direction};
+use crate::legal::{Heading, Legal};
+use crate::message::{Command, Direction, VariantId};
+use crate::reason::Reason;
 
-/// What the bytes at a position are.
+/// The verdict on the bytes at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict<'a> {
-    /// A frame stands there.
-    Stands(Frame<'a>),
-    /// None does, and no further byte can change that.
+    /// A frame starts there.
+    Frame(Frame<'a>),
+    /// No frame starts there, whatever bytes follow.
     Refuted(Reason),
     /// More bytes could still make it a frame.
     Waits,
 }
 
-/// What a candidate says of itself, once so much of it is there.
+/// The LEN and the id of a candidate.
 #[derive(Clone, Copy)]
 pub(crate) struct Claim {
     pub(crate) length: u8,
     pub(crate) id: u8,
 }
 
-/// The legal frames, and whether ids that the table lacks are believed.
+/// The legal frames, and whether ids that the table lacks are accepted.
 #[derive(Clone, Debug)]
 pub struct Rules {
     frame: FrameFormat,
     legal: Legal,
-    /// Whether LEN and id stand right behind the header, as in nearly all formats.
+    /// Whether LEN and id directly follow the header, as in nearly all formats.
     plain: bool,
 }
 
 impl Rules {
-    /// The rules for listening to these directions; earlier ones have precedence.
+    /// Return the rules for these directions; earlier ones take precedence.
     pub(crate) fn new(frame: &FrameFormat, commands: &[Command], all: &[Direction]) -> Self {
         Self {
             frame: frame.clone(),
@@ -42,8 +42,8 @@ impl Rules {
         }
     }
 
-    /// The same, but an id that the table lacks is a frame with any LEN up to the edition's
-    /// maximum: for sniffing unknown firmware.
+    /// Return the same rules, but accept an id that the table lacks with any LEN up to the
+    /// edition's maximum: for sniffing unknown firmware.
     #[must_use]
     pub fn accepting_unknown(self) -> Self {
         let most = usize::try_from(self.frame.maximum_length.min(255)).unwrap_or_default();
@@ -51,22 +51,23 @@ impl Rules {
         Self { legal, ..self }
     }
 
-    /// Which messages a frame can be, those with precedence first; none if the table lacks its id.
+    /// Return the messages that a frame can be, in order of precedence; empty if the table lacks
+    /// its id.
     #[must_use]
-    pub fn forms(&self, frame: Frame<'_>) -> &[Form] {
-        self.legal.forms(frame.length(), frame.id())
+    pub fn variants(&self, frame: Frame<'_>) -> &[VariantId] {
+        self.legal.variants(frame.length(), frame.id())
     }
 
-    /// The same of a frame that is not yet known to be one.
-    pub(crate) fn claimed(&self, claim: Claim) -> &[Form] {
-        self.legal.forms(claim.length, claim.id)
+    /// Return the messages that a candidate can be.
+    pub(crate) fn claimed(&self, claim: Claim) -> &[VariantId] {
+        self.legal.variants(claim.length, claim.id)
     }
 
     pub(crate) fn legal(&self) -> &Legal {
         &self.legal
     }
 
-    /// Whether LEN and id stand right behind the header.
+    /// Return whether LEN and id directly follow the header.
     pub(crate) fn plain(&self) -> bool {
         self.plain
     }
@@ -75,19 +76,19 @@ impl Rules {
         &self.frame
     }
 
-    /// Bytes of the longest frame that can stand.
+    /// Return the size of the longest legal frame.
     #[must_use]
     pub fn longest(&self) -> usize {
         let most = self.legal.lengths().map_or(0, |(_, most)| most);
         self.frame.overhead() + usize::from(most)
     }
 
-    /// Whether a frame stands at the start of `rest`. Takes no longer than reading the longest
-    /// frame once, whatever the bytes.
+    /// Judge whether a frame starts `rest`. This takes no longer than reading the longest frame
+    /// once, whatever the bytes.
     #[inline]
     #[must_use]
     pub fn judge<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
-        // The same as below in one look at four bytes, for the bulk of all bytes.
+        // The fast path for most positions: the same as `judge_stepwise`, with four bytes at once.
         if let Some(&[first, second, length, id]) = rest.first_chunk()
             && self.plain
         {
@@ -109,30 +110,30 @@ impl Rules {
         }
     }
 
-    /// What a candidate there claims; `None`: so many bytes are not there yet.
+    /// Return the LEN and the id of a candidate; `None` if they are not there yet.
     pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
         let [first, second] = self.frame.header;
         match rest {
             [byte, ..] if *byte != first => Err(Reason::NoHeader),
             [_, byte, ..] if *byte != second => Err(Reason::NoHeader),
-            [_, _, behind @ ..] if self.plain => self.claim_behind(behind),
+            [_, _, after @ ..] if self.plain => self.claim_after(after),
             [_, _, address, ..] if !self.frame.addresses.contains(address) => {
                 Err(Reason::BadAddress)
             }
-            [_, _, _, behind @ ..] => self.claim_behind(behind),
+            [_, _, _, after @ ..] => self.claim_after(after),
             _ => Ok(None),
         }
     }
 
-    fn claim_behind(&self, behind: &[u8]) -> Result<Option<Claim>, Reason> {
-        match *behind {
+    fn claim_after(&self, after: &[u8]) -> Result<Option<Claim>, Reason> {
+        match *after {
             [length, ..] if !self.legal.is_length(length) => Err(Reason::BadLength),
             [length, id, ..] => Ok(Some(Claim { length, id })),
             _ => Ok(None),
         }
     }
 
-    /// A candidate whose header and LEN are `start` bytes.
+    /// Judge a candidate; its header and LEN have `start` bytes.
     #[inline]
     fn judge_body<'a>(&self, rest: &'a [u8], start: usize, claim: Claim) -> Verdict<'a> {
         let Claim { length, id } = claim;
@@ -142,7 +143,7 @@ impl Rules {
         match rest.get(..start + usize::from(length)) {
             None => Verdict::Waits,
             Some(bytes) if self.frame.check.holds(bytes, start) => {
-                Verdict::Stands(Frame::new(bytes, length, id))
+                Verdict::Frame(Frame::new(bytes, length, id))
             }
             Some(_) => Verdict::Refuted(Reason::BadCheck),
         }

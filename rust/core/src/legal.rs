@@ -1,73 +1,62 @@
-//! Which frames are legal: id and LEN, to the forms of the messages.
+//! Finds the legal variants of messages by id and LEN.
 
 use std::sync::Arc;
 
-use crate::error::Reason;
 use crate::frame::FrameFormat;
-use crate::table::{Command, Direction};
+use crate::message::{Command, Direction, VariantId};
+use crate::reason::Reason;
 
-/// One form of one command's message in one direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Form {
-    /// The direction.
-    pub direction: Direction,
-    /// Index of the command in the table.
-    pub command: usize,
-    /// Index of the form among the command's in that direction.
-    pub layout: usize,
-}
-
-/// What a header with some LEN and id claims to be.
+/// What a header with a certain LEN and id can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Heading {
     /// A message of this group.
     Group(u16),
-    /// An id that the table lacks, and that is believed.
+    /// A frame with an id that the table lacks and that is accepted.
     Unknown,
-    /// None.
+    /// Not a frame.
     Refuted(Reason),
 }
 
-// Cells of the table below that are no group. There are fewer groups than ids x LENs.
+// Cells of `Headings` that are not the index of a group. There are fewer groups than cells.
 pub(crate) const BAD_LENGTH: u16 = u16::MAX;
 pub(crate) const UNKNOWN_ID: u16 = u16::MAX - 1;
-/// The highest cell that says that a frame may stand.
+/// The highest cell of a legal frame.
 pub(crate) const BELIEVED: u16 = u16::MAX - 2;
 
-/// What a header claims, by its LEN (the low byte of the index) and its id (the high byte).
+/// What a header can be, by its LEN (the low byte of the index) and its id (the high byte).
 pub(crate) type Headings = [u16; 0x1_0000];
 
 /// The legal frames by id and LEN.
 #[derive(Clone, Debug)]
 pub(crate) struct Legal {
-    /// The bytes of a header are the index. A stream uses few of its cache lines.
+    /// Indexed by the bytes of a header. A stream uses few of its cache lines.
     headings: Arc<Headings>,
-    /// The forms that share an id and a LEN: their values tell them apart, tried in this order.
-    groups: Arc<[Vec<Form>]>,
+    /// The variants that share an id and a LEN; the first one that allows a frame's values counts.
+    groups: Arc<[Vec<VariantId>]>,
     known: [bool; 256],
-    /// The LENs of any frame: they refute a candidate before its id is there.
+    /// The LENs of all frames: any other LEN refutes a candidate before its id is there.
     lengths: [bool; 256],
 }
 
 impl Legal {
-    /// The index of the directions' forms; earlier directions and commands have precedence.
+    /// Index the variants of the directions; earlier directions and commands take precedence.
     pub(crate) fn new(frame: &FrameFormat, commands: &[Command], all: &[Direction]) -> Self {
         let mut headings = [BAD_LENGTH; 0x1_0000];
         let mut known = [false; 256];
-        let mut groups: Vec<Vec<Form>> = Vec::new();
+        let mut groups: Vec<Vec<VariantId>> = Vec::new();
         let mut lengths = [false; 256];
-        let forms = all.iter().flat_map(|way| forms(frame, commands, *way));
-        for (id, length, form) in forms {
+        let variants = all.iter().flat_map(|way| variants(frame, commands, *way));
+        for (id, length, variant) in variants {
             mark(&mut lengths, length);
             mark(&mut known, usize::from(id));
             let Some(cell) = headings.get_mut(usize::from(id) << 8 | length) else {
                 continue;
             };
             if let Some(group) = groups.get_mut(usize::from(*cell)) {
-                group.push(form);
+                group.push(variant);
             } else {
                 *cell = u16::try_from(groups.len()).unwrap_or(BAD_LENGTH);
-                groups.push(vec![form]);
+                groups.push(vec![variant]);
             }
         }
         fill_unknown(&mut headings, &known, &lengths, UNKNOWN_ID);
@@ -79,8 +68,8 @@ impl Legal {
         }
     }
 
-    /// The same, but an id that it lacks is a frame with any LEN that is legal for others or
-    /// between `least` and `most`.
+    /// Return the same index, but accept an id that it lacks with any LEN that is legal for another
+    /// id or between `least` and `most`.
     pub(crate) fn believing(mut self, least: usize, most: usize) -> Self {
         (least..=most).for_each(|length| mark(&mut self.lengths, length));
         let mut headings = *self.headings;
@@ -89,7 +78,7 @@ impl Legal {
         self
     }
 
-    /// What a header with that LEN and id claims to be.
+    /// Return what a header with that LEN and id can be.
     #[inline]
     pub(crate) fn heading(&self, length: u8, id: u8) -> Heading {
         let index = u16::from_le_bytes([length, id]);
@@ -102,61 +91,62 @@ impl Legal {
         }
     }
 
-    /// All headings, for those who look at many.
+    /// Return all headings, for code that looks many up.
     pub(crate) fn headings(&self) -> &Headings {
         &self.headings
     }
 
-    /// Whether any frame has that LEN.
+    /// Return whether any frame has that LEN.
     #[inline]
     pub(crate) fn is_length(&self, length: u8) -> bool {
         let legal = self.lengths.get(usize::from(length));
         legal.copied().unwrap_or_default()
     }
 
-    /// The smallest and the largest LEN of any frame; `None`: there are no frames.
+    /// Return the smallest and the largest LEN of any frame; `None`: there are no frames.
     pub(crate) fn lengths(&self) -> Option<(u8, u8)> {
         let least = self.lengths.iter().position(|legal| *legal)?;
         let most = self.lengths.iter().rposition(|legal| *legal)?;
         Some((u8::try_from(least).ok()?, u8::try_from(most).ok()?))
     }
 
-    /// All groups; a heading's number is the index here.
-    pub(crate) fn groups(&self) -> &[Vec<Form>] {
+    /// Return all groups; a heading's number is the index here.
+    pub(crate) fn groups(&self) -> &[Vec<VariantId>] {
         &self.groups
     }
 
-    /// The forms with that LEN and id, those with precedence first.
-    pub(crate) fn forms(&self, length: u8, id: u8) -> &[Form] {
+    /// Return the variants with that LEN and id, in order of precedence.
+    pub(crate) fn variants(&self, length: u8, id: u8) -> &[VariantId] {
         let Heading::Group(group) = self.heading(length, id) else {
             return &[];
         };
-        let forms = self.groups.get(usize::from(group));
-        forms.map_or(&[], Vec::as_slice)
+        let variants = self.groups.get(usize::from(group));
+        variants.map_or(&[], Vec::as_slice)
     }
 }
 
-/// Each form of a direction, with its id and LEN.
-fn forms(
+/// Return each variant of a direction, with its id and LEN.
+fn variants(
     frame: &FrameFormat,
     commands: &[Command],
     direction: Direction,
-) -> Vec<(u8, usize, Form)> {
+) -> Vec<(u8, usize, VariantId)> {
     let mut all = Vec::new();
     for (command, record) in commands.iter().enumerate() {
-        for (layout, form) in record.layouts(direction).iter().enumerate() {
-            let form_of = Form {
+        for (index, variant) in record.variants(direction).iter().enumerate() {
+            let id = VariantId {
                 direction,
                 command,
-                layout,
+                variant: index,
             };
-            all.push((record.id, frame.length(form.size()), form_of));
+            all.push((record.id, frame.length(variant.size()), id));
         }
     }
     all
 }
 
-/// What the ids that the table lacks are, with a LEN of some frame; with another, LEN refutes it.
+/// Set the cells of ids that the table lacks: `cell` for a LEN of some frame, bad length for
+/// others.
 fn fill_unknown(headings: &mut Headings, known: &[bool; 256], lengths: &[bool; 256], cell: u16) {
     for (row, known) in headings.chunks_exact_mut(256).zip(known) {
         for (entry, legal) in row.iter_mut().zip(lengths).filter(|_| !known) {

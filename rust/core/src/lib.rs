@@ -1,22 +1,24 @@
 //! The serial protocol of myCobot arms, as an interpreter of a table.
 //!
-//! A [`Table`] says which messages there are; [`encode`] and [`decode`] turn values into bytes and
-//! back, and a [`Framer`] cuts frames out of a stream. Nothing here knows a command by name, does
-//! I/O, looks at a clock or makes text: errors are a kind and a place. The Python reference in
-//! `python/cobotwire/codec/reference` is the specification; this crate gives the same answers.
+//! A [`Table`] defines the messages; [`encode`] and [`decode`] turn values into bytes and back, and
+//! a [`Framer`] cuts frames out of a stream. Nothing here knows a command by name, does I/O, reads
+//! a clock or makes text: errors are a kind and a place. The Python reference in
+//! `python/cobotwire/codec/reference` is the specification; this crate has the same results.
 
 mod bulk;
 mod check;
 mod decode;
 mod encode;
-mod error;
 mod field;
 mod frame;
 mod framer;
 mod given;
 mod judge;
 mod legal;
+mod message;
+mod number;
 mod read;
+mod reason;
 mod scan;
 mod seam;
 mod table;
@@ -27,17 +29,17 @@ pub use bulk::{
     Advise, Cells, ColumnReader, Columns, Numbers, OffsetReader, Offsets, Plans, Rows, Spans,
 };
 pub use check::{Check, crc16_modbus};
-pub use decode::{Decoded, decode, read};
+pub use decode::{DecodeError, Decoded, decode, read};
 pub use encode::{Choice, encode};
-pub use error::{
-    BadRaw, BadValue, DecodeError, EncodeError, Misfit, Reason, TableError, ValueFault,
-};
-pub use field::{Case, Field, Number, Order};
+pub use field::{Case, Field};
 pub use frame::{Frame, FrameFormat, OwnedFrame};
 pub use framer::{Event, Framer};
-pub use given::{Given, Row, Unread};
+pub use given::{Given, Row, Unread, ValueFault};
 pub use judge::{Rules, Verdict};
-pub use legal::Form;
-pub use read::Value;
-pub use table::{Command, Direction, Layout, Listening, Table};
+pub use message::{Command, Direction, Listening, Variant, VariantId};
+pub use number::{Misfit, Number, Order, Value};
+pub use read::BadRaw;
+pub use reason::Reason;
+pub use table::{Table, TableError};
 pub use tally::Tally;
+pub use write::{BadValue, EncodeError};

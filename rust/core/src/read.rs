@@ -1,25 +1,30 @@
-//! The values of a frame, once it is known which message it is.
+//! Reads the values of a frame as one variant.
 
-use crate::error::BadRaw;
-use crate::field::{Field, Number, Order};
-use crate::legal::Form;
-use crate::table::Layout;
+use crate::field::Field;
+use crate::message::{Variant, VariantId};
+use crate::number::{Number, Value};
 
-/// A decoded value. A row is followed by its elements, so that a message is one flat buffer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// A number without a scale.
-    Whole(i64),
-    /// A number with one.
-    Real(f64),
-    /// That many of the values that follow are the elements of one field.
-    Row(usize),
+/// A number on the wire that the table does not allow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BadRaw {
+    /// The variant that does not allow it.
+    pub variant: VariantId,
+    /// Index of the field.
+    pub field: usize,
+    /// Index of the field's case.
+    pub case: usize,
+    /// Index of the number in the case.
+    pub element: usize,
+    /// Its raw value, after the sign rule.
+    pub raw: i64,
+    /// The index of its first byte in the frame.
+    pub offset: usize,
 }
 
-/// Reads the values of one form.
+/// Reads the values of one variant.
 pub(crate) struct Reader<'a> {
-    pub(crate) form: Form,
-    pub(crate) layout: &'a Layout,
+    pub(crate) id: VariantId,
+    pub(crate) variant: &'a Variant,
     /// The data bytes.
     pub(crate) data: &'a [u8],
     /// Where they start in the frame.
@@ -27,27 +32,27 @@ pub(crate) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// All of them, or the first number that is not allowed.
+    /// Return all values, or the first number that is not allowed.
     pub(crate) fn values(&self) -> Result<Vec<Value>, BadRaw> {
-        let mut values = Vec::with_capacity(self.layout.values());
-        for (index, field) in self.layout.fields().iter().enumerate() {
+        let mut values = Vec::with_capacity(self.variant.values());
+        for (index, field) in self.variant.fields().iter().enumerate() {
             let case = self.case(field)?;
             if field.many {
                 values.push(Value::Row(field.numbers(case).len()));
             }
-            self.field(index, field, case, |number, whole| {
-                values.push(physical(number, whole));
+            self.field(index, field, case, |number, raw| {
+                values.push(number.physical(raw));
             })?;
         }
         Ok(values)
     }
 
-    /// Each number with the index of its field, whole and physical; or the first not allowed.
+    /// Return each number with the index of its field, raw and physical; or the first not allowed.
     pub(crate) fn numbers(&self) -> Result<Vec<(usize, i64, Value)>, BadRaw> {
-        let mut values = Vec::with_capacity(self.layout.size());
-        for (index, field) in self.layout.fields().iter().enumerate() {
-            self.field(index, field, self.case(field)?, |number, whole| {
-                values.push((index, whole, physical(number, whole)));
+        let mut values = Vec::with_capacity(self.variant.size());
+        for (index, field) in self.variant.fields().iter().enumerate() {
+            self.field(index, field, self.case(field)?, |number, raw| {
+                values.push((index, raw, number.physical(raw)));
             })?;
         }
         Ok(values)
@@ -60,71 +65,40 @@ impl Reader<'_> {
         case: usize,
         mut take: impl FnMut(&Number, i64),
     ) -> Result<(), BadRaw> {
-        let mut start = self.layout.start(index);
+        let mut start = self.variant.start(index);
         for (element, number) in field.numbers(case).iter().enumerate() {
-            let whole = whole(number, self.data, start);
-            if !field.allows(number, whole) {
-                return Err(self.refuse((index, case, element), whole, start));
+            let raw = number.unpack(self.data, start);
+            if !field.allows(number, raw) {
+                return Err(self.reject((index, case, element), raw, start));
             }
-            take(number, whole);
+            take(number, raw);
             start += number.width;
         }
         Ok(())
     }
 
-    /// The index of the case that the field's selector picks.
+    /// Return the index of the case that the field's selector picks.
     fn case(&self, field: &Field) -> Result<usize, BadRaw> {
-        let Some((index, _, number)) = self.layout.selector(field) else {
+        let Some((index, _, number)) = self.variant.selector(field) else {
             return Ok(0);
         };
-        let start = self.layout.start(index);
-        let picked = whole(number, self.data, start);
+        let start = self.variant.start(index);
+        let picked = number.unpack(self.data, start);
         field
             .case(picked)
-            .ok_or_else(|| self.refuse((index, 0, 0), picked, start))
+            .ok_or_else(|| self.reject((index, 0, 0), picked, start))
     }
 
-    fn refuse(&self, place: (usize, usize, usize), whole: i64, start: usize) -> BadRaw {
+    fn reject(&self, place: (usize, usize, usize), raw: i64, start: usize) -> BadRaw {
         let (field, case, element) = place;
         let offset = self.offset + start;
         BadRaw {
-            form: self.form,
+            variant: self.id,
             field,
             case,
             element,
-            whole,
+            raw,
             offset,
         }
-    }
-}
-
-/// The whole number that starts there, after the sign rule.
-#[inline]
-pub(crate) fn whole(number: &Number, data: &[u8], start: usize) -> i64 {
-    let bytes = data.get(start..start + number.width).unwrap_or_default();
-    let word = match (bytes, number.order) {
-        ([byte], _) => i64::from(*byte),
-        (&[high, low], Order::Big) => i64::from(u16::from_be_bytes([high, low])),
-        (_, Order::Big) => bytes.iter().fold(0, join),
-        (_, Order::Little) => bytes.iter().rev().fold(0, join),
-    };
-    if word > number.signed_at {
-        word - (1 << (8 * number.width))
-    } else {
-        word
-    }
-}
-
-fn join(word: i64, byte: &u8) -> i64 {
-    word << 8 | i64::from(*byte)
-}
-
-/// One rounding, that of the division: both casts are exact, as the table is checked for.
-#[inline]
-pub(crate) fn physical(number: &Number, whole: i64) -> Value {
-    if number.scaled() {
-        Value::Real((whole * number.multiply) as f64 / number.divide as f64)
-    } else {
-        Value::Whole(whole)
     }
 }

@@ -1,25 +1,25 @@
-//! The scan of contiguous bytes: each position is judged once, and a frame is passed over whole.
+//! Scans contiguous bytes: judges each position once and skips the bytes of a frame.
 
-use crate::error::Reason;
 use crate::frame::Frame;
 use crate::judge::{Rules, Verdict};
+use crate::reason::Reason;
 
-/// Takes what a scan finds, in the order of the stream; positions count from the start of its data.
+/// Receives the finds of a scan in stream order; positions count from the start of its data.
 pub(crate) trait Sink<'a> {
-    /// A frame stands at `at`.
+    /// Receive the frame at `at`.
     fn frame(&mut self, at: usize, frame: Frame<'a>);
 
-    /// The bytes from `from` to before `to` are noise, each for this reason.
+    /// Receive noise: the bytes from `from` to before `to`, each for this reason.
     fn noise(&mut self, from: usize, to: usize, reason: Reason);
 }
 
-/// So many bytes of noise without a header make it likely that the next ones are none either.
+/// After this many bytes of noise without a header, the next bytes probably have no header either.
 const LONG_RUN: usize = 8;
-/// How many are then looked at together.
+/// The number of bytes that are then examined together.
 const STEP: usize = 16;
 
-/// Judge the positions from `at` to `stop`. Gives the first that waits for more bytes (at the end
-/// of the stream none does), else where the last frame ends, which may be behind `stop`.
+/// Judge the positions from `at` to `stop`. Return the first position that waits for more bytes (at
+/// the end of the stream no position waits), else the end of the last frame, perhaps after `stop`.
 #[inline]
 pub(crate) fn scan<'a>(
     rules: &Rules,
@@ -33,7 +33,7 @@ pub(crate) fn scan<'a>(
     let mut run = (at, Reason::NoHeader);
     while at < stop {
         let reason = match rules.judge(data.get(at..).unwrap_or_default()) {
-            Verdict::Stands(frame) => {
+            Verdict::Frame(frame) => {
                 close(run, at, sink);
                 sink.frame(at, frame);
                 at += frame.bytes().len();
@@ -66,7 +66,7 @@ fn close<'a>(run: (usize, Reason), end: usize, sink: &mut impl Sink<'a>) {
     }
 }
 
-/// How many bytes at the start surely are not `byte`; a multiple of the step.
+/// Return a number of leading bytes, a multiple of the step, that do not contain `byte`.
 #[inline]
 fn without(bytes: &[u8], byte: u8) -> usize {
     let clear = |chunk: &&[u8; STEP]| !chunk.iter().fold(false, |any, each| any | (*each == byte));

@@ -1,31 +1,31 @@
-//! What a stream keeps between two calls: the start of a frame that waits for its end.
+//! Keeps the start of an incomplete frame between two calls.
 
 use std::mem;
 
-/// The bytes that wait, and where they stand. They are fewer than the longest frame.
+/// The bytes that wait, and their position. They are fewer than the longest frame has.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seam {
     kept: Vec<u8>,
     offset: u64,
 }
 
-/// A call's way over the seam. Positions count from the first kept byte.
+/// The bytes around the seam between two calls. Positions count from the first kept byte.
 pub(crate) struct Crossing {
-    /// What was kept, and so much of the new chunk as frames that start in it can need.
+    /// The kept bytes, and the part of the new chunk into which their frames can reach.
     pub(crate) data: Vec<u8>,
-    /// How much of it was kept; the new chunk starts there.
+    /// The number of kept bytes; the new chunk starts there.
     pub(crate) seam: usize,
-    /// Where its first byte stands in the stream.
+    /// The position of its first byte in the stream.
     pub(crate) offset: u64,
 }
 
 impl Seam {
-    /// How many bytes wait.
+    /// Return the number of bytes that wait.
     pub(crate) fn pending(&self) -> usize {
         self.kept.len()
     }
 
-    /// Start a call with a new chunk. That itself is scanned in place, however large it is.
+    /// Start a call with a new chunk. The rest of the chunk is scanned in place, without a copy.
     pub(crate) fn cross(&mut self, chunk: &[u8], longest: usize) -> Crossing {
         let mut data = mem::take(&mut self.kept);
         let seam = data.len();
@@ -42,7 +42,7 @@ impl Seam {
         }
     }
 
-    /// End it: all before position `at` is done with.
+    /// End a call: every byte before position `at` is accounted for.
     pub(crate) fn keep(&mut self, crossing: Crossing, chunk: &[u8], at: usize) {
         let Crossing {
             mut data,

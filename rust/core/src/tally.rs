@@ -1,6 +1,6 @@
-//! What came over a line, in numbers.
+//! Counts of what a framer has received.
 
-use crate::error::Reason;
+use crate::reason::Reason;
 
 /// Counts from the start of a stream. They depend on its bytes alone, not on its chunks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub struct Tally {
     pub frames: [u64; 256],
     /// Bytes of noise, by reason; in the order of [`Reason::ALL`].
     pub noise: [u64; Reason::ALL.len()],
-    /// How often a frame came right behind noise.
+    /// The number of frames directly after noise.
     pub resyncs: u64,
 }
 
@@ -27,7 +27,7 @@ impl Default for Tally {
 }
 
 impl Tally {
-    /// So many more frames of that id.
+    /// Count frames of that id.
     #[inline]
     pub(crate) fn add_frames(&mut self, id: u8, count: u64) {
         if let Some(frames) = self.frames.get_mut(usize::from(id)) {
@@ -35,7 +35,7 @@ impl Tally {
         }
     }
 
-    /// So many more bytes of noise.
+    /// Count bytes of noise.
     #[inline]
     pub(crate) fn add_noise(&mut self, reason: Reason, count: usize) {
         if let Some(noise) = self.noise.get_mut(reason as usize) {

@@ -1,23 +1,53 @@
-//! The data bytes of one form, from values.
-//!
-//! A real value becomes the nearest whole number of the wire's steps, a tie the even one; the
-//! arithmetic is IEEE double, step by step as in the reference, so that the bytes are the same.
+//! Encodes values as the data bytes of one variant.
 
-use crate::error::{BadValue, EncodeError, ValueFault};
-use crate::field::{Field, Number, Order};
-use crate::given::{Given, Row, Unread};
-use crate::table::Layout;
+use crate::field::Field;
+use crate::given::{Given, Row, Unread, ValueFault};
+use crate::message::Variant;
+use crate::number::Number;
 
-/// Appends the data bytes of one form to a frame.
+/// A value that its field does not allow.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BadValue<V> {
+    /// Index of the variant among the command's in that direction.
+    pub variant: usize,
+    /// Index of the field.
+    pub field: usize,
+    /// Index of the field's case.
+    pub case: usize,
+    /// Index of the number in a row; `None`: the field as a whole.
+    pub element: Option<usize>,
+    /// What is wrong.
+    pub fault: ValueFault,
+    /// The value, as the caller passed it.
+    pub value: V,
+    /// Its raw value, if the fault is that it picks no case of a field.
+    pub picked: Option<i64>,
+}
+
+/// Why nothing was encoded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EncodeError<V: Given> {
+    /// The frame format has no such address.
+    Address,
+    /// The command has no variant with that many fields in that direction, or the choice has
+    /// others.
+    VariantId,
+    /// A value is not allowed.
+    Value(BadValue<V>),
+    /// Converting a value raised an error of its own, which is passed on.
+    Foreign(V::Error),
+}
+
+/// Appends the data bytes of one variant to a frame.
 pub(crate) struct Writer<'a, V: Given> {
-    /// Index of the form.
+    /// Index of the variant.
     pub(crate) index: usize,
-    pub(crate) layout: &'a Layout,
+    pub(crate) variant: &'a Variant,
     pub(crate) values: &'a V::Row,
     pub(crate) bytes: &'a mut Vec<u8>,
 }
 
-/// Where in a layout a value goes.
+/// The place of a value in a variant.
 #[derive(Clone, Copy)]
 struct Place<'a> {
     index: usize,
@@ -27,11 +57,11 @@ struct Place<'a> {
 }
 
 impl<V: Given> Writer<'_, V> {
-    /// All fields, or the leftmost mistake.
+    /// Write all fields, or return the leftmost mistake.
     pub(crate) fn fields(mut self) -> Result<(), EncodeError<V>> {
-        for (index, field) in self.layout.fields().iter().enumerate() {
+        for (index, field) in self.variant.fields().iter().enumerate() {
             let case = self.case(field)?;
-            let value = self.values.at(index).ok_or(EncodeError::Form)?;
+            let value = self.values.at(index).ok_or(EncodeError::VariantId)?;
             self.field(
                 Place {
                     index,
@@ -45,9 +75,9 @@ impl<V: Given> Writer<'_, V> {
         Ok(())
     }
 
-    /// The index of the case that the field's selector picks.
+    /// Return the index of the case that the field's selector picks.
     fn case(&self, field: &Field) -> Result<usize, EncodeError<V>> {
-        let Some((index, selector, number)) = self.layout.selector(field) else {
+        let Some((index, selector, number)) = self.variant.selector(field) else {
             return Ok(0);
         };
         let place = Place {
@@ -56,7 +86,7 @@ impl<V: Given> Writer<'_, V> {
             case: 0,
             element: None,
         };
-        let value = || self.values.at(index).ok_or(EncodeError::Form);
+        let value = || self.values.at(index).ok_or(EncodeError::VariantId);
         let picked = self.checked(place, number, value()?)?;
         match field.case(picked) {
             Some(case) => Ok(case),
@@ -81,10 +111,10 @@ impl<V: Given> Writer<'_, V> {
             Err(unread) => return Err(self.unread(place, unread, value)),
         };
         if row.count() != all.len() {
-            return Err(self.refuse(place, ValueFault::Count, row.into_value()));
+            return Err(self.reject(place, ValueFault::Count, row.into_value()));
         }
         for (element, number) in all.iter().enumerate() {
-            let value = row.at(element).ok_or(EncodeError::Form)?;
+            let value = row.at(element).ok_or(EncodeError::VariantId)?;
             self.number(
                 Place {
                     element: Some(element),
@@ -103,34 +133,34 @@ impl<V: Given> Writer<'_, V> {
         number: &Number,
         value: V,
     ) -> Result<(), EncodeError<V>> {
-        let whole = self.checked(place, number, value)?;
-        write(self.bytes, number, whole);
+        let raw = self.checked(place, number, value)?;
+        number.pack(raw, self.bytes);
         Ok(())
     }
 
-    /// The whole number on the wire for one value.
+    /// Return the raw value of one value.
     fn checked(&self, place: Place<'_>, number: &Number, value: V) -> Result<i64, EncodeError<V>> {
         match read(place.field, number, &value) {
-            Ok(whole) => Ok(whole),
+            Ok(raw) => Ok(raw),
             Err(unread) => Err(self.unread(place, unread, value)),
         }
     }
 
     fn unread(&self, place: Place<'_>, unread: Unread<V::Error>, value: V) -> EncodeError<V> {
         match unread {
-            Unread::Fault(fault) => self.refuse(place, fault, value),
-            Unread::Beyond => self.refuse(place, outside(place.field), value),
+            Unread::Fault(fault) => self.reject(place, fault, value),
+            Unread::Beyond => self.reject(place, outside(place.field), value),
             Unread::Foreign(error) => EncodeError::Foreign(error),
         }
     }
 
-    fn refuse(&self, place: Place<'_>, fault: ValueFault, value: V) -> EncodeError<V> {
+    fn reject(&self, place: Place<'_>, fault: ValueFault, value: V) -> EncodeError<V> {
         EncodeError::Value(self.bad(place, fault, value))
     }
 
     fn bad(&self, place: Place<'_>, fault: ValueFault, value: V) -> BadValue<V> {
         BadValue {
-            layout: self.index,
+            variant: self.index,
             field: place.index,
             case: place.case,
             element: place.element,
@@ -142,66 +172,28 @@ impl<V: Given> Writer<'_, V> {
 }
 
 fn read<V: Given>(field: &Field, number: &Number, value: &V) -> Result<i64, Unread<V::Error>> {
-    let whole = if number.scaled() {
-        steps(number, value.real()?)?
+    let raw = if number.scaled() {
+        let real = value.real()?;
+        if !real.is_finite() {
+            return Err(Unread::Fault(ValueFault::NotFinite));
+        }
+        let raw = number.raw(real);
+        raw.ok_or(Unread::Fault(ValueFault::Range))?
     } else {
-        value.whole(field.flag)?
+        value.integer(field.flag)?
     };
-    if field.allows(number, whole) {
-        Ok(whole)
+    if field.allows(number, raw) {
+        Ok(raw)
     } else {
         Err(Unread::Fault(outside(field)))
     }
 }
 
-/// What is wrong with a whole number that the field does not allow.
+/// Return the fault of a raw value that the field does not allow.
 fn outside(field: &Field) -> ValueFault {
     if field.choices.is_empty() {
         ValueFault::Range
     } else {
         ValueFault::Choice
     }
-}
-
-/// The nearest whole number of the wire's steps. The casts to double are exact, as the table is
-/// checked for.
-fn steps<E>(number: &Number, real: f64) -> Result<i64, Unread<E>> {
-    if !real.is_finite() {
-        return Err(Unread::Fault(ValueFault::NotFinite));
-    }
-    let scaled = real * number.divide as f64;
-    let steps = match number.multiply {
-        1 => scaled, // the same, without the time that a division takes
-        multiply => scaled / multiply as f64,
-    };
-    // Before rounding: a step count beyond the bounds by one or more has no whole number to be.
-    let (below, above) = ((number.minimum - 1) as f64, (number.maximum + 1) as f64);
-    if below < steps && steps < above {
-        Ok(nearest(steps) as i64)
-    } else {
-        Err(Unread::Fault(ValueFault::Range))
-    }
-}
-
-/// The nearest whole number, a tie the even one; for less than 2^51, as bounds of words are.
-///
-/// Where a double has no bits left for halves, adding rounds just so. The standard library's own
-/// function is a call into the C library, where the processor is not known to do it.
-fn nearest(real: f64) -> f64 {
-    const NO_HALVES: f64 = (1_u64 << 52) as f64;
-    let shift = NO_HALVES.copysign(real);
-    if real.abs() < NO_HALVES / 2.0 {
-        real + shift - shift
-    } else {
-        real.round_ties_even()
-    }
-}
-
-/// The lowest bytes of a whole number; a negative one is its two's complement.
-fn write(bytes: &mut Vec<u8>, number: &Number, whole: i64) {
-    let word = match number.order {
-        Order::Big => (whole << (64 - 8 * number.width)).to_be_bytes(),
-        Order::Little => whole.to_le_bytes(),
-    };
-    bytes.extend(word.iter().take(number.width));
 }

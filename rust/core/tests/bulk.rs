@@ -1,4 +1,4 @@
-//! Bulk reading gives what framer and decoder give, frame for frame and byte for byte.
+//! Bulk reading has the same results as framer and decoder, for every frame and byte.
 
 // A failing test may panic.
 #![allow(
@@ -14,13 +14,13 @@ mod records;
 use std::sync::Arc;
 
 use cobotwire_core::{
-    Cells, ColumnReader, Columns, Direction, Event, Form, Framer, Listening, Numbers, OffsetReader,
-    Plans, Spans, Table, Tally, Value, decode,
+    Cells, ColumnReader, Columns, Direction, Event, Framer, Listening, Numbers, OffsetReader,
+    Plans, Spans, Table, Tally, Value, VariantId, decode,
 };
 use common::Dice;
 use records::Edition;
 
-/// What the slow way finds.
+/// The results of framer and decoder.
 #[derive(Default)]
 struct Slow {
     frames: Vec<(u64, Vec<u8>)>,
@@ -50,8 +50,9 @@ fn slowly(table: &Table, listening: Listening, stream: &[u8]) -> Slow {
     slow
 }
 
-/// The form, and the physical values of a frame, by the decoder; `None`: no form allows them.
-fn read(table: &Table, listening: Listening, frame: &[u8]) -> Option<(Form, Vec<f64>)> {
+/// Return the variant, and the physical values of a frame, by the decoder; `None`: no variant
+/// allows them.
+fn read(table: &Table, listening: Listening, frame: &[u8]) -> Option<(VariantId, Vec<f64>)> {
     let ways = match listening {
         Listening::To(way) => vec![way],
         Listening::Both => vec![Direction::Request, Direction::Reply],
@@ -61,18 +62,18 @@ fn read(table: &Table, listening: Listening, frame: &[u8]) -> Option<(Form, Vec<
         .filter_map(|way| decode(table, *way, frame, None).ok());
     let decoded = found.next()?;
     let number = |value: &Value| match value {
-        Value::Whole(whole) => Some(*whole as f64),
+        Value::Integer(integer) => Some(*integer as f64),
         Value::Real(real) => Some(*real),
         Value::Row(_) => None,
     };
     Some((
-        decoded.form,
+        decoded.variant,
         decoded.values.iter().filter_map(number).collect(),
     ))
 }
 
-/// Each row of columns: where it starts, its form and its numbers.
-fn rows(columns: &Columns) -> Vec<(u64, Form, Vec<f64>)> {
+/// Return each row of columns: where it starts, its variant and its numbers.
+fn rows(columns: &Columns) -> Vec<(u64, VariantId, Vec<f64>)> {
     let mut all = Vec::new();
     for rows in &columns.rows {
         for (index, offset) in rows.offsets.iter().enumerate() {
@@ -83,7 +84,7 @@ fn rows(columns: &Columns) -> Vec<(u64, Form, Vec<f64>)> {
             };
             all.push((
                 *offset,
-                rows.form,
+                rows.variant,
                 rows.fields.iter().flat_map(cells).collect(),
             ));
         }
@@ -143,23 +144,23 @@ fn check(table: &Arc<Table>, stream: &[u8], dice: &mut Dice) {
         reader.flush();
         let columns = reader.take();
         let mut expected = Vec::new();
-        let mut refused = Vec::new();
+        let mut rejected = Vec::new();
         for (offset, frame) in &slow.frames {
             match read(table, listening, frame) {
-                Some((form, values)) => expected.push((*offset, form, values)),
-                None => refused.push(*offset),
+                Some((variant, values)) => expected.push((*offset, variant, values)),
+                None => rejected.push(*offset),
             }
         }
-        let mut found = columns.refused.clone();
+        let mut found = columns.rejected.clone();
         found.sort_unstable();
-        assert_eq!(found, refused);
+        assert_eq!(found, rejected);
         assert_eq!(rows(&columns), expected);
         assert_eq!(columns.noise, slow.noise);
         assert_eq!(Some(reader.tally()), slow.tally.as_ref());
     }
 }
 
-/// Streams of the real frames of an edition, and of what makes framing hard.
+/// Return a stream of an edition's frames and of bytes that are hard to frame.
 fn stream(dice: &mut Dice, frames: &[Vec<u8>], size: usize, noise: usize) -> Vec<u8> {
     let mut stream = Vec::new();
     while stream.len() < size {
@@ -173,7 +174,7 @@ fn stream(dice: &mut Dice, frames: &[Vec<u8>], size: usize, noise: usize) -> Vec
         }
         let mut frame = frames[dice.roll(frames.len())].clone();
         if dice.roll(100) < noise {
-            // Often still a frame: of other values, allowed or not.
+            // The result is often still a frame, with other values, legal or not.
             let index = dice.roll(frame.len());
             frame[index] = dice.byte();
         }
@@ -183,10 +184,10 @@ fn stream(dice: &mut Dice, frames: &[Vec<u8>], size: usize, noise: usize) -> Vec
 }
 
 #[test]
-fn bulk_reading_gives_what_framer_and_decoder_give() {
+fn bulk_reading_equals_framer_and_decoder() {
     let mut dice = Dice(4);
-    for path in ["tests/data/mycobot.json", "tests/data/mycobot280.json"] {
-        let edition = Edition::read(&std::fs::read_to_string(path).unwrap());
+    for name in ["mycobot", "mycobot280"] {
+        let edition = Edition::generated(name);
         let table = Arc::new(edition.table);
         let frames: Vec<Vec<u8>> = edition
             .vectors
@@ -209,10 +210,10 @@ fn bulk_reading_gives_what_framer_and_decoder_give() {
     }
 }
 
-/// A guess in the middle of a block can be wrong: a frame within a frame, again and again.
+/// A guess in the middle of a block can be wrong: here every frame contains a frame.
 #[test]
 fn frames_that_hold_frames_do_not_mislead_the_lanes() {
-    let edition = Edition::read(&std::fs::read_to_string("tests/data/mycobot.json").unwrap());
+    let edition = Edition::generated("mycobot");
     let inner = [0xFE, 0xFE, 0x03, 0x12, 0x01, 0xFA];
     let outer = [&[0xFE, 0xFE, 0x0E, 0x20][..], &inner, &inner, &[0xFA]].concat();
     let table = Arc::new(edition.table);
@@ -224,8 +225,8 @@ fn frames_that_hold_frames_do_not_mislead_the_lanes() {
 }
 
 #[test]
-fn raw_columns_hold_the_whole_numbers_in_small_types() {
-    let edition = Edition::read(&std::fs::read_to_string("tests/data/mycobot280.json").unwrap());
+fn raw_columns_hold_raw_values_in_small_types() {
+    let edition = Edition::generated("mycobot280");
     let table = Arc::new(edition.table);
     let plans = Arc::new(Plans::new(&table, Listening::To(Direction::Reply)));
     let reader = |old| ColumnReader::new(Arc::clone(&table), Arc::clone(&plans), Numbers::Raw, old);
@@ -245,7 +246,7 @@ fn raw_columns_hold_the_whole_numbers_in_small_types() {
     assert_eq!(rows.offsets, [0, 17]);
     assert_eq!(rows.fields, [Cells::I16([row, row].concat())]);
 
-    // Its memory serves the next one.
+    // The next reader reuses its memory.
     let mut second = reader(Some(columns));
     second.feed(&frame);
     let again = second.take();

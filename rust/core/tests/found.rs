@@ -1,4 +1,4 @@
-//! What was hard once stays right: the inputs of `tests/found`, which fuzzing found or people made.
+//! Checks the inputs of `tests/found`, which fuzzing found or people wrote because they were hard.
 
 // A failing test may panic.
 #![allow(
@@ -29,12 +29,12 @@ fn text(name: &str) -> String {
     fs::read_to_string(folder("../../tests/found").join(name)).expect("a readable file")
 }
 
-/// Every edition, and the samples of what no edition has.
+/// Return every edition, and the samples of features that no edition has.
 fn tables() -> HashMap<String, Edition> {
     let folders = ["tests/data", "tests/samples"].map(folder);
     let entries = folders
         .iter()
-        .flat_map(|folder| fs::read_dir(folder).expect("the folder is there"));
+        .flat_map(|folder| fs::read_dir(folder).expect("no test data: run `make products` first"));
     entries
         .map(|entry| {
             let path = entry.expect("a readable entry").path();
@@ -58,8 +58,8 @@ fn framer(tables: &HashMap<String, Edition>, stream: &Stream) -> Framer {
     Framer::new(rules(tables, stream))
 }
 
-/// The events that the file tells, with their offsets and bytes.
-fn told(stream: &Stream) -> Vec<Owned> {
+/// Return the events recorded in the file, with their offsets and bytes.
+fn recorded(stream: &Stream) -> Vec<Owned> {
     let bytes = stream.bytes();
     let mut at = 0;
     let mut all = Vec::new();
@@ -67,11 +67,11 @@ fn told(stream: &Stream) -> Vec<Owned> {
         all.push((at as u64, bytes[at..at + size].to_vec(), *reason));
         at += size;
     }
-    assert_eq!(at, bytes.len(), "the file tells every byte of {stream:?}");
+    assert_eq!(at, bytes.len(), "the file covers every byte of {stream:?}");
     all
 }
 
-/// Its events, noise of one reason joined, with the silences that the file tells.
+/// Return the events of a stream with its recorded silences; noise of one reason is joined.
 fn cut(framer: &mut Framer, stream: &Stream) -> Vec<Owned> {
     let mut all: Vec<Owned> = Vec::new();
     let mut add = |event: Event<'_>| {
@@ -92,18 +92,18 @@ fn cut(framer: &mut Framer, stream: &Stream) -> Vec<Owned> {
 }
 
 #[test]
-fn every_found_stream_gives_its_events() {
+fn every_found_stream_has_its_recorded_events() {
     let tables = tables();
     let streams = replay::streams(&text("streams.txt"));
     assert!(!streams.is_empty());
     for stream in &streams {
         let events = cut(&mut framer(&tables, stream), stream);
-        assert_eq!(events, told(stream), "{stream:?}");
+        assert_eq!(events, recorded(stream), "{stream:?}");
     }
 }
 
 #[test]
-fn every_found_stream_gives_them_however_it_is_cut() {
+fn events_of_every_found_stream_do_not_depend_on_chunks() {
     let tables = tables();
     for stream in replay::streams(&text("streams.txt")) {
         if stream.chunks.iter().any(|(_, silence)| *silence) {
@@ -112,13 +112,13 @@ fn every_found_stream_gives_them_however_it_is_cut() {
         let bytes = stream.bytes();
         for size in 1..=bytes.len() {
             let found = events(&mut framer(&tables, &stream), bytes.chunks(size));
-            assert_eq!(found, told(&stream), "in chunks of {size}: {stream:?}");
+            assert_eq!(found, recorded(&stream), "in chunks of {size}: {stream:?}");
         }
     }
 }
 
 #[test]
-fn bulk_reading_finds_their_frames() {
+fn bulk_reading_finds_the_frames_of_every_found_stream() {
     let tables = tables();
     for stream in replay::streams(&text("streams.txt")) {
         if stream.chunks.iter().any(|(_, silence)| *silence) {
@@ -132,17 +132,17 @@ fn bulk_reading_finds_their_frames() {
         }
         reader.flush();
         frames.extend(reader.take().frames);
-        let told = told(&stream).into_iter();
-        let told: Vec<u64> = told
+        let recorded = recorded(&stream).into_iter();
+        let recorded: Vec<u64> = recorded
             .filter(|event| event.2.is_none())
             .map(|e| e.0)
             .collect();
-        assert_eq!(frames, told, "{stream:?}");
+        assert_eq!(frames, recorded, "{stream:?}");
     }
 }
 
 #[test]
-fn every_found_frame_is_read_or_refused_as_told() {
+fn every_found_frame_is_decoded_or_rejected_as_recorded() {
     let tables = tables();
     let singles = replay::singles(&text("frames.txt"));
     assert!(!singles.is_empty());
@@ -162,8 +162,8 @@ fn read(edition: &Edition, single: &Single) -> (String, usize) {
     });
     match decode(&edition.table, single.direction, &single.bytes, of) {
         Ok(decoded) => {
-            let name = edition.names[decoded.form.command].clone();
-            (name, decoded.form.layout)
+            let name = edition.names[decoded.variant.command].clone();
+            (name, decoded.variant.variant)
         }
         Err(DecodeError::Frame { reason, offset }) => (reason.word().to_owned(), offset),
         Err(DecodeError::Raw(bad)) => ("bad-value".to_owned(), bad.offset),

@@ -1,5 +1,5 @@
-//! The laws of framing: every byte is accounted for, chunking does not matter, and a frame that was
-//! not damaged is found.
+//! Checks the laws of framing: every byte is accounted for, chunking does not matter, and every
+//! undamaged frame is found.
 
 // A failing test may panic.
 #![allow(
@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 use cobotwire_core::{Direction, Event, Framer, Listening, Reason, Table};
 use common::{Dice, Owned, events, field, number, owned, table, word};
 
-/// Replies 20: nothing, 21: a word, 22: six words.
+/// Return a table with the replies 20 without data, 21 with one word and 22 with six words.
 fn three() -> Table {
     let words = |count| field((0..count).map(|_| word(100)).collect(), true);
     table(vec![vec![], vec![words(1)], vec![words(6)]])
@@ -59,7 +59,7 @@ fn noise_has_its_reason() {
 }
 
 #[test]
-fn an_unknown_id_is_a_frame_only_where_asked_for() {
+fn an_unknown_id_is_a_frame_only_if_accepted() {
     let bytes = [0xFE, 0xFE, 0x03, 0x99, 0x00, 0xFA];
     assert_eq!(
         events(&mut framer(true), [&bytes[..]]),
@@ -72,7 +72,7 @@ fn an_unknown_id_is_a_frame_only_where_asked_for() {
 }
 
 #[test]
-fn a_candidate_dies_with_the_byte_that_refutes_it() {
+fn a_candidate_is_refuted_by_the_first_byte_that_contradicts_it() {
     let mut framer = framer(false);
     let mut seen = Vec::new();
     framer.feed(&[0xFE, 0xFE, 0x0E], |event| seen.push(owned(event)));
@@ -82,7 +82,7 @@ fn a_candidate_dies_with_the_byte_that_refutes_it() {
 }
 
 #[test]
-fn flush_delivers_the_frame_behind_a_false_header() {
+fn flush_delivers_the_frame_after_a_false_header() {
     let bytes = [0xFE, 0xFE, 0x0E, 0x22, 0xFE, 0xFE, 0x02, 0x20, 0xFA];
     let mut framer = framer(false);
     framer.feed(&bytes, |_| panic!("nothing is certain yet"));
@@ -110,7 +110,7 @@ fn every_byte_is_accounted_for_and_chunking_does_not_matter() {
 }
 
 #[test]
-fn offsets_count_on_over_flushes() {
+fn offsets_continue_after_flushes() {
     let mut framer = framer(false);
     framer.feed(&[0x00, 0xFE], |_| ());
     framer.flush(|_| ());
@@ -122,7 +122,7 @@ fn offsets_count_on_over_flushes() {
 }
 
 #[test]
-fn what_is_kept_is_less_than_the_longest_frame() {
+fn the_framer_keeps_fewer_bytes_than_the_longest_frame() {
     let longest = three().rules(Listening::Both).longest();
     let mut dice = Dice(2);
     let mut framer = framer(false);
@@ -149,20 +149,20 @@ fn an_undamaged_frame_is_found_whatever_lies_before_it() {
 }
 
 #[test]
-fn a_request_goes_before_a_reply_that_reads_alike() {
+fn a_request_takes_precedence_over_a_reply_with_the_same_bytes() {
     let byte = || field(vec![number(1, 1, 0, 255)], false);
     let table = table(vec![vec![byte()], vec![byte()]]);
     let rules = table.rules(Listening::Both);
     let mut framer = Framer::new(rules.clone());
-    let mut forms = Vec::new();
+    let mut variants = Vec::new();
     framer.feed(&[0xFE, 0xFE, 0x03, 0x21, 0x07, 0xFA], |event| {
         if let Event::Frame { frame, .. } = event {
-            forms.extend_from_slice(rules.forms(frame));
+            variants.extend_from_slice(rules.variants(frame));
         }
     });
-    assert_eq!(forms.len(), 2); // that of each direction
+    assert_eq!(variants.len(), 2); // one of each direction
     assert_eq!(
-        (forms[0].direction, forms[0].command),
+        (variants[0].direction, variants[0].command),
         (Direction::Request, 1)
     );
 }

@@ -1,4 +1,4 @@
-//! Encoding and decoding: the arithmetic, the round trip, and the place of each mistake.
+//! Checks encoding and decoding: the arithmetic, the round trip, and the place of each mistake.
 
 // A failing test may panic.
 #![allow(
@@ -18,7 +18,7 @@ use common::{Broken, Sample, Samples, field, frame_format, number, table, word};
 
 type Encoded = Result<Vec<u8>, EncodeError<Sample>>;
 
-fn say(table: &Table, values: &[Sample]) -> Encoded {
+fn build(table: &Table, values: &[Sample]) -> Encoded {
     let values = Samples(values.to_vec());
     encode(
         table.frame(),
@@ -34,7 +34,7 @@ fn one(number: Number) -> Table {
 }
 
 fn data(table: &Table, value: Sample) -> Vec<u8> {
-    let frame = say(table, &[value]).expect("the value is legal");
+    let frame = build(table, &[value]).expect("the value is legal");
     frame[4..frame.len() - 1].to_vec()
 }
 
@@ -46,43 +46,43 @@ fn fault(encoded: Encoded) -> (usize, Option<usize>, ValueFault) {
             fault,
             ..
         })) => (field, element, fault),
-        other => panic!("no value was refused: {other:?}"),
+        other => panic!("no value was rejected: {other:?}"),
     }
 }
 
 #[test]
-fn a_real_value_becomes_the_nearest_step() {
+fn a_real_value_becomes_the_nearest_raw_value() {
     let hundredths = one(word(100));
     assert_eq!(data(&hundredths, Sample::Real(0.29)), [0, 29]); // 0.29 * 100 is less than 29
     assert_eq!(data(&hundredths, Sample::Real(-2.58)), [0xFE, 0xFE]);
-    assert_eq!(data(&hundredths, Sample::Whole(2)), [0, 200]);
+    assert_eq!(data(&hundredths, Sample::Integer(2)), [0, 200]);
     let halves = one(number(1, 2, 0, 255));
     assert_eq!(data(&halves, Sample::Real(0.25)), [0]); // a tie goes to the even step
     assert_eq!(data(&halves, Sample::Real(0.75)), [2]);
 }
 
 #[test]
-fn a_step_too_far_is_refused_but_what_rounds_into_the_bounds_is_not() {
+fn a_value_out_of_bounds_is_rejected_unless_it_rounds_into_them() {
     let table = one(number(1, 10, 10, 20));
     assert_eq!(data(&table, Sample::Real(2.04)), [20]);
     assert_eq!(
-        fault(say(&table, &[Sample::Real(2.06)])).2,
+        fault(build(&table, &[Sample::Real(2.06)])).2,
         ValueFault::Range
     );
     assert_eq!(
-        fault(say(&table, &[Sample::Real(1e300)])).2,
+        fault(build(&table, &[Sample::Real(1e300)])).2,
         ValueFault::Range
     );
-    assert_eq!(fault(say(&table, &[Sample::Huge])).2, ValueFault::Range);
+    assert_eq!(fault(build(&table, &[Sample::Huge])).2, ValueFault::Range);
     assert_eq!(
-        fault(say(&table, &[Sample::Real(f64::NAN)])).2,
+        fault(build(&table, &[Sample::Real(f64::NAN)])).2,
         ValueFault::NotFinite
     );
-    assert_eq!(fault(say(&table, &[Sample::Text])).2, ValueFault::Type);
+    assert_eq!(fault(build(&table, &[Sample::Text])).2, ValueFault::Type);
 }
 
 #[test]
-fn words_have_both_orders_and_every_width() {
+fn numbers_have_both_byte_orders_and_every_width() {
     for width in 1..=4 {
         let big = number(width, 1, 0, 255);
         let little = Number {
@@ -91,14 +91,14 @@ fn words_have_both_orders_and_every_width() {
         };
         let mut expected = vec![0; width];
         expected[width - 1] = 0xA5;
-        assert_eq!(data(&one(big), Sample::Whole(0xA5)), expected);
+        assert_eq!(data(&one(big), Sample::Integer(0xA5)), expected);
         expected.reverse();
-        assert_eq!(data(&one(little), Sample::Whole(0xA5)), expected);
+        assert_eq!(data(&one(little), Sample::Integer(0xA5)), expected);
     }
 }
 
 #[test]
-fn every_raw_word_survives_the_round_trip() {
+fn every_raw_value_survives_the_round_trip() {
     for divide in [1, 10, 100] {
         let table = one(word(divide));
         for raw in 0..=u16::MAX {
@@ -108,7 +108,7 @@ fn every_raw_word_survives_the_round_trip() {
                 .expect("all words")
                 .values;
             let value = match values[0] {
-                Value::Whole(whole) => Sample::Whole(whole),
+                Value::Integer(integer) => Sample::Integer(integer),
                 Value::Real(real) => Sample::Real(real),
                 Value::Row(_) => panic!("it takes one number"),
             };
@@ -121,32 +121,32 @@ fn every_raw_word_survives_the_round_trip() {
 fn the_leftmost_mistake_is_the_one_reported() {
     let row = field(vec![word(1), word(1)], true);
     let table = table(vec![vec![row, field(vec![number(1, 1, 0, 9)], false)]]);
-    let (good, bad) = (Sample::Whole(1), Sample::Whole(99_999));
+    let (good, bad) = (Sample::Integer(1), Sample::Integer(99_999));
     let pair = |a: &Sample, b: &Sample| Sample::Row(vec![a.clone(), b.clone()]);
-    let say = |first: Sample, second: &Sample| say(&table, &[first, second.clone()]);
+    let build = |first: Sample, second: &Sample| build(&table, &[first, second.clone()]);
     let (range, kind, count) = (ValueFault::Range, ValueFault::Type, ValueFault::Count);
     assert_eq!(
-        fault(say(pair(&good, &bad), &Sample::Broken)),
+        fault(build(pair(&good, &bad), &Sample::Broken)),
         (0, Some(1), range)
     );
     assert_eq!(
-        fault(say(pair(&bad, &Sample::Broken), &good)),
+        fault(build(pair(&bad, &Sample::Broken), &good)),
         (0, Some(0), range)
     );
     assert_eq!(
-        fault(say(Sample::Row(vec![]), &Sample::Broken)),
+        fault(build(Sample::Row(vec![]), &Sample::Broken)),
         (0, None, count)
     );
-    assert_eq!(fault(say(good.clone(), &Sample::Broken)), (0, None, kind));
-    assert_eq!(fault(say(pair(&good, &good), &bad)), (1, None, range));
+    assert_eq!(fault(build(good.clone(), &Sample::Broken)), (0, None, kind));
+    assert_eq!(fault(build(pair(&good, &good), &bad)), (1, None, range));
     assert_eq!(
-        say(pair(&good, &good), &Sample::Broken),
+        build(pair(&good, &good), &Sample::Broken),
         Err(EncodeError::Foreign(Broken))
     );
 }
 
 #[test]
-fn a_bool_is_a_number_only_for_a_flag() {
+fn a_bool_is_accepted_only_for_a_flag() {
     let plain = field(vec![number(1, 1, 0, 1)], false);
     let flag = Field {
         flag: true,
@@ -154,12 +154,12 @@ fn a_bool_is_a_number_only_for_a_flag() {
     };
     assert_eq!(data(&table(vec![vec![flag]]), Sample::Bool(true)), [1]);
     assert_eq!(
-        fault(say(&table(vec![vec![plain]]), &[Sample::Bool(true)])).2,
+        fault(build(&table(vec![vec![plain]]), &[Sample::Bool(true)])).2,
         ValueFault::Type
     );
 }
 
-/// A choice that decides whether the word before it is in tenths or hundredths.
+/// Return a table in which a choice decides whether the word before it is in tenths or hundredths.
 fn selected() -> Table {
     let case = |when, divide| Case {
         when: vec![when],
@@ -181,57 +181,57 @@ fn selected() -> Table {
 #[test]
 fn a_selector_picks_the_case_and_is_checked_first() {
     let table = selected();
-    let say = |value, choice| say(&table, &[Sample::Real(value), Sample::Whole(choice)]);
-    assert_eq!(say(1.0, 0).unwrap()[4..7], [0, 10, 0]);
-    assert_eq!(say(1.0, 1).unwrap()[4..7], [0, 100, 1]);
-    assert_eq!(fault(say(f64::NAN, 9)), (1, None, ValueFault::Choice));
-    assert_eq!(fault(say(f64::NAN, 2)), (1, None, ValueFault::Choice)); // no case has it
+    let build = |value, choice| build(&table, &[Sample::Real(value), Sample::Integer(choice)]);
+    assert_eq!(build(1.0, 0).unwrap()[4..7], [0, 10, 0]);
+    assert_eq!(build(1.0, 1).unwrap()[4..7], [0, 100, 1]);
+    assert_eq!(fault(build(f64::NAN, 9)), (1, None, ValueFault::Choice));
+    assert_eq!(fault(build(f64::NAN, 2)), (1, None, ValueFault::Choice)); // no case has it
     let frame = |choice| [0xFE, 0xFE, 5, 0x20, 0, 100, choice, 0xFA];
     let decoded = |choice| decode(&table, Direction::Reply, &frame(choice), None);
     assert_eq!(
         decoded(0).unwrap().values,
-        [Value::Real(10.0), Value::Whole(0)]
+        [Value::Real(10.0), Value::Integer(0)]
     );
     assert_eq!(
         decoded(1).unwrap().values,
-        [Value::Real(1.0), Value::Whole(1)]
+        [Value::Real(1.0), Value::Integer(1)]
     );
     match decoded(2) {
-        Err(DecodeError::Raw(bad)) => assert_eq!((bad.field, bad.whole, bad.offset), (1, 2, 6)),
-        other => panic!("it was not refused: {other:?}"),
+        Err(DecodeError::Raw(bad)) => assert_eq!((bad.field, bad.raw, bad.offset), (1, 2, 6)),
+        other => panic!("it was not rejected: {other:?}"),
     }
 }
 
 #[test]
-fn a_refused_frame_says_where() {
+fn a_rejected_frame_has_the_place_of_the_fault() {
     let table = one(number(1, 1, 0, 9));
-    let refused = |bytes: &[u8]| match decode(&table, Direction::Reply, bytes, None) {
+    let rejected = |bytes: &[u8]| match decode(&table, Direction::Reply, bytes, None) {
         Err(DecodeError::Frame { reason, offset }) => (reason, offset),
-        other => panic!("the frame was not refused: {other:?}"),
+        other => panic!("the frame was not rejected: {other:?}"),
     };
-    assert_eq!(refused(&[]), (Reason::Truncated, 0));
-    assert_eq!(refused(&[0xFE]), (Reason::Truncated, 1));
-    assert_eq!(refused(&[0xFE, 0x00]), (Reason::NoHeader, 1));
-    assert_eq!(refused(&[0xFE, 0xFE, 9]), (Reason::BadLength, 2));
-    assert_eq!(refused(&[0xFE, 0xFE, 3, 0x21]), (Reason::UnknownId, 3));
-    assert_eq!(refused(&[0xFE, 0xFE, 3, 0x20, 1]), (Reason::Truncated, 5));
+    assert_eq!(rejected(&[]), (Reason::Truncated, 0));
+    assert_eq!(rejected(&[0xFE]), (Reason::Truncated, 1));
+    assert_eq!(rejected(&[0xFE, 0x00]), (Reason::NoHeader, 1));
+    assert_eq!(rejected(&[0xFE, 0xFE, 9]), (Reason::BadLength, 2));
+    assert_eq!(rejected(&[0xFE, 0xFE, 3, 0x21]), (Reason::UnknownId, 3));
+    assert_eq!(rejected(&[0xFE, 0xFE, 3, 0x20, 1]), (Reason::Truncated, 5));
     assert_eq!(
-        refused(&[0xFE, 0xFE, 3, 0x20, 1, 0xFB]),
+        rejected(&[0xFE, 0xFE, 3, 0x20, 1, 0xFB]),
         (Reason::BadCheck, 5)
     );
     assert_eq!(
-        refused(&[0xFE, 0xFE, 3, 0x20, 1, 0xFA, 0]),
+        rejected(&[0xFE, 0xFE, 3, 0x20, 1, 0xFA, 0]),
         (Reason::Trailing, 6)
     );
 }
 
 #[test]
-fn a_table_that_cannot_be_interpreted_is_refused() {
+fn a_table_that_cannot_be_interpreted_is_rejected() {
     let misfit = |fields: Vec<Field>| {
-        let layout = cobotwire_core::Layout::new(fields);
+        let variant = cobotwire_core::Variant::new(fields);
         let command = cobotwire_core::Command {
             id: 1,
-            request: vec![layout],
+            request: vec![variant],
             reply: vec![],
         };
         Table::new(frame_format(), vec![command])

@@ -1,7 +1,7 @@
-//! Vectors: a table, and frames with the values that they stand for.
+//! Checks vectors: frames of a table with their values.
 //!
-//! `data` is the generator's, which writes the spec's vectors there and removes what it does not
-//! know. `samples` is written by hand, in the same shape, for what no edition has.
+//! The generator writes the spec's vectors into `data` (`make products`), which git ignores.
+//! `samples` is written by hand in the same format, for features that no edition has.
 
 // A failing test may panic.
 #![allow(
@@ -21,7 +21,7 @@ use cobotwire_core::{Choice, DecodeError, Direction, Framer, Listening, Value, d
 use common::{Sample, Samples, events};
 use records::{Edition, Vector};
 
-/// None of these makes a frame, with what follows it, that is not there.
+/// Noise that forms no frame together with the bytes after it.
 const NOISE: [&[u8]; 5] = [
     &[],
     &[0x00],
@@ -34,7 +34,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests")
         .join(folder);
-    let entries = fs::read_dir(folder).expect("the folder is there");
+    let entries = fs::read_dir(folder).expect("no test data: run `make products` first");
     let paths = entries.map(|entry| entry.expect("a readable entry").path());
     paths
         .filter(|path| path.extension().is_some_and(|name| name == "json"))
@@ -65,7 +65,7 @@ fn every_sample_holds() {
     check_all("samples");
 }
 
-/// Whether there was anything to check: an unframed reply is not the codec's.
+/// Check a vector; return false for an unframed reply, which no codec handles.
 fn check(edition: &Edition, vector: &Vector) -> bool {
     if let (Some(frame), false) = (&vector.frame, vector.text) {
         assert_eq!(&encoded(edition, vector), frame, "encode {}", vector.name);
@@ -79,15 +79,15 @@ fn check(edition: &Edition, vector: &Vector) -> bool {
         );
         find(edition, vector.direction, frame, &vector.name);
     }
-    if let (Some(printed), Some(refused)) = (&vector.printed, &vector.refused) {
+    if let (Some(printed), Some(rejected)) = (&vector.printed, &vector.rejected) {
         let met = match decode(&edition.table, vector.direction, printed, None) {
             Err(DecodeError::Frame { reason, offset }) => (reason.word().to_owned(), offset),
             Err(DecodeError::Raw(bad)) => ("bad-value".to_owned(), bad.offset),
             Ok(decoded) => panic!("{} was decoded: {decoded:?}", vector.name),
         };
-        assert_eq!(&met, refused, "{}", vector.name);
+        assert_eq!(&met, rejected, "{}", vector.name);
     }
-    !vector.text && (vector.frame.is_some() || vector.refused.is_some())
+    !vector.text && (vector.frame.is_some() || vector.rejected.is_some())
 }
 
 fn encoded(edition: &Edition, vector: &Vector) -> Vec<u8> {
@@ -115,10 +115,10 @@ fn same(mut decoded: &[Value], values: &[Sample]) -> bool {
         };
         decoded = rest;
         match (first, value) {
-            (Value::Whole(whole), Sample::Whole(expected)) => whole == expected,
-            (Value::Whole(whole), Sample::Bool(expected)) => *whole == i64::from(*expected),
+            (Value::Integer(integer), Sample::Integer(expected)) => integer == expected,
+            (Value::Integer(integer), Sample::Bool(expected)) => *integer == i64::from(*expected),
             (Value::Real(real), Sample::Real(expected)) => real == expected,
-            (Value::Real(real), Sample::Whole(expected)) => *real == *expected as f64,
+            (Value::Real(real), Sample::Integer(expected)) => *real == *expected as f64,
             (Value::Row(count), Sample::Row(expected)) => {
                 let (row, rest) = decoded.split_at(*count);
                 decoded = rest;
@@ -137,7 +137,7 @@ fn find(edition: &Edition, direction: Direction, frame: &[u8], name: &str) {
             let mut framer = Framer::new(edition.table.rules(listening).clone());
             let found = events(&mut framer, [&stream[..]]);
             let expected = (noise.len() as u64, frame.to_vec(), None);
-            assert_eq!(found.last(), Some(&expected), "{name} behind {noise:02X?}");
+            assert_eq!(found.last(), Some(&expected), "{name} after {noise:02X?}");
         }
     }
 }

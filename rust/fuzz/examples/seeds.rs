@@ -1,5 +1,6 @@
-//! Writes the first corpus: `seeds FOLDER` makes a folder a target there, with a file for each
-//! vector of each table, all vectors of a table in a row, and what stands in `tests/found`.
+//! Writes the initial corpus: `seeds FOLDER` makes a folder for each target there, with a file for
+//! each vector of each table, for all vectors of a table in a row, and for each input of
+//! `tests/found`.
 
 use std::path::Path;
 use std::{env, fs, io};
@@ -12,7 +13,7 @@ use cobotwire_fuzz::subjects::{self, LISTENING};
 
 /// The targets whose input is a head and a stream.
 const TARGETS: [&str; 3] = ["framer", "chunks", "decode"];
-/// They take their time for each input.
+/// The targets that need long for each input.
 const SLOW_TARGETS: [&str; 2] = ["columns", "linear"];
 
 const FOUND: [&str; 2] = [
@@ -44,7 +45,8 @@ fn write(folder: &Path, seeds: &[Vec<u8>]) -> io::Result<()> {
     Ok(())
 }
 
-/// For the target that makes its own tables: anything, so long that a stream follows the table.
+/// Return seeds for the target that makes its own tables: random bytes, long enough for a table and
+/// a stream.
 fn dice() -> Vec<Vec<u8>> {
     let mut state = 1_u32;
     let mut byte = || {
@@ -57,7 +59,7 @@ fn dice() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Each by itself.
+/// Return a seed for each vector.
 fn vectors() -> impl Iterator<Item = Vec<u8>> {
     let subjects = subjects::all().iter().enumerate();
     subjects.flat_map(|(index, subject)| {
@@ -69,7 +71,7 @@ fn vectors() -> impl Iterator<Item = Vec<u8>> {
     })
 }
 
-/// A table's, one behind the other.
+/// Return a seed for each table: all its vectors, one after the other.
 fn rows() -> impl Iterator<Item = Vec<u8>> {
     let subjects = subjects::all().iter().enumerate();
     subjects.map(|(index, subject)| {

@@ -1,5 +1,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {
-    cobotwire_fuzz::laws::tables::any_table_is_refused_or_works(data)
+    cobotwire_fuzz::laws::tables::any_table_is_rejected_or_works(data)
 });

@@ -1,47 +1,13 @@
-//! Fuzz bytes to a table, a way to listen, a stream and its chunks.
+//! Turns fuzz bytes into a table, a direction, a stream and its chunks.
 //!
-//! Four bytes settle all but the stream, so that a vector is a seed as it stands, behind them.
+//! Four bytes decide everything but the stream, so four bytes and a vector are a seed.
 
 use cobotwire_core::{Framer, Rules};
 
+use crate::bytes::Bytes;
 use crate::oracle::Oracle;
 use crate::script;
 use crate::subjects::{self, LISTENING, Subject};
-
-/// Fuzz bytes, eaten from the front; beyond their end everything is zero.
-#[derive(Clone, Debug)]
-pub struct Bytes<'a>(pub &'a [u8]);
-
-impl<'a> Bytes<'a> {
-    pub fn byte(&mut self) -> u8 {
-        self.take(1).first().copied().unwrap_or_default()
-    }
-
-    pub fn word(&mut self) -> usize {
-        usize::from(self.byte()) << 8 | usize::from(self.byte())
-    }
-
-    /// Below `count`, which two bytes can reach; zero if there is nothing to pick.
-    pub fn pick(&mut self, count: usize) -> usize {
-        let picked = if count <= 256 {
-            usize::from(self.byte())
-        } else {
-            self.word()
-        };
-        picked.checked_rem(count).unwrap_or_default()
-    }
-
-    /// So many of them, or all that are left.
-    pub fn take(&mut self, count: usize) -> &'a [u8] {
-        let (taken, rest) = self.0.split_at(count.min(self.0.len()));
-        self.0 = rest;
-        taken
-    }
-
-    pub fn is_done(&self) -> bool {
-        self.0.is_empty()
-    }
-}
 
 /// One case for the targets that cut streams.
 pub struct Input {
@@ -50,12 +16,12 @@ pub struct Input {
     pub listening: usize,
     pub unknown: bool,
     pub stream: Vec<u8>,
-    /// Whether a target that can take a long stream shall make one of this.
+    /// Whether targets that support long streams make one from this stream.
     pub long: bool,
     pub cutting: Cutting,
 }
 
-/// Bits of the second byte; its low two pick how to listen.
+/// Bits of the second byte; its low two bits pick the directions.
 const UNKNOWN: u8 = 4;
 const SCRIPT: u8 = 8;
 const FLUSHES: u8 = 16;
@@ -74,7 +40,7 @@ impl Input {
         let stream = if flags & SCRIPT == 0 {
             bytes.0.to_vec()
         } else {
-            script::play(&subject.edition.table, &subject.forms, bytes)
+            script::play(&subject.edition.table, &subject.variants, bytes)
         };
         Self {
             subject,
@@ -86,7 +52,7 @@ impl Input {
         }
     }
 
-    /// The first bytes of an input whose stream follows as it is, fed whole.
+    /// Return the first bytes of an input; its stream follows them unchanged, and is fed whole.
     pub fn head(subject: usize, listening: usize, unknown: bool) -> [u8; 4] {
         let flags = if unknown { UNKNOWN } else { 0 };
         [subject as u8, listening as u8 | flags, 0, 0]
@@ -104,13 +70,13 @@ impl Input {
         Framer::new(self.rules().clone())
     }
 
-    /// The stream as it is to be fed.
+    /// Return the chunks in which the stream is fed.
     pub fn chunks(&self) -> Vec<Chunk<'_>> {
         self.cutting.cut(&self.stream)
     }
 }
 
-/// A part of a stream as it is fed, and whether the line is silent behind it.
+/// A part of a stream as it is fed, and whether silence follows it.
 #[derive(Clone, Copy, Debug)]
 pub struct Chunk<'a> {
     pub bytes: &'a [u8],
@@ -124,18 +90,18 @@ pub struct Cutting {
     pub class: u8,
     /// Picks the sizes.
     pub seed: u8,
-    /// Whether the line falls silent between some chunks.
+    /// Whether silence follows some chunks.
     pub flushes: bool,
 }
 
 /// Zero: the whole stream at once.
 const LARGEST: [usize; 6] = [0, 1, 3, 17, 64, 1000];
-/// Streams of this length are not cut so small.
+/// Streams of this length are cut into larger chunks, to save time.
 const LONG_STREAM: usize = 50_000;
 const LARGEST_OF_LONG: [usize; 6] = [0, 7_000, 30_000, 70_000, 100_000, 140_000];
 
 impl Cutting {
-    /// A stream of that size or little more, of pieces of this one.
+    /// Return a stream of at least `size` bytes, made of pieces of this one.
     pub fn grown(self, stream: &[u8], size: usize) -> Vec<u8> {
         let mut dice = Dice(u32::from(self.seed));
         let mut grown = Vec::with_capacity(size + stream.len());
@@ -161,7 +127,7 @@ impl Cutting {
             let size = match largest {
                 0 => stream.len(),
                 1 => 1,
-                // With empty ones among them.
+                // Some chunks are empty.
                 _ => dice.roll(largest + 1).min(stream.len()),
             };
             let (bytes, rest) = stream.split_at(size);

@@ -1,7 +1,7 @@
-//! What the fuzz targets assert, and how fuzz bytes become tables, streams and chunks.
+//! The assertions of the fuzz targets, and the code that turns fuzz bytes into tables and streams.
 //!
-//! A target is one function of `laws`. Each compares the core with `oracle`, the law of
-//! `docs/framing.md` once more, as plainly as it can be said.
+//! A target is one function of `laws`. Each compares the core with `oracle`, a second and plain
+//! implementation of `docs/framing.md`.
 
 #![forbid(unsafe_code)]
 
@@ -13,6 +13,7 @@ pub mod records;
 #[path = "../../core/tests/replay/mod.rs"]
 pub mod replay;
 
+pub mod bytes;
 pub mod input;
 pub mod laws;
 pub mod oracle;

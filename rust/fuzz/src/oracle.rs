@@ -1,22 +1,22 @@
-//! The law of framing as `docs/framing.md` says it, with nothing done for speed: every position is
-//! judged by itself, and the check is computed bit by bit.
+//! Implements `docs/framing.md` without any optimization: it judges every position separately and
+//! computes the check bit by bit.
 
 use std::collections::HashSet;
 
 use cobotwire_core::{Check, Direction, FrameFormat, Listening, Reason, Table};
 
-/// What stands at the start of some bytes.
+/// The verdict on the start of some bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
     /// A frame of that many bytes.
     Frame(usize),
-    /// Nothing, and no further byte can change that.
+    /// No frame, whatever bytes follow.
     Noise(Reason),
-    /// Something that more bytes could complete.
+    /// The start of a frame that more bytes could complete.
     Waits,
 }
 
-/// So many bytes that are one event; no reason: a frame.
+/// The size of one event, and the reason of noise; a frame has no reason.
 pub type Span = (usize, Option<Reason>);
 
 /// Which frames are legal.
@@ -38,8 +38,8 @@ impl Oracle {
         };
         let mut legal = HashSet::new();
         for command in table.commands() {
-            for layout in directions.iter().flat_map(|way| command.layouts(*way)) {
-                legal.insert((command.id, frame.length(layout.size())));
+            for variant in directions.iter().flat_map(|way| command.variants(*way)) {
+                legal.insert((command.id, frame.length(variant.size())));
             }
         }
         let mut lengths: HashSet<usize> = legal.iter().map(|(_, length)| *length).collect();
@@ -56,17 +56,17 @@ impl Oracle {
         }
     }
 
-    /// How its frames are built.
+    /// Return the format of its frames.
     pub fn format(&self) -> &FrameFormat {
         &self.frame
     }
 
-    /// The id of a frame.
+    /// Return the id of a frame.
     pub fn id(&self, frame: &[u8]) -> u8 {
         frame[self.frame.overhead()]
     }
 
-    /// The verdict of the first byte that decides.
+    /// Return the verdict on the start of `rest`; the first byte that decides it counts.
     pub fn look(&self, rest: &[u8]) -> Found {
         let starts = self.frame.header.iter().zip(rest);
         if starts.into_iter().any(|(must, is)| must != is) {
@@ -109,8 +109,8 @@ impl Oracle {
         }
     }
 
-    /// What a framer must give at once for these bytes, and where the first waiting one stands;
-    /// at the end of a line nothing waits.
+    /// Return the events that a framer must emit for these bytes at once, and the index of the
+    /// first byte that waits; at the end of a stream no byte waits.
     pub fn spans(&self, bytes: &[u8], at_end: bool) -> (Vec<Span>, usize) {
         let mut spans: Vec<Span> = Vec::new();
         let mut at = 0;
@@ -135,7 +135,7 @@ impl Oracle {
     }
 }
 
-/// The bytes that end a frame of which the rest is `body`.
+/// Return the bytes that must end a frame after `body`.
 pub fn check_of(frame: &FrameFormat, body: &[u8]) -> Vec<u8> {
     match frame.check {
         Check::Footer(footer) => vec![footer],

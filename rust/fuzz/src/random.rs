@@ -1,13 +1,13 @@
-//! Tables from fuzz bytes: most of them nearly right, some of them nonsense.
+//! Makes tables from fuzz bytes: most are nearly valid, some are nonsense.
 
-use cobotwire_core::{Case, Check, Command, Field, FrameFormat, Layout, Number, Order};
+use cobotwire_core::{Case, Check, Command, Field, FrameFormat, Number, Order, Variant};
 
-use crate::input::Bytes;
+use crate::bytes::Bytes;
 
-/// One byte in so many makes a number wild.
+/// A shape byte from this value on gives the number a random width.
 const WILD: u8 = 0xF0;
 
-/// How frames are built, and up to four commands.
+/// Return a frame format and up to four commands.
 pub fn table(bytes: &mut Bytes<'_>) -> (FrameFormat, Vec<Command>) {
     let format = format(bytes);
     let count = 1 + bytes.pick(4);
@@ -36,7 +36,7 @@ fn format(bytes: &mut Bytes<'_>) -> FrameFormat {
         header,
         check,
         addresses: bytes.take(addresses).to_vec(),
-        maximum_length: whole(bytes, 20),
+        maximum_length: integer(bytes, 20),
     }
 }
 
@@ -44,14 +44,14 @@ fn command(bytes: &mut Bytes<'_>) -> Command {
     let flags = bytes.byte();
     Command {
         id: bytes.byte(),
-        request: many(bytes, usize::from(flags & 3), layout),
-        reply: many(bytes, usize::from(flags >> 2 & 3), layout),
+        request: many(bytes, usize::from(flags & 3), variant),
+        reply: many(bytes, usize::from(flags >> 2 & 3), variant),
     }
 }
 
-fn layout(bytes: &mut Bytes<'_>) -> Layout {
+fn variant(bytes: &mut Bytes<'_>) -> Variant {
     let count = bytes.pick(4);
-    Layout::new(many(bytes, count, field))
+    Variant::new(many(bytes, count, field))
 }
 
 fn field(bytes: &mut Bytes<'_>) -> Field {
@@ -67,7 +67,7 @@ fn field(bytes: &mut Bytes<'_>) -> Field {
     Field {
         flag: flags & 0x80 != 0,
         many: many_numbers,
-        choices: many(bytes, choices, |bytes| whole(bytes, 4)),
+        choices: many(bytes, choices, |bytes| integer(bytes, 4)),
         selector: selected.then(|| bytes.pick(4)),
         cases: many(bytes, cases, |bytes| case(bytes, many_numbers)),
     }
@@ -80,13 +80,13 @@ fn case(bytes: &mut Bytes<'_>, many_numbers: bool) -> Case {
         (false, 3) => bytes.pick(3),
         (false, _) => 1,
     };
-    // Long frames of few bytes.
+    // Repeat the numbers: this makes long frames from few fuzz bytes.
     let copies = match (many_numbers, flags >> 4 & 3) {
         (true, 3) => bytes.pick(64),
         _ => 1,
     };
     Case {
-        when: many(bytes, usize::from(flags & 3), |bytes| whole(bytes, 4)),
+        when: many(bytes, usize::from(flags & 3), |bytes| integer(bytes, 4)),
         numbers: vec![many(bytes, numbers, number); copies].concat(),
     }
 }
@@ -94,11 +94,11 @@ fn case(bytes: &mut Bytes<'_>, many_numbers: bool) -> Case {
 fn number(bytes: &mut Bytes<'_>) -> Number {
     let shape = bytes.byte();
     let width = match shape {
-        WILD.. => usize::try_from(whole(bytes, 8)).unwrap_or(usize::MAX),
+        WILD.. => usize::try_from(integer(bytes, 8)).unwrap_or(usize::MAX),
         _ => 1 + usize::from(shape & 3),
     };
     let scaled = shape & 8 != 0;
-    let scale = |bytes: &mut Bytes<'_>| if scaled { whole(bytes, 100) } else { 1 };
+    let scale = |bytes: &mut Bytes<'_>| if scaled { integer(bytes, 100) } else { 1 };
     Number {
         width,
         order: if shape & 4 == 0 {
@@ -106,16 +106,16 @@ fn number(bytes: &mut Bytes<'_>) -> Number {
         } else {
             Order::Little
         },
-        signed_at: whole(bytes, 127),
+        signed_at: integer(bytes, 127),
         multiply: scale(bytes),
         divide: scale(bytes),
-        minimum: whole(bytes, -100),
-        maximum: whole(bytes, 100),
+        minimum: integer(bytes, -100),
+        maximum: integer(bytes, 100),
     }
 }
 
-/// A number around an ordinary one, or one at the edges of what its type holds.
-fn whole(bytes: &mut Bytes<'_>, ordinary: i64) -> i64 {
+/// Return a number near `ordinary`, or one near a power of two or at the edge of its type.
+fn integer(bytes: &mut Bytes<'_>, ordinary: i64) -> i64 {
     let byte = bytes.byte();
     let edge = 1_i64 << (byte & 63);
     match byte {

@@ -1,14 +1,14 @@
-//! The oracle for values: what a whole legal frame says, form by form, number by number.
+//! The oracle for values: decodes a whole legal frame variant by variant and number by number.
 
 use cobotwire_core::{
-    BadRaw, Decoded, Direction, Field, Form, Layout, Listening, Number, Order, Table, Value,
+    BadRaw, Decoded, Direction, Field, Listening, Number, Order, Table, Value, Variant, VariantId,
 };
 
-/// A number of a frame: the index of its field, what stands there, and what that stands for.
+/// A number of a frame: the index of its field, its raw value and its physical value.
 pub type Read = (usize, i64, Value);
 
-/// What decoding a whole legal frame of that direction must give. `of`: only forms of the command
-/// with that index; `None`: it has none.
+/// Return the result that decoding a whole legal frame of one direction must have; `None` if it has
+/// no variant. With `of`, only variants of the command with that index count.
 pub fn read(
     table: &Table,
     direction: Direction,
@@ -18,13 +18,13 @@ pub fn read(
     Some(numbers(table, direction, frame, of)?.map(|found| decoded(table, found, frame)))
 }
 
-/// What reading a frame must give that was heard in one direction or in both: a request's forms go
-/// before a reply's.
-pub fn heard(
+/// Return the result of reading a received frame. In both directions, variants of requests come
+/// before those of replies.
+pub fn received(
     table: &Table,
     listening: Listening,
     frame: &[u8],
-) -> Option<Result<(Form, Vec<Read>), BadRaw>> {
+) -> Option<Result<(VariantId, Vec<Read>), BadRaw>> {
     let ways: &[Direction] = match &listening {
         Listening::To(way) => std::slice::from_ref(way),
         Listening::Both => &[Direction::Request, Direction::Reply],
@@ -36,22 +36,22 @@ pub fn heard(
     read().find(Result::is_ok).or_else(|| read().next())
 }
 
-/// A form and its numbers as the core tells them.
-pub fn decoded(table: &Table, (form, read): (Form, Vec<Read>), frame: &[u8]) -> Decoded {
+/// Return a variant and its numbers in the form of the core's result.
+pub fn decoded(table: &Table, (variant, read): (VariantId, Vec<Read>), frame: &[u8]) -> Decoded {
     Decoded {
-        form,
-        values: values(table, form, &read),
+        variant,
+        values: values(table, variant, &read),
         address: (!table.frame().addresses.is_empty()).then(|| frame[2]),
     }
 }
 
-/// The same as a form and its numbers.
+/// Return the same result as a variant and its numbers.
 pub fn numbers(
     table: &Table,
     direction: Direction,
     frame: &[u8],
     of: Option<usize>,
-) -> Option<Result<(Form, Vec<Read>), BadRaw>> {
+) -> Option<Result<(VariantId, Vec<Read>), BadRaw>> {
     let format = table.frame();
     let start = format.overhead() + 1;
     let data = &frame[start..frame.len() - format.check.size()];
@@ -60,17 +60,17 @@ pub fn numbers(
         if record.id != frame[start - 1] || of.is_some_and(|of| of != command) {
             continue;
         }
-        for (layout, fields) in record.layouts(direction).iter().enumerate() {
+        for (variant, fields) in record.variants(direction).iter().enumerate() {
             if fields.size() != data.len() {
                 continue;
             }
-            let form = Form {
+            let variant = VariantId {
                 direction,
                 command,
-                layout,
+                variant,
             };
-            match of_form(form, fields, data, start) {
-                Ok(read) => return Some(Ok((form, read))),
+            match of_variant(variant, fields, data, start) {
+                Ok(read) => return Some(Ok((variant, read))),
                 Err(bad) => first = first.or(Some(Err(bad))),
             }
         }
@@ -78,9 +78,10 @@ pub fn numbers(
     first
 }
 
-/// The numbers as values: a row is told before its elements.
-fn values(table: &Table, form: Form, read: &[Read]) -> Vec<Value> {
-    let fields = table.commands()[form.command].layouts(form.direction)[form.layout].fields();
+/// Return the numbers as values: a row precedes its elements.
+fn values(table: &Table, variant: VariantId, read: &[Read]) -> Vec<Value> {
+    let fields =
+        table.commands()[variant.command].variants(variant.direction)[variant.variant].fields();
     let mut values = Vec::new();
     for (index, field) in fields.iter().enumerate() {
         let own = || read.iter().filter(|(of, ..)| *of == index);
@@ -92,48 +93,53 @@ fn values(table: &Table, form: Form, read: &[Read]) -> Vec<Value> {
     values
 }
 
-fn of_form(form: Form, layout: &Layout, data: &[u8], offset: usize) -> Result<Vec<Read>, BadRaw> {
+fn of_variant(
+    id: VariantId,
+    variant: &Variant,
+    data: &[u8],
+    offset: usize,
+) -> Result<Vec<Read>, BadRaw> {
     let mut read = Vec::new();
     let mut at = 0;
-    let bad = |field, case, element, whole, at| BadRaw {
-        form,
+    let bad = |field, case, element, raw, at| BadRaw {
+        variant: id,
         field,
         case,
         element,
-        whole,
+        raw,
         offset: offset + at,
     };
-    for (index, field) in layout.fields().iter().enumerate() {
-        let case = case(layout, field, data)
-            .map_err(|(selector, whole, at)| bad(selector, 0, 0, whole, at))?;
+    for (index, field) in variant.fields().iter().enumerate() {
+        let case = case(variant, field, data)
+            .map_err(|(selector, raw, at)| bad(selector, 0, 0, raw, at))?;
         for (element, number) in field.cases[case].numbers.iter().enumerate() {
-            let whole = whole(number, &data[at..]);
+            let raw = raw_value(number, &data[at..]);
             let allowed = if field.choices.is_empty() {
-                number.minimum <= whole && whole <= number.maximum
+                number.minimum <= raw && raw <= number.maximum
             } else {
-                field.choices.contains(&whole)
+                field.choices.contains(&raw)
             };
             if !allowed {
-                return Err(bad(index, case, element, whole, at));
+                return Err(bad(index, case, element, raw, at));
             }
-            read.push((index, whole, physical(number, whole)));
+            read.push((index, raw, physical(number, raw)));
             at += number.width;
         }
     }
     Ok(read)
 }
 
-/// The index of a field's case; or the selector, what it holds, and where it stands.
-fn case(layout: &Layout, field: &Field, data: &[u8]) -> Result<usize, (usize, i64, usize)> {
+/// Return the index of a field's case; or the selector's index, raw value and position as an error.
+fn case(variant: &Variant, field: &Field, data: &[u8]) -> Result<usize, (usize, i64, usize)> {
     let Some(selector) = field.selector else {
         return Ok(0);
     };
-    let at = size(&layout.fields()[..selector]);
-    let whole = whole(&layout.fields()[selector].cases[0].numbers[0], &data[at..]);
+    let at = size(&variant.fields()[..selector]);
+    let raw = raw_value(&variant.fields()[selector].cases[0].numbers[0], &data[at..]);
     let mut cases = field.cases.iter();
     cases
-        .position(|case| case.when.contains(&whole))
-        .ok_or((selector, whole, at))
+        .position(|case| case.when.contains(&raw))
+        .ok_or((selector, raw, at))
 }
 
 fn size(fields: &[Field]) -> usize {
@@ -141,8 +147,9 @@ fn size(fields: &[Field]) -> usize {
     numbers.map(|number| number.width).sum()
 }
 
-/// By the definition: the unsigned word, and less by its span above `signed_at`.
-fn whole(number: &Number, data: &[u8]) -> i64 {
+/// Return the raw value by its definition: the unsigned number, minus `256^width` above
+/// `signed_at`.
+fn raw_value(number: &Number, data: &[u8]) -> i64 {
     let mut bytes = data[..number.width].to_vec();
     if number.order == Order::Little {
         bytes.reverse();
@@ -157,11 +164,11 @@ fn whole(number: &Number, data: &[u8]) -> i64 {
     }
 }
 
-fn physical(number: &Number, whole: i64) -> Value {
+fn physical(number: &Number, raw: i64) -> Value {
     if number.multiply == 1 && number.divide == 1 {
-        Value::Whole(whole)
+        Value::Integer(raw)
     } else {
-        let exact = i128::from(whole) * i128::from(number.multiply);
+        let exact = i128::from(raw) * i128::from(number.multiply);
         Value::Real(exact as f64 / number.divide as f64)
     }
 }

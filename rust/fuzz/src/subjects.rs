@@ -1,13 +1,14 @@
-//! The tables that are fuzzed: every edition, and the samples of what no edition has.
+//! The tables that are fuzzed: every edition, and the samples of features that no edition has.
 
 use std::sync::{Arc, LazyLock, OnceLock};
 
-use cobotwire_core::{Direction, Form, Listening, Plans, Rules, Table};
+use cobotwire_core::{Direction, Listening, Plans, Rules, Table, VariantId};
 
 use crate::oracle::Oracle;
 use crate::records::Edition;
 
-/// The files as the core's tests have them; a new edition is a new line here.
+/// The files of the core's tests; a new edition is a new line here. `make products` writes the
+/// first two.
 const FILES: [(&str, &str); 7] = [
     (
         "mycobot",
@@ -36,38 +37,39 @@ pub const LISTENING: [Listening; 3] = [
 
 /// A table and what was made of it beforehand, so that a run costs only its own bytes.
 pub struct Subject {
-    /// Its name, as `tests/found` has it.
+    /// Its name in `tests/found`.
     pub name: &'static str,
     /// The table, with names and vectors.
     pub edition: Edition,
-    /// The same table, to be shared.
+    /// The same table behind an `Arc`.
     pub table: Arc<Table>,
-    /// Every form of its messages, for the script to pick from.
-    pub forms: Vec<Form>,
+    /// Every variant of its messages, for the script to pick from.
+    pub variants: Vec<VariantId>,
     oracles: Vec<Oracle>,
     rules: Vec<Rules>,
     plans: [OnceLock<Arc<Plans>>; LISTENING.len()],
 }
 
 impl Subject {
-    /// The oracle for one of [`LISTENING`], by its index.
+    /// Return the oracle for one of [`LISTENING`], by its index.
     pub fn oracle(&self, listening: usize, unknown: bool) -> &Oracle {
         &self.oracles[2 * listening + usize::from(unknown)]
     }
 
-    /// The core's rules for the same.
+    /// Return the core's rules for the same.
     pub fn rules(&self, listening: usize, unknown: bool) -> &Rules {
         &self.rules[2 * listening + usize::from(unknown)]
     }
 
-    /// How columns are read. To make that takes long, and not every target needs it.
+    /// Return the plans for columns. They are made on first use: that is slow, and few targets need
+    /// them.
     pub fn plans(&self, listening: usize) -> &Arc<Plans> {
         let make = || Arc::new(Plans::new(&self.table, LISTENING[listening]));
         self.plans[listening].get_or_init(make)
     }
 }
 
-/// All of them.
+/// Return all subjects.
 pub fn all() -> &'static [Subject] {
     static ALL: LazyLock<Vec<Subject>> = LazyLock::new(|| FILES.map(subject).into());
     &ALL
@@ -87,14 +89,14 @@ fn subject((name, text): (&'static str, &str)) -> Subject {
         name,
         oracles: oracles.collect(),
         rules: rules.collect(),
-        forms: forms(table),
+        variants: variants(table),
         table: Arc::new(table.clone()),
         plans: Default::default(),
         edition,
     }
 }
 
-/// The rules for listening so; `unknown`: to ids, too, that the table lacks.
+/// Return the rules for these directions; with `unknown`, they accept ids that the table lacks.
 pub fn rules(table: &Table, listening: Listening, unknown: bool) -> Rules {
     let rules = table.rules(listening).clone();
     if unknown {
@@ -104,16 +106,16 @@ pub fn rules(table: &Table, listening: Listening, unknown: bool) -> Rules {
     }
 }
 
-/// Every form of every message of a table.
-pub fn forms(table: &Table) -> Vec<Form> {
+/// Return every variant of every message of a table.
+pub fn variants(table: &Table) -> Vec<VariantId> {
     let mut all = Vec::new();
     for (command, record) in table.commands().iter().enumerate() {
         for direction in [Direction::Request, Direction::Reply] {
-            for layout in 0..record.layouts(direction).len() {
-                all.push(Form {
+            for variant in 0..record.variants(direction).len() {
+                all.push(VariantId {
                     direction,
                     command,
-                    layout,
+                    variant,
                 });
             }
         }

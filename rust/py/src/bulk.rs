@@ -16,10 +16,10 @@ use crate::memory::{Memory, large_pages};
 use crate::names::Names;
 use crate::parts::{old_columns, old_offsets, spans};
 
-/// From so many bytes on the lock is released: to get it back from a busy thread takes 5 ms, and to
-/// read so many takes about one, a fifth of what such a thread keeps it for itself (`bench/lock.py`).
+/// Input of this size and more is read without the lock. Getting the lock back from a busy thread
+/// takes 5 ms; reading this many bytes takes about 1 ms (`bench/lock.py`).
 const LARGE: usize = 1 << 20;
-/// Bytes that another thread could change meanwhile are copied in pieces of this size.
+/// Bytes that another thread could change during the read are copied in pieces of this size.
 const PIECE: usize = 1 << 20;
 
 /// Something that a stream is fed to.
@@ -68,7 +68,7 @@ fn feed(reader: &mut impl Reader, data: &Bound<'_, PyAny>) -> PyResult<()> {
     Ok(())
 }
 
-/// Feed bytes, which nobody can change: so nobody has to wait while many are read.
+/// Feed immutable bytes; many are read without the lock.
 fn feed_bytes(reader: &mut impl Reader, bytes: &Bound<'_, PyBytes>, all: bool) {
     let data = bytes.as_bytes();
     if data.len() < LARGE {
@@ -145,45 +145,45 @@ impl NativeColumnReader {
         self.given(data.py())
     }
 
-    /// What was found since the last time, as Python's `Columns`.
+    /// What was found since the last call, as Python's `Columns`.
     fn given<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let names = Names::get(py)?;
         let Columns {
             mut rows,
-            refused,
+            rejected,
             noise,
         } = self.core.take();
         rows.retain(|rows| !rows.offsets.is_empty());
         // In the order of the table, as the reference gives them.
         rows.sort_by_key(|rows| {
-            let form = rows.form;
-            (form.command, form.direction as u8, form.layout)
+            let variant = rows.variant;
+            (variant.command, variant.direction as u8, variant.variant)
         });
         let all = PyList::empty(py);
         for rows in rows {
             all.append(self.rows(py, names, rows)?)?;
         }
         let table = self.edition.table.bind(py);
-        let refused = Bound::new(py, Memory::offsets(refused))?;
+        let rejected = Bound::new(py, Memory::offsets(rejected))?;
         let tally = counters(py, self.core.tally())?;
         names
             .columns
             .bind(py)
-            .call1((table, all, refused, spans(py, noise)?, tally))
+            .call1((table, all, rejected, spans(py, noise)?, tally))
     }
 
     fn rows<'py>(&self, py: Python<'py>, names: &Names, rows: Rows) -> PyResult<Bound<'py, PyAny>> {
-        let command = self.edition.commands.get(rows.form.command)?;
-        let layout = self.edition.core.layout(rows.form);
-        let fields = layout.map_or(&[][..], |layout| layout.fields());
+        let command = self.edition.commands.get(rows.variant.command)?;
+        let variant = self.edition.core.variant(rows.variant);
+        let fields = variant.map_or(&[][..], |variant| variant.fields());
         let mut columns = Vec::with_capacity(fields.len());
         for (field, cells) in fields.iter().zip(rows.fields) {
             columns.push(Bound::new(py, Memory::cells(cells, field))?);
         }
         names.rows.bind(py).call1((
             command.object.bind(py),
-            names.direction(py, rows.form.direction),
-            rows.form.layout,
+            names.direction(py, rows.variant.direction),
+            rows.variant.variant,
             Memory::offsets(rows.offsets),
             PyTuple::new(py, columns)?,
         ))
@@ -192,13 +192,13 @@ impl NativeColumnReader {
 
 #[pymethods]
 impl NativeColumnReader {
-    /// Take bytes; give what is certain by now, and was not given before.
+    /// Take bytes; return what has become certain since the last call.
     fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         feed(&mut self.core, data)?;
         self.given(data.py())
     }
 
-    /// Refute what still waits, and give the rest.
+    /// Refute what still waits; return the rest.
     fn flush<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.core.flush();
         self.given(py)

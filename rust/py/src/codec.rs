@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cobotwire_core::{Choice, EncodeError, Listening, Rules};
+use cobotwire_core::{Choice, Direction, EncodeError, Listening, Rules};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -42,14 +42,14 @@ impl NativeCodec {
         "native"
     }
 
-    /// Build one whole frame, of the first form with that number of fields that takes `values`.
-    #[pyo3(signature = (command, direction, values, *, form = None, address = None))]
+    /// Build one whole frame, of the first variant with that number of fields that takes `values`.
+    #[pyo3(signature = (command, direction, values, *, variant = None, address = None))]
     fn encode<'py>(
         &self,
         command: &Bound<'py, PyAny>,
         direction: &Bound<'py, PyAny>,
         values: &Bound<'py, PyAny>,
-        form: Option<&Bound<'py, PyAny>>,
+        variant: Option<&Bound<'py, PyAny>>,
         address: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let py = command.py();
@@ -65,27 +65,28 @@ impl NativeCodec {
         let values = row(values)?;
         let format = core.frame();
         let address = address.map(|given| words::address(given, table, &format.addresses));
-        let form = form.map(|given| words::form(given, objects.layouts(way).len()));
+        let variant = variant.map(|given| words::variant(given, objects.variants(way).len()));
         let choice = Choice {
             address: address.transpose()?,
-            form: form.transpose()?,
+            variant: variant.transpose()?,
         };
         let record = core.commands().get(index);
-        let encoded = record.map_or(Err(EncodeError::Form), |record| {
+        let encoded = record.map_or(Err(EncodeError::VariantId), |record| {
             cobotwire_core::encode::<Object<'_>>(format, record, way, &values, choice)
         });
         match encoded {
             Ok(frame) => Ok(PyBytes::new(py, &frame)),
             Err(EncodeError::Foreign(error)) => Err(error),
             // The address was looked at above.
-            Err(EncodeError::Form | EncodeError::Address) => Err(errors::bad_form(
+            Err(EncodeError::VariantId | EncodeError::Address) => Err(errors::bad_variant(
                 objects.object.bind(py),
                 direction,
                 values.0.len(),
             )),
-            Err(EncodeError::Value(bad)) => {
-                Err(errors::bad_value(objects.layout(py, way, bad.layout)?, bad))
-            }
+            Err(EncodeError::Value(bad)) => Err(errors::bad_value(
+                objects.variant(py, way, bad.variant)?,
+                bad,
+            )),
         }
     }
 
@@ -120,11 +121,11 @@ impl NativeCodec {
             Ok(decoded) => {
                 let values = objects(py, &decoded.values)?;
                 let address = decoded.address;
-                self.edition.message(py, decoded.form, &values, address)
+                self.edition.message(py, decoded.variant, &values, address)
             }
             Err(error) => {
                 let data = data.as_bytes();
-                Err(self.edition.refused(py, error, Some(direction), data))
+                Err(self.edition.rejected(py, error, direction, data))
             }
         }
     }
@@ -133,8 +134,15 @@ impl NativeCodec {
     #[pyo3(signature = (listening, *, accept_unknown = false))]
     fn framer(&self, listening: &Bound<'_, PyAny>, accept_unknown: bool) -> PyResult<NativeFramer> {
         let rules = self.rules(Some(listening), accept_unknown)?;
-        let edition = Arc::clone(&self.edition);
-        Ok(NativeFramer::new(Origin { edition, rules }))
+        let direction = match listen(Some(listening))? {
+            Listening::To(direction) => direction,
+            Listening::Both => Direction::Request,
+        };
+        Ok(NativeFramer::new(Origin {
+            edition: Arc::clone(&self.edition),
+            rules,
+            direction,
+        }))
     }
 
     /// Where the frames of a whole stream are.
@@ -194,7 +202,7 @@ impl NativeCodec {
     }
 }
 
-/// The directions to listen to; both, if nothing is said.
+/// The directions to listen to; both by default.
 fn listen(given: Option<&Bound<'_, PyAny>>) -> PyResult<Listening> {
     match given {
         None => Ok(Listening::Both),

@@ -1,7 +1,7 @@
 //! Reads a Python `Table`, attribute by attribute, into the core's.
 
 use cobotwire_core::{
-    Case, Check, Command, Field, FrameFormat, Layout, Misfit, Number, Order, Table,
+    Case, Check, Command, Field, FrameFormat, Misfit, Number, Order, Table, Variant,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -73,15 +73,15 @@ pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
 }
 
 fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
-    let refused = |what: &str| Err(PyValueError::new_err(format!("table: {what}")));
+    let rejected = |what: &str| Err(PyValueError::new_err(format!("table: {what}")));
     let &[first, second] = record.header.as_slice() else {
-        return refused("the header is two bytes");
+        return rejected("the header is two bytes");
     };
     let check = match (record.check.as_str(), record.footer.as_slice()) {
         ("footer", &[footer]) => Check::Footer(footer),
         ("crc16-modbus", []) => Check::Crc16Modbus,
         ("sum", []) => Check::Sum,
-        _ => return refused("the check is a footer of one byte, crc16-modbus or sum"),
+        _ => return rejected("the check is a footer of one byte, crc16-modbus or sum"),
     };
     Ok(FrameFormat {
         header: [first, second],
@@ -92,16 +92,16 @@ fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
 }
 
 fn command(record: CommandRecord) -> Command {
-    let layouts = |records: Vec<LayoutRecord>| records.into_iter().map(layout).collect();
+    let variants = |records: Vec<LayoutRecord>| records.into_iter().map(variant).collect();
     Command {
         id: record.id,
-        request: layouts(record.request),
-        reply: layouts(record.reply),
+        request: variants(record.request),
+        reply: variants(record.reply),
     }
 }
 
-fn layout(record: LayoutRecord) -> Layout {
-    Layout::new(record.fields.into_iter().map(field).collect())
+fn variant(record: LayoutRecord) -> Variant {
+    Variant::new(record.fields.into_iter().map(field).collect())
 }
 
 fn field(record: FieldRecord) -> Field {
@@ -144,6 +144,6 @@ fn misfit(misfit: Misfit) -> &'static str {
         Misfit::Bounds => "a bound is a whole number that a double holds exactly",
         Misfit::Cases => "a field has cases of one size, each of one number unless it takes many",
         Misfit::Selector => "a selector is the index of a field of one number",
-        Misfit::Length => "a form is no longer than LEN can say",
+        Misfit::Length => "a variant is no longer than LEN can say",
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use cobotwire_core::{DecodeError, Direction, Form, Listening, Plans, Table};
+use cobotwire_core::{DecodeError, Direction, Listening, Plans, Table, VariantId};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
@@ -44,58 +44,57 @@ impl Edition {
     pub fn message<'py>(
         &self,
         py: Python<'py>,
-        form: Form,
+        id: VariantId,
         values: &Bound<'py, PyTuple>,
         address: Option<u8>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let names = Names::get(py)?;
-        let command = self.commands.get(form.command)?;
-        let layout = command.layout(py, form.direction, form.layout)?;
-        let direction = names.direction(py, form.direction);
-        let items = (command.object.bind(py), direction, layout, values, address);
+        let command = self.commands.get(id.command)?;
+        let variant = command.variant(py, id.direction, id.variant)?;
+        let direction = names.direction(py, id.direction);
+        let items = (command.object.bind(py), direction, variant, values, address);
         names.make(&names.message, items.into_pyobject(py)?)
     }
 
-    /// The error to raise for bytes that were not decoded; where the caller named no direction, it is
-    /// that of the form that refused.
-    pub fn refused(
+    /// The error to raise for bytes that were not decoded.
+    pub fn rejected(
         &self,
         py: Python<'_>,
         error: DecodeError,
-        direction: Option<&Bound<'_, PyAny>>,
+        direction: &Bound<'_, PyAny>,
         data: &[u8],
     ) -> PyErr {
-        self.refusal(py, error, direction, data)
+        self.rejection(py, error, direction, data)
             .unwrap_or_else(|error| error)
     }
 
-    fn refusal(
+    fn rejection(
         &self,
         py: Python<'_>,
         error: DecodeError,
-        direction: Option<&Bound<'_, PyAny>>,
+        direction: &Bound<'_, PyAny>,
         data: &[u8],
     ) -> PyResult<PyErr> {
         let data = PyBytes::new(py, data);
         match error {
             DecodeError::Frame { reason, offset } => {
-                let names = Names::get(py)?;
-                let direction = match direction {
-                    Some(given) => given,
-                    None => names.direction(py, Direction::Request).as_any(),
-                };
                 let table = self.table.bind(py);
                 Ok(errors::bad_frame(table, direction, reason, offset, &data))
             }
             DecodeError::Raw(bad) => {
-                let Form {
+                let VariantId {
                     direction,
                     command,
-                    layout,
-                } = bad.form;
+                    variant,
+                } = bad.variant;
                 let command = self.commands.get(command)?;
-                let layout = command.layout(py, direction, layout)?;
-                Ok(errors::bad_raw(command.object.bind(py), layout, bad, &data))
+                let variant = command.variant(py, direction, variant)?;
+                Ok(errors::bad_raw(
+                    command.object.bind(py),
+                    variant,
+                    bad,
+                    &data,
+                ))
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The core's errors as Python's: `cobotwire.codec.refusal` makes them, from the table's objects.
+//! The core's errors as Python's, which `cobotwire.protocol.rejection` makes from table objects.
 
 use cobotwire_core::{BadRaw, BadValue, Reason};
 use pyo3::prelude::*;
@@ -8,30 +8,34 @@ use crate::given::Object;
 use crate::names::Names;
 
 /// The error of a value that its field does not allow.
-pub fn bad_value(layout: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr {
+pub fn bad_value(variant: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr {
     let make = || {
-        let (field, case) = field_and_case(layout, bad.field, bad.case)?;
+        let (field, case) = field_and_case(variant, bad.field, bad.case)?;
         let element = bad
             .element
             .and_then(|index| isize::try_from(index).ok())
             .unwrap_or(-1);
-        let refuse = Names::get(layout.py())?.refuse_value.bind(layout.py());
-        // Where no case was picked, the reference shows the whole number that picks none.
+        let reject = Names::get(variant.py())?.reject_value.bind(variant.py());
+        // Where no case was picked, the reference shows the raw value that picks none.
         let value = match bad.picked {
-            Some(picked) => picked.into_pyobject(layout.py())?.into_any(),
+            Some(picked) => picked.into_pyobject(variant.py())?.into_any(),
             None => bad.value.0,
         };
-        refuse.call1((field, case, element, bad.fault.word(), value))
+        reject.call1((field, case, element, bad.fault.word(), value))
     };
     raised(make())
 }
 
-/// The error of a number of values that no form has.
-pub fn bad_form(command: &Bound<'_, PyAny>, direction: &Bound<'_, PyAny>, given: usize) -> PyErr {
+/// The error of a number of values that no variant has.
+pub fn bad_variant(
+    command: &Bound<'_, PyAny>,
+    direction: &Bound<'_, PyAny>,
+    given: usize,
+) -> PyErr {
     let py = command.py();
     raised(Names::get(py).and_then(|names| {
         names
-            .refuse_form
+            .reject_variant
             .bind(py)
             .call1((command, direction, given))
     }))
@@ -40,34 +44,26 @@ pub fn bad_form(command: &Bound<'_, PyAny>, direction: &Bound<'_, PyAny>, given:
 /// The error of a word that is no direction.
 pub fn bad_direction(given: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
-    raised(Names::get(py).and_then(|names| names.refuse_direction.bind(py).call1((given,))))
+    raised(Names::get(py).and_then(|names| names.reject_direction.bind(py).call1((given,))))
 }
 
 /// The error of an address that the frame format does not have.
 pub fn bad_address(given: &Bound<'_, PyAny>, addresses: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
-    raised(Names::get(py).and_then(|names| names.refuse_address.bind(py).call1((given, addresses))))
+    raised(Names::get(py).and_then(|names| names.reject_address.bind(py).call1((given, addresses))))
 }
 
 /// The error of a number on the wire that its field does not allow.
 pub fn bad_raw(
     command: &Bound<'_, PyAny>,
-    layout: &Bound<'_, PyAny>,
+    variant: &Bound<'_, PyAny>,
     bad: BadRaw,
     data: &Bound<'_, PyAny>,
 ) -> PyErr {
     let make = || {
-        let (field, case) = field_and_case(layout, bad.field, bad.case)?;
-        let refuse = Names::get(layout.py())?.refuse_raw.bind(layout.py());
-        refuse.call1((
-            command,
-            field,
-            case,
-            bad.element,
-            bad.whole,
-            bad.offset,
-            data,
-        ))
+        let (field, case) = field_and_case(variant, bad.field, bad.case)?;
+        let reject = Names::get(variant.py())?.reject_raw.bind(variant.py());
+        reject.call1((command, field, case, bad.element, bad.raw, bad.offset, data))
     };
     raised(make())
 }
@@ -84,18 +80,18 @@ pub fn bad_frame(
     raised(Names::get(py).and_then(|names| {
         let word = PyString::new(py, reason.word());
         names
-            .refuse_frame
+            .reject_frame
             .bind(py)
             .call1((table, direction, word, offset, data))
     }))
 }
 
 fn field_and_case<'py>(
-    layout: &Bound<'py, PyAny>,
+    variant: &Bound<'py, PyAny>,
     field: usize,
     case: usize,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-    let field = layout.getattr("fields")?.get_item(field)?;
+    let field = variant.getattr("fields")?.get_item(field)?;
     let case = field.getattr("cases")?.get_item(case)?;
     Ok((field, case))
 }

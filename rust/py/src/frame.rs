@@ -1,19 +1,23 @@
-//! `NativeFrame`: a frame that carries its bytes and is decoded when it is first asked.
+//! `NativeFrame`: a frame that owns its bytes and is decoded on first use.
 
 use std::sync::Arc;
 
-use cobotwire_core::{Decoded, Frame, OwnedFrame, Rules};
+use cobotwire_core::{Decoded, Direction, Frame, Listening, OwnedFrame, Rules};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyTuple};
 
 use crate::edition::Edition;
+use crate::names::Names;
 use crate::values::objects;
+use crate::words::one_way;
 
 /// What the frames of one framer have in common.
 pub struct Origin {
     pub edition: Arc<Edition>,
     pub rules: Rules,
+    /// The first direction that the framer listens to.
+    pub direction: Direction,
 }
 
 /// A whole, legal frame.
@@ -24,7 +28,7 @@ pub struct NativeFrame {
     #[pyo3(get)]
     offset: u64,
     frame: OwnedFrame,
-    /// Its values, once it was asked for them.
+    /// Its values, once they have been used.
     values: PyOnceLock<Py<PyTuple>>,
 }
 
@@ -42,11 +46,37 @@ impl NativeFrame {
         self.frame.get(self.origin.edition.core.frame())
     }
 
-    fn decoded(&self, py: Python<'_>) -> PyResult<Decoded> {
-        let Origin { edition, rules } = &*self.origin;
+    /// What it says: in one direction, or in any that the framer listens to; perhaps only as the
+    /// command with index `of`.
+    fn read(
+        &self,
+        py: Python<'_>,
+        direction: Option<Direction>,
+        of: Option<usize>,
+    ) -> PyResult<Decoded> {
+        let Origin { edition, rules, .. } = &*self.origin;
+        let rules = direction.map_or(rules, |way| edition.core.rules(Listening::To(way)));
         let frame = self.frame();
-        cobotwire_core::read(&edition.core, rules, frame)
-            .map_err(|error| edition.refused(py, error, None, frame.bytes()))
+        cobotwire_core::read(&edition.core, rules, frame, of).map_err(|error| {
+            let direction = direction.unwrap_or(self.origin.direction);
+            match Names::get(py) {
+                Ok(names) => {
+                    let direction = names.direction(py, direction);
+                    edition.rejected(py, error, direction, frame.bytes())
+                }
+                Err(error) => error,
+            }
+        })
+    }
+
+    /// The message, as Python's named tuple; `values` are those of `decoded`.
+    fn message_of<'py>(
+        &self,
+        decoded: &Decoded,
+        values: &Bound<'py, PyTuple>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let edition = &self.origin.edition;
+        edition.message(values.py(), decoded.variant, values, decoded.address)
     }
 }
 
@@ -64,15 +94,30 @@ impl NativeFrame {
         self.frame().id()
     }
 
-    /// What it says, as the first message that allows its values.
+    /// Its message: the first one that allows its values.
     #[getter]
     fn message<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let decoded = self.decoded(py)?;
+        let decoded = self.read(py, None, None)?;
         let values = self
             .values
             .get_or_try_init(py, || objects(py, &decoded.values).map(Bound::unbind))?;
-        let edition = &self.origin.edition;
-        edition.message(py, decoded.form, values.bind(py), decoded.address)
+        self.message_of(&decoded, values.bind(py))
+    }
+
+    /// What `codec.decode(direction, frame.data, of=of)` returns, without judging the frame again.
+    #[pyo3(signature = (direction = None, *, of = None))]
+    fn decode<'py>(
+        &self,
+        py: Python<'py>,
+        direction: Option<&Bound<'py, PyAny>>,
+        of: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Edition {
+            table, commands, ..
+        } = &*self.origin.edition;
+        let of = of.map(|name| commands.find(table, name)).transpose()?;
+        let decoded = self.read(py, direction.map(one_way).transpose()?, of)?;
+        self.message_of(&decoded, &objects(py, &decoded.values)?)
     }
 
     /// The values of its message, one a field.
@@ -81,8 +126,8 @@ impl NativeFrame {
         if let Some(values) = self.values.get(py) {
             return Ok(values.bind(py).clone());
         }
-        let values = objects(py, &self.decoded(py)?.values)?;
-        // Another thread may have been faster; then both have the same.
+        let values = objects(py, &self.read(py, None, None)?.values)?;
+        // If another thread was faster, both have the same values.
         let _ = self.values.set(py, values.clone().unbind());
         Ok(values)
     }

@@ -28,7 +28,7 @@ impl NativeFramer {
 
 #[pymethods]
 impl NativeFramer {
-    /// Take bytes; give what is certain by now, in the order of the stream.
+    /// Take bytes; return what is certain by now, in the order of the stream.
     fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
         let mut events = Events::new(data.py(), &self.origin)?;
         match data.cast::<PyBytes>() {
@@ -38,7 +38,7 @@ impl NativeFramer {
         events.finish()
     }
 
-    /// Refute what still waits: a true frame behind it comes now.
+    /// Refute what still waits; return it and what follows it.
     fn flush<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let mut events = Events::new(py, &self.origin)?;
         self.core.flush(|event| events.add(event));
@@ -51,7 +51,7 @@ impl NativeFramer {
         self.core.pending()
     }
 
-    /// What came so far, in numbers.
+    /// The counts since the framer was made.
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         counters(py, self.core.tally())
@@ -79,7 +79,7 @@ pub fn counters<'py>(py: Python<'py>, tally: &Tally) -> PyResult<Bound<'py, PyAn
     names.make(&names.counters, items.into_pyobject(py)?)
 }
 
-/// The bytes of any buffer, taken as the reference takes them: refused alike, too.
+/// The bytes of any buffer, accepted or rejected as by the reference.
 pub fn copied(data: &Bound<'_, PyAny>) -> PyResult<Vec<u8>> {
     let all = PyByteArray::new(data.py(), &[]).call_method1("__iadd__", (data,))?;
     Ok(all.cast_into::<PyByteArray>()?.to_vec())

@@ -1,7 +1,7 @@
 //! Python values as the core's encoder takes them.
 //!
-//! The common types go by the shortest way. All others are asked through the very functions that
-//! the reference uses, so that whatever an object does, both codecs see it do the same.
+//! Common types are converted directly. All others go through the functions that the reference
+//! uses, so that an object behaves alike in both codecs.
 
 use cobotwire_core::{Given, Row, Unread, ValueFault};
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -20,7 +20,7 @@ impl<'py> Given for Object<'py> {
     type Error = PyErr;
     type Row = Objects<'py>;
 
-    fn whole(&self, flag: bool) -> Result<i64, Unread<PyErr>> {
+    fn integer(&self, flag: bool) -> Result<i64, Unread<PyErr>> {
         if self.0.is_exact_instance_of::<PyInt>() {
             return self.small();
         }
@@ -29,7 +29,7 @@ impl<'py> Given for Object<'py> {
             return Err(Unread::Fault(ValueFault::Type));
         }
         match names.index.bind(self.0.py()).call1((&self.0,)) {
-            Ok(whole) => Self(whole).small(),
+            Ok(integer) => Self(integer).small(),
             Err(error) => Err(self.sorted(error, None)),
         }
     }
@@ -85,14 +85,14 @@ impl Object<'_> {
     }
 
     fn is_number(&self, names: &Names) -> Result<bool, Unread<PyErr>> {
-        // A subclass of float, as NumPy's is, needs no slow look at its attributes.
+        // A subclass of float, such as NumPy's, needs no slow check of its attributes.
         let float = self.0.is_instance_of::<PyFloat>();
         Ok(!self.is(&names.bool)? && (float || self.is(names.float_like.as_any())?))
     }
 
-    /// An exact `int`, if it is small enough to matter.
+    /// An exact `int`, if it fits.
     fn small(&self) -> Result<i64, Unread<PyErr>> {
-        // Too large is all that can be wrong with it.
+        // It can only be too large.
         self.0.extract().map_err(|_: PyErr| Unread::Beyond)
     }
 

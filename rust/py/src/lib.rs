@@ -1,7 +1,7 @@
 //! `cobotwire._native`: the codec of `cobotwire-core` behind Python's codec interface.
 //!
-//! It converts and decides nothing: what is legal the core says, and what an error's text says
-//! `cobotwire.codec.refusal` does.
+//! It only converts: the core decides what is legal, and `cobotwire.protocol.rejection` makes the
+//! sentences of the errors.
 
 use pyo3::prelude::*;
 

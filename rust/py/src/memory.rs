@@ -69,7 +69,7 @@ impl Memory {
         if self.held().views == 0 {
             return Ok(());
         }
-        let text = "out is still looked at, by a memoryview or an array";
+        let text = "out is still used by a memoryview or an array";
         Err(PyBufferError::new_err(text))
     }
 

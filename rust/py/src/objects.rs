@@ -35,8 +35,8 @@ impl Commands {
         Ok(Self { all, by_name })
     }
 
-    /// The index of the command with that name, which the table itself is asked for where it is
-    /// not known: it says that there is none, and which is nearest.
+    /// The index of the command with that name. For an unknown name the table raises the error that
+    /// suggests the nearest one.
     pub fn find(&self, table: &Py<PyAny>, name: &Bound<'_, PyAny>) -> PyResult<usize> {
         if let Some(index) = word(name).and_then(|name| self.by_name.get(name)) {
             return Ok(*index);
@@ -65,8 +65,8 @@ impl Command {
         })
     }
 
-    /// The forms in one direction.
-    pub fn layouts(&self, direction: Direction) -> &[Py<PyAny>] {
+    /// The variants in one direction.
+    pub fn variants(&self, direction: Direction) -> &[Py<PyAny>] {
         match direction {
             Direction::Request => &self.request,
             Direction::Reply => &self.reply,
@@ -74,14 +74,14 @@ impl Command {
     }
 
     /// One of them.
-    pub fn layout<'py>(
+    pub fn variant<'py>(
         &self,
         py: Python<'py>,
         direction: Direction,
         index: usize,
     ) -> PyResult<&Bound<'py, PyAny>> {
-        let layout = self.layouts(direction).get(index);
-        let layout = layout.ok_or_else(|| PyKeyError::new_err(index))?;
-        Ok(layout.bind(py))
+        let variant = self.variants(direction).get(index);
+        let variant = variant.ok_or_else(|| PyKeyError::new_err(index))?;
+        Ok(variant.bind(py))
     }
 }

@@ -1,6 +1,6 @@
 //! The core's results in parts, as Python's objects hold them, and back again for `out=`.
 
-use cobotwire_core::{Columns, Direction, Form, Offsets, Rows, Spans};
+use cobotwire_core::{Columns, Direction, Offsets, Rows, Spans, VariantId};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -26,7 +26,7 @@ pub fn old_offsets(out: &Bound<'_, PyAny>) -> PyResult<Offsets> {
 pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Columns> {
     let rows: Vec<Bound<'_, PyAny>> = out.getattr("_rows")?.extract()?;
     let memories = rows.iter().map(memories).collect::<PyResult<Vec<_>>>()?;
-    // All or none: who gets an error still has what there was.
+    // All or none: after an error the old columns are still complete.
     for memory in memories.iter().flatten() {
         memory.get().check_unviewed()?;
     }
@@ -36,7 +36,7 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
         let offsets = columns.next().transpose()?.map_or(Vec::new(), offsets);
         let fields = columns.map(|column| column.map(Column::into_cells));
         old.rows.push(Rows {
-            form: form(edition, rows)?,
+            variant: variant(edition, rows)?,
             offsets,
             fields: fields.collect::<PyResult<_>>()?,
         });
@@ -53,17 +53,17 @@ fn memories<'py>(rows: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, Memory>>> 
     Ok(all)
 }
 
-fn form(edition: &Edition, rows: &Bound<'_, PyAny>) -> PyResult<Form> {
+fn variant(edition: &Edition, rows: &Bound<'_, PyAny>) -> PyResult<VariantId> {
     let name = rows.getattr("command")?.getattr("name")?;
     let direction: String = rows.getattr("direction")?.extract()?;
-    Ok(Form {
+    Ok(VariantId {
         direction: if direction == "request" {
             Direction::Request
         } else {
             Direction::Reply
         },
         command: edition.commands.find(&edition.table, &name)?,
-        layout: rows.getattr("form")?.extract()?,
+        variant: rows.getattr("variant_index")?.extract()?,
     })
 }
 

@@ -67,7 +67,7 @@ impl<'py> IntoPyObject<'py> for Number {
 
     fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(match self.0 {
-            Value::Whole(whole) => whole.into_pyobject(py)?.into_any(),
+            Value::Integer(integer) => integer.into_pyobject(py)?.into_any(),
             Value::Real(real) => real.into_pyobject(py)?.into_any(),
             Value::Row(count) => count.into_pyobject(py)?.into_any(),
         })

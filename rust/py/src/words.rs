@@ -1,6 +1,6 @@
-//! What callers say besides values and bytes: directions, a form, an address.
+//! Arguments besides values and bytes: directions, a variant, an address.
 //!
-//! What is not plain is asked as the reference asks it, so that `True` and `1.0` count alike.
+//! Unusual types are compared as the reference does, so that `True` and `1.0` count alike.
 
 use cobotwire_core::Direction;
 use pyo3::prelude::*;
@@ -20,8 +20,8 @@ pub fn one_way(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
     }
 }
 
-/// The index of the form that a caller picks of `count`; one too high where it is none of them.
-pub fn form(given: &Bound<'_, PyAny>, count: usize) -> PyResult<usize> {
+/// The index of the chosen variant; `count` if there is no such variant.
+pub fn variant(given: &Bound<'_, PyAny>, count: usize) -> PyResult<usize> {
     for index in 0..count {
         if given.eq(index)? {
             return Ok(index);
@@ -30,7 +30,7 @@ pub fn form(given: &Bound<'_, PyAny>, count: usize) -> PyResult<usize> {
     Ok(count)
 }
 
-/// The address byte that a caller picks of those that `table` has.
+/// The chosen address byte, which `table` must have.
 pub fn address(given: &Bound<'_, PyAny>, table: &Py<PyAny>, legal: &[u8]) -> PyResult<u8> {
     let py = given.py();
     if given.is_exact_instance_of::<PyInt>() {

@@ -1,4 +1,4 @@
-"""The sample protocols, and the command line that works on copies of them."""
+"""Copy the sample protocols, and run the command line on the copies."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ EDITIONS = ("lamp.yaml", "lamp2.yaml", "bus.yaml")
 
 
 def copied(to: Path) -> Path:
-    """A copy of the samples that a test may spoil."""
+    """Copy the samples, so that a test may change them."""
     return Path(shutil.copytree(FOLDER, to / "samples"))
 
 
 def problems(path: Path) -> list[Problem]:
-    """Everything that is wrong with an edition."""
+    """Return every problem of an edition."""
     try:
         check(build_edition(path, path.parent))
     except SpecError as error:

@@ -1,4 +1,4 @@
-"""Walks a spec file and the schema together: which definition each mapping falls under."""
+"""Walk a spec file and the schema together, to find the definition of each mapping."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Closed(NamedTuple):
 
 
 class Word(NamedTuple):
-    """A word of a closed list; ``definition`` and ``key`` tell which list."""
+    """A word of a closed list; ``definition`` and ``key`` identify the list."""
 
     definition: str
     key: str
@@ -31,7 +31,7 @@ class Word(NamedTuple):
 
 
 def plain(node: Node) -> Any:
-    """A node as the data that an editor's validator sees."""
+    """Return a node as the data that an editor's validator sees."""
     if isinstance(node, Mapping):
         return {key: plain(value) for key, value in node.entries.items()}
     if isinstance(node, Sequence):
@@ -48,12 +48,12 @@ class Walk:
         self.validator = Draft7Validator(schema)
 
     def closed(self, root: Node) -> Iterator[Closed]:
-        """Every mapping of a file that has a closed list of keys."""
+        """Yield every mapping of a file that has a closed list of keys."""
         found = self._walk(self.schema, root, "", ())
         return (item for item in found if isinstance(item, Closed))
 
     def words(self, root: Node) -> Iterator[Word]:
-        """Every word of a file that is of a closed list."""
+        """Yield every word of a file that belongs to a closed list."""
         found = self._walk(self.schema, root, "", ())
         return (item for item in found if isinstance(item, Word))
 
@@ -77,7 +77,7 @@ class Walk:
                 yield from self._walk(inner, value, f"{name}/{key}", (*path, key))
 
     def _picked(self, schema: dict[str, Any], node: Node, name: str) -> tuple[dict[str, Any], str]:
-        """Follow references and conditions to what holds for this node."""
+        """Follow references and conditions to the schemas that apply to this node."""
         while "$ref" in schema or "if" in schema:
             if "$ref" in schema:
                 name = schema["$ref"].rpartition("/")[2]

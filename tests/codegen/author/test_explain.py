@@ -1,4 +1,4 @@
-"""Every problem code is explained, and every explanation's lines give what they say."""
+"""Every problem code has an explanation, and its example lines cause that code."""
 
 from __future__ import annotations
 
@@ -11,11 +11,14 @@ import pytest
 
 import vectors
 from cobotwire_codegen.author.codes import CODES, Explanation
+from cobotwire_codegen.language.edition import FILES
+from cobotwire_codegen.language.records import Choice
+from cobotwire_codegen.language.schema import records
 from cobotwire_codegen.project import editions
 from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
-# What speaks of a folder, or of files that are no part of an edition.
+# Codes about a folder, or about files that do not belong to an edition.
 WITHOUT_LINES = {"no-edition", "unknown-rule"}
 
 
@@ -28,16 +31,30 @@ def _calls() -> Iterator[tuple[str, ast.Call]]:
                 yield (function.id if isinstance(function, ast.Name) else name), node
 
 
+# The position of the problem's code among the arguments of each function.
+CODE_ARGUMENT = {"Problem": 1, "problem": 0, "note": 0, "_wrong": 3}
+COMPUTED = {"f'unknown-{what}'", "code", "key.absent", "self.code", "self.empty[0]"}
+
+
+def _described() -> Iterator[str]:
+    """Return the codes that the description of the language names."""
+    found = records(FILES.values())
+    for record in (one for one in found if not isinstance(one, Choice)):
+        for key in record.keys().values():
+            yield from (key.absent, getattr(key.shape, "code", ""))
+            yield (getattr(key.shape, "empty", None) or ("",))[0]
+
+
 def _emitted() -> set[str]:
-    """The codes in the sources: where each is an argument, and the kinds behind ``find``."""
-    found = set()
+    """Return the codes in the sources and in the description, and those that ``find`` makes."""
+    found = set(_described()) - {""}
     for name, call in _calls():
-        code = {"Problem": 1, "problem": 0}.get(name)
+        code = CODE_ARGUMENT.get(name)
         argument = call.args[code] if code is not None and len(call.args) > code else None
         if isinstance(argument, ast.Constant):
             found.add(str(argument.value))
         elif argument is not None:
-            assert ast.unparse(argument) in ("f'unknown-{what}'", "code"), ast.unparse(argument)
+            assert ast.unparse(argument) in COMPUTED, ast.unparse(argument)
         if name == "find" and len(call.args) == 5:
             what = call.args[2]
             assert isinstance(what, ast.Constant)
@@ -46,17 +63,17 @@ def _emitted() -> set[str]:
     return found
 
 
-def test_every_code_is_explained_and_no_other() -> None:
+def test_explained_codes_are_exactly_the_reported_ones() -> None:
     assert _emitted() == set(CODES)
 
 
-def test_the_samples_have_no_problem() -> None:
+def test_samples_have_no_problem() -> None:
     for name in samples.EDITIONS:
         assert samples.problems(samples.FOLDER / name) == []
 
 
 def _places(text: str, block: str) -> Iterator[tuple[int, int, str]]:
-    """Where the lines of a block stand in a text, at whatever indentation."""
+    """Return where the lines of a block occur in a text, at any indentation."""
     lines, size = text.splitlines(), block.count("\n") + 1
     for start in range(len(lines) - size + 1):
         piece = "\n".join(lines[start : start + size])
@@ -64,8 +81,8 @@ def _places(text: str, block: str) -> Iterator[tuple[int, int, str]]:
             yield start, start + size, " " * (len(lines[start]) - len(lines[start].lstrip()))
 
 
-def _spoilt(folder: Path, explanation: Explanation) -> Iterator[Path]:
-    """The files of a folder in turn, with each right block made wrong."""
+def _with_wrong_lines(folder: Path, explanation: Explanation) -> Iterator[Path]:
+    """Replace each correct block by the wrong one, in one file after another."""
     for path in sorted(folder.glob("*.yaml")):
         text = path.read_text()
         lines = text.splitlines()
@@ -77,31 +94,33 @@ def _spoilt(folder: Path, explanation: Explanation) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("code", sorted(CODES.keys() - WITHOUT_LINES))
-def test_the_wrong_lines_give_the_code_and_the_right_ones_do_not(tmp_path: Path, code: str) -> None:
+def test_wrong_lines_of_an_explanation_cause_the_code_and_right_ones_do_not(
+    tmp_path: Path, code: str
+) -> None:
     folder = samples.copied(tmp_path)
     (folder / "photo.jpg").write_bytes(b"\xff\xd8\xff")
     found = {
         problem.code
-        for _ in _spoilt(folder, CODES[code])
+        for _ in _with_wrong_lines(folder, CODES[code])
         for name in samples.EDITIONS
         for problem in samples.problems(folder / name)
     }
     assert code in found
 
 
-def test_a_code_is_explained_in_text(tmp_path: Path) -> None:
+def test_explain_prints_all_parts_of_a_code(tmp_path: Path) -> None:
     result = samples.run(tmp_path, "explain", "uneven-cases")
     assert result.returncode == 0
-    for part in (CODES["uneven-cases"].means, "Why: ", "Mend: ", "TURN: {is: pose}"):
+    for part in (CODES["uneven-cases"].means, "Why: ", "Fix: ", "TURN: {type: pose}"):
         assert part in result.stdout
 
 
-def test_without_a_word_all_codes_are_listed(tmp_path: Path) -> None:
+def test_explain_without_a_word_lists_all_codes(tmp_path: Path) -> None:
     lines = samples.run(tmp_path, "explain").stdout.splitlines()
     assert [line.split()[0] for line in lines] == sorted(CODES)
 
 
-def test_a_command_is_explained_whole() -> None:
+def test_explain_prints_all_parts_of_a_command() -> None:
     result = samples.run(vectors.ROOT, "explain", "send_angle")
     assert result.returncode == 0
     assert "send_angle: Send one joint to an angle (id 0x21, motion" in result.stdout
@@ -118,7 +137,7 @@ def test_every_command_of_every_edition_can_be_explained() -> None:
             assert command.doc.split()[0] in text
 
 
-def test_the_edition_can_be_chosen() -> None:
+def test_explain_uses_the_given_edition() -> None:
     result = samples.run(samples.FOLDER, "explain", "set_light", "--edition", "lamp2.yaml")
     assert "Against lamp: Changed set_light" in result.stdout
     assert "it shone red" in result.stdout
@@ -127,7 +146,7 @@ def test_the_edition_can_be_chosen() -> None:
 @pytest.mark.parametrize(
     ("word", "near"), [("uneven-case", "uneven-cases"), ("send_angel", "send_angle")]
 )
-def test_an_unknown_word_gets_the_nearest(word: str, near: str) -> None:
+def test_explain_suggests_the_nearest_word_for_an_unknown_one(word: str, near: str) -> None:
     result = samples.run(vectors.ROOT, "explain", word)
     assert result.returncode == 2
     assert f"did you mean {near}?" in result.stderr

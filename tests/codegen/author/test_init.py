@@ -1,4 +1,4 @@
-"""A protocol of one's own starts from a file that passes as it is."""
+"""``cobotwire-gen init`` writes a file that passes the check unchanged."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from codegen.author import samples
 from codegen.author.schema_walk import plain
 
 
-def test_the_first_file_passes_check_and_build(tmp_path: Path) -> None:
+def test_file_from_init_passes_check_and_build(tmp_path: Path) -> None:
     assert samples.run(tmp_path, "init", "my_oven").returncode == 0
     checked = samples.run(tmp_path, "check", "my_oven.yaml")
-    assert checked.stdout == "1 edition(s), no problem\n"
+    assert checked.stdout == "1 edition(s), no problems\n"
     built = samples.run(tmp_path, "build", "my_oven.yaml", "--out", "my_oven")
     assert built.returncode == 0, built.stderr
     assert "class MyOven(" in (tmp_path / "my_oven/client.py").read_text()
 
 
-def test_its_schema_stands_beside_it_and_holds(tmp_path: Path) -> None:
+def test_init_writes_a_schema_that_accepts_the_file(tmp_path: Path) -> None:
     samples.run(tmp_path, "init", "oven")
     first = (tmp_path / "oven.yaml").read_text().splitlines()[0]
     assert first == "# yaml-language-server: $schema=oven.schema.json"
@@ -34,7 +34,7 @@ def test_its_schema_stands_beside_it_and_holds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("there", ["oven.yaml", "oven.schema.json"])
-def test_nothing_is_overwritten(tmp_path: Path, there: str) -> None:
+def test_init_overwrites_no_file(tmp_path: Path, there: str) -> None:
     (tmp_path / there).write_text("mine")
     result = samples.run(tmp_path, "init", "oven")
     assert result.returncode == 2
@@ -43,16 +43,17 @@ def test_nothing_is_overwritten(tmp_path: Path, there: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "said"), [("My-Oven", "like my_device"), ("class", "bad-name"), ("../x", "my_device")]
+    ("name", "message"),
+    [("My-Oven", "like my_device"), ("class", "bad-name"), ("../x", "my_device")],
 )
-def test_a_name_that_cannot_be_is_refused(tmp_path: Path, name: str, said: str) -> None:
+def test_init_rejects_an_invalid_name(tmp_path: Path, name: str, message: str) -> None:
     result = samples.run(tmp_path, "init", name)
     assert result.returncode == 2
-    assert said in result.stderr
+    assert message in result.stderr
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_file_can_be_chosen(tmp_path: Path) -> None:
+def test_init_writes_to_the_given_file(tmp_path: Path) -> None:
     assert samples.run(tmp_path, "init", "oven", "--out", "spec.yaml").returncode == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["spec.schema.json", "spec.yaml"]
     assert samples.run(tmp_path, "init", "oven", "--out", "no/spec.yaml").returncode == 2

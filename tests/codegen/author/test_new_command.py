@@ -1,4 +1,4 @@
-"""A new command lands in the right files, checked, and leaves all else as it was."""
+"""A new command is checked, added to the right files, and changes nothing else."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ def _texts(folder: Path) -> dict[str, str]:
 
 
 def _kept(before: dict[str, str], after: dict[str, str]) -> None:
-    """Every line that was there is still there, in its order."""
+    """Check that every earlier line is still there, in its order."""
     for name, text in before.items():
         rest = iter(after[name].splitlines())
         assert all(line in rest for line in text.splitlines()), name
 
 
-def test_a_one_file_protocol_grows_in_the_middle(tmp_path: Path) -> None:
+def test_new_command_is_inserted_into_the_middle_of_a_one_file_protocol(tmp_path: Path) -> None:
     folder = samples.copied(tmp_path)
     before = _texts(folder)
-    code, said = _new(folder, "lamp.yaml", *SETTING, "--request", "joint:joint,angle:angle")
-    assert code == 0, said
+    code, output = _new(folder, "lamp.yaml", *SETTING, "--request", "joint:joint,angle:angle")
+    assert code == 0, output
     assert samples.problems(folder / "lamp.yaml") == []
     _kept(before, _texts(folder))
     edition = build_edition(folder / "lamp.yaml", folder)
@@ -43,14 +43,14 @@ def test_a_one_file_protocol_grows_in_the_middle(tmp_path: Path) -> None:
     assert edition.vectors[-1].frame == bytes.fromhex("FE FE 05 70 01 BF 8C FA")
 
 
-def test_a_protocol_of_init_grows(tmp_path: Path) -> None:
+def test_new_command_can_be_added_to_a_protocol_from_init(tmp_path: Path) -> None:
     samples.run(tmp_path, "init", "oven")
     words = ["--request", "mode:mode", "--reply", "taken:flag"]
     assert _new(tmp_path, "oven.yaml", *SETTING, *words)[0] == 0
     assert samples.run(tmp_path, "check", "oven.yaml").returncode == 0
 
 
-def test_a_project_grows_in_the_files_of_the_family_and_of_what_is_missing(tmp_path: Path) -> None:
+def test_new_command_is_added_to_the_familys_file_and_missing_yaml(tmp_path: Path) -> None:
     shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
     before = {path: path.read_text() for path in (tmp_path / "spec").rglob("*.yaml")}
     words = [
@@ -79,7 +79,7 @@ def test_a_project_grows_in_the_files_of_the_family_and_of_what_is_missing(tmp_p
 
 
 WRONG = {
-    "an id in use": (["--id", "0x21", "--request", "joint:joint,lit:flag"], "ambiguous-layout"),
+    "an id in use": (["--id", "0x21", "--request", "joint:joint,lit:flag"], "ambiguous-variant"),
     "a name in use": (["--name", "move"], "duplicate-"),
     "no name": (["--name", "x # y"], "a method's name"),
     "a keyword": (["--name", "class"], "bad-name"),
@@ -87,7 +87,7 @@ WRONG = {
     "an unknown type": (["--request", "joint:jiont"], "did you mean joint?"),
     "an unknown class": (["--safety", "seting"], "did you mean setting?"),
     "no field": (["--request", "joint"], "joint is not"),
-    "another frame": (["--vector", "FE FE 02 71 FA"], "is not the request"),
+    "another frame": (["--vector", "FE FE 02 71 FA"], "is not the described request"),
     "no hex": (["--vector", "FE F"], "vector"),
     "a value outside": (["--request", "j:joint", "--values", "j: 9"], "outside 1..2"),
     "another field": (["--request", "j:joint", "--values", "k: 1"], "vector"),
@@ -95,56 +95,56 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("words", "said"), WRONG.values(), ids=WRONG.keys())
-def test_what_is_not_right_is_told_and_nothing_is_written(
-    tmp_path: Path, words: list[str], said: str
+@pytest.mark.parametrize(("words", "message"), WRONG.values(), ids=WRONG.keys())
+def test_new_command_with_bad_input_reports_it_and_writes_nothing(
+    tmp_path: Path, words: list[str], message: str
 ) -> None:
     folder = samples.copied(tmp_path)
     before = _texts(folder)
-    code, told = _new(folder, "lamp.yaml", *SETTING, *words)
+    code, output = _new(folder, "lamp.yaml", *SETTING, *words)
     assert code == 2
-    assert said in told
+    assert message in output
     assert _texts(folder) == before
 
 
-def test_without_a_terminal_what_is_missing_is_named(tmp_path: Path) -> None:
+def test_new_command_without_a_terminal_names_missing_options(tmp_path: Path) -> None:
     folder = samples.copied(tmp_path)
-    code, said = _new(folder, "bus.yaml", "--name", "dim")
+    code, output = _new(folder, "bus.yaml", "--name", "dim")
     assert code == 2
-    assert "missing: --family, --id, --title, --doc, --safety" in said
+    assert "missing: --family, --id, --title, --doc, --safety" in output
 
 
-def test_a_dry_run_prints_and_writes_nothing(tmp_path: Path) -> None:
+def test_dry_run_prints_entries_and_writes_nothing(tmp_path: Path) -> None:
     folder = samples.copied(tmp_path)
     before = _texts(folder)
-    code, said = _new(folder, "lamp.yaml", *SETTING, "--dry-run")
+    code, output = _new(folder, "lamp.yaml", *SETTING, "--dry-run")
     assert code == 0
-    assert "  dim:\n    id: 0x70\n" in said
-    assert "    frame: FE FE 02 70 FA\n" in said
+    assert "  dim:\n    id: 0x70\n" in output
+    assert "    frame: FE FE 02 70 FA\n" in output
     assert _texts(folder) == before
 
 
-def test_a_frame_with_an_address_and_a_sum(tmp_path: Path) -> None:
+def test_diagram_shows_address_and_sum_of_a_frame(tmp_path: Path) -> None:
     folder = samples.copied(tmp_path)
     query = [*WORDS, "--safety", "query", "--family", "all", "--reply", "lit:flag"]
-    code, said = _new(folder, "bus.yaml", *query, "--reply-vector", "FE FE 01 03 70 01 71")
-    assert code == 0, said
+    code, output = _new(folder, "bus.yaml", *query, "--reply-vector", "FE FE 01 03 70 01 71")
+    assert code == 0, output
     assert "values: {lit: true}" in (folder / "bus_vectors.yaml").read_text()
 
 
-def test_an_edition_that_acknowledges_gets_vectors_of_that_too(tmp_path: Path) -> None:
+def test_new_command_of_an_edition_with_acks_gets_vectors_of_acks(tmp_path: Path) -> None:
     folder = samples.copied(tmp_path)
     words = ["--family", "all", "--request", "lit:flag", "--vector", "FE FE 01 03 70 01 71"]
-    code, said = _new(folder, "bus.yaml", *SETTING, *words)
-    assert code == 0, said
+    code, output = _new(folder, "bus.yaml", *SETTING, *words)
+    assert code == 0, output
     edition = build_edition(folder / "bus.yaml", folder)
     added = [vector.name for vector in edition.vectors[-3:]]
     assert added == ["dim-request", "dim-reply", "dim-reply-2"]
 
 
-def test_a_delta_grows_in_its_own_files(tmp_path: Path) -> None:
+def test_new_command_of_a_delta_is_added_to_the_deltas_files(tmp_path: Path) -> None:
     shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
     edition = "spec/editions/mycobot280.yaml"
-    code, said = _new(tmp_path, edition, *SETTING, "--id", "0xEE", "--family", "gripper")
-    assert code == 0, said
+    code, output = _new(tmp_path, edition, *SETTING, "--id", "0xEE", "--family", "gripper")
+    assert code == 0, output
     assert samples.run(tmp_path, "check", edition).returncode == 0

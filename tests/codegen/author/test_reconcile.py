@@ -1,4 +1,4 @@
-"""What a line carries that the edition lacks is found, and nothing else is."""
+"""``reconcile`` finds exactly the frames on a line that the edition lacks."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 import vectors
 from cobotwire_codegen.author.guess import guess
 from cobotwire_codegen.author.reconcile import capture_bytes, reconcile
-from cobotwire_codegen.author.scan import known_layouts, scan
+from cobotwire_codegen.author.scan import known_variants, scan
 from cobotwire_codegen.build import build_edition
 from codegen.author import samples
 
 EDITION = build_edition(vectors.ROOT / "spec/editions/mycobot.yaml", vectors.ROOT)
-KNOWN = known_layouts(EDITION, "both")
+KNOWN = known_variants(EDITION, "both")
 FRAMES = [vector.frame for vector in EDITION.vectors if vector.frame is not None]
 
 
@@ -26,16 +26,16 @@ def _frame(id: int, data: bytes) -> bytes:
     return bytes([0xFE, 0xFE, len(data) + 2, id, *data, 0xFA])
 
 
-def test_every_frame_of_the_vectors_is_known() -> None:
+def test_scan_finds_every_frame_of_the_vectors() -> None:
     line = b"".join(FRAMES)
     assert [seen.frame for seen in scan(EDITION, line, KNOWN)] == FRAMES
     assert reconcile(EDITION, line, "both") == (len(FRAMES), [])
 
 
-# Behind its header, this one reads as a known frame that has none.
+# After its header, this unknown frame reads as a known frame of a format without a header.
 @example(data=b"\x02\x82", count=1)
 @given(data=st.binary(max_size=16), count=st.integers(1, 5))
-def test_an_unknown_id_is_found_between_known_frames(data: bytes, count: int) -> None:
+def test_reconcile_finds_an_unknown_id_between_known_frames(data: bytes, count: int) -> None:
     unknown = _frame(0xEE, data)
     line = b"".join([FRAMES[3] + unknown] * count)
     found = reconcile(EDITION, line, "both")[1]
@@ -46,7 +46,7 @@ def test_an_unknown_id_is_found_between_known_frames(data: bytes, count: int) ->
 
 
 @given(line=st.binary(max_size=200), more=st.lists(st.sampled_from(FRAMES), max_size=5))
-def test_the_frames_of_a_line_do_not_overlap_and_are_frames(line: bytes, more: list[bytes]) -> None:
+def test_scan_yields_valid_frames_without_overlap(line: bytes, more: list[bytes]) -> None:
     end = 0
     whole = line + b"".join(more)
     for seen in scan(EDITION, whole, KNOWN):
@@ -55,17 +55,17 @@ def test_the_frames_of_a_line_do_not_overlap_and_are_frames(line: bytes, more: l
         assert whole[seen.offset : end] == seen.frame == _frame(seen.id, seen.data)
 
 
-def test_noise_and_what_was_cut_off_are_passed_over() -> None:
+def test_scan_skips_noise_and_truncated_frames() -> None:
     line = b"\x00\xfe" + FRAMES[0] + b"\xfe\xfe\x0f" + FRAMES[1] + FRAMES[2][:-1]
     assert [seen.frame for seen in scan(EDITION, line, KNOWN)] == FRAMES[:2]
 
 
-def test_a_known_id_with_another_length_is_news() -> None:
+def test_reconcile_reports_a_known_id_with_an_unknown_length() -> None:
     [news] = reconcile(EDITION, _frame(0x20, b"\x01"), "both")[1]
     assert news.why == "get_angles has no such length"
 
 
-def test_the_direction_decides_what_is_known() -> None:
+def test_reconcile_knows_only_messages_of_the_given_direction() -> None:
     reply = next(v.frame for v in EDITION.vectors if v.command == "get_angles" and v.values)
     assert reply is not None
     assert reconcile(EDITION, reply, "reply")[1] == []
@@ -82,43 +82,43 @@ def _payloads() -> list[bytes]:
     return made
 
 
-def test_the_bytes_suggest_what_they_are() -> None:
+def test_guess_recognizes_kinds_of_bytes() -> None:
     found = [(item.first, item.kind) for item in guess(_payloads())]
     kinds = ["counter", "flag", "word", "constant", "enum", "byte", "text"]
     assert found == list(zip((0, 1, 2, 4, 5, 6, 7), kinds))
 
 
-def test_one_frame_alone_suggests_little() -> None:
+def test_guess_from_one_frame_is_a_constant() -> None:
     assert {item.kind for item in guess([b"\x01\x02"])} == {"constant"}
     assert guess([b""]) == []
 
 
-def test_the_drafts_are_printed_and_told_by_the_exit_code() -> None:
+def test_reconcile_prints_drafts_and_exits_with_1() -> None:
     line = b"".join(_frame(0xEE, payload) for payload in _payloads()).hex(" ")
     result = samples.run(vectors.ROOT, "reconcile", "-", given=line)
     assert result.returncode == 1
     assert "# GUESSED from 40 frame(s); the id is unknown." in result.stdout
-    assert "{name: word_2, is: angle}  # guess: a big-endian word" in result.stdout
-    assert "40 frame(s), 1 unknown layout(s)" in result.stderr
+    assert "{name: word_2, type: angle}  # guess: a big-endian word" in result.stdout
+    assert "40 frame(s), 1 unknown variant(s)" in result.stderr
     known = samples.run(vectors.ROOT, "reconcile", "-", given=b"".join(FRAMES))
     assert (known.returncode, known.stdout) == (0, "")
 
 
-def test_the_drafts_are_data_too() -> None:
+def test_reconcile_prints_drafts_as_json() -> None:
     line = _frame(0xEE, b"\x01\x00")
     result = samples.run(vectors.ROOT, "reconcile", "-", "--json", given=line)
-    told = json.loads(result.stdout)
-    assert told["bytes"] == told["unknown"][0]["count"] + 6
-    assert told["unknown"][0]["examples"] == ["FE FE 04 EE 01 00 FA"]
+    document = json.loads(result.stdout)
+    assert document["bytes"] == document["unknown"][0]["count"] + 6
+    assert document["unknown"][0]["examples"] == ["FE FE 04 EE 01 00 FA"]
 
 
-def test_an_address_and_a_sum_are_cut_too() -> None:
+def test_scan_finds_frames_with_address_and_sum() -> None:
     line = bytes.fromhex("FE FE 01 03 70 01 71  FE FE 01 03 70 01 72  FE FE 09 03 70 01 71")
     result = samples.run(samples.FOLDER, "reconcile", "-", "--edition", "bus.yaml", given=line)
-    assert "21 bytes, 1 frame(s), 1 unknown layout(s)" in result.stderr
+    assert "21 bytes, 1 frame(s), 1 unknown variant(s)" in result.stderr
 
 
-def test_a_capture_is_raw_or_hex() -> None:
+def test_capture_is_read_as_raw_bytes_or_hex_text() -> None:
     assert capture_bytes(b"fe FE\n0x02, 0x10 fa") == bytes.fromhex("FE FE 02 10 FA")
     assert capture_bytes(FRAMES[0]) == FRAMES[0]
     with pytest.raises(ValueError, match="hex"):

@@ -1,4 +1,4 @@
-"""The small specs of the fixtures, changed as a test asks and built."""
+"""Build the small specs of the fixtures with the changes that a test needs."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Build = Callable[..., Edition]
 
 @pytest.fixture
 def build(tmp_path: Path) -> Build:
-    """Builds ``base`` or ``delta``, with some of its text replaced."""
+    """Return a function that builds ``base`` or ``delta`` with some of its text replaced."""
 
     def built(swaps: Swaps = [], file: str = "base") -> Edition:  # noqa: B006 - only read
         base = (HERE / "base.yaml").read_text()
         folder = tmp_path / f"spec-{len(list(tmp_path.iterdir()))}"
         folder.mkdir()
-        # The same base once more, for a delta that stands on another one.
+        # The same base again, for a delta that extends another one.
         for name in ("base", "former"):
             (folder / f"{name}.yaml").write_text(base)
         text = (HERE / f"{file}.yaml").read_text()

@@ -1,4 +1,4 @@
-"""``cobotwire-gen diff`` as it is called: formats, waivers, exit codes."""
+"""``cobotwire-gen diff`` on the command line: formats, waivers, exit codes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WAIVED = "- {rule: id-changed, where: small/commands/jog, reason: No firmware ev
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current folder, with the old side of every comparison."""
+    """Change to a folder that holds the old side of every comparison."""
     (tmp_path / "old.yaml").write_text(BASE)
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -34,22 +34,22 @@ def run(*swaps: tuple[str, str], words: tuple[str, ...] = (), waivers: str = "")
     return CliRunner().invoke(main, ["diff", "old.yaml", "new.yaml", *given, *words])
 
 
-def test_no_difference() -> None:
+def test_diff_of_equal_specs_reports_no_difference() -> None:
     result = run()
     assert (result.exit_code, result.output) == (0, "no difference\n")
 
 
-def test_findings_stand_under_their_levels() -> None:
+def test_report_groups_findings_by_level() -> None:
     result = run(BREAKING, ("doc: A frame.", "doc: Frame."), ("class: Axis", "class: Way"))
     assert result.exit_code == 1
     assert result.output == (
-        "wire (1): breaks the line: old and new peers misunderstand each other\n"
-        "  id-changed: small/commands/jog: the id was 0x22, is 0x23: the call reaches another "
+        "wire (1): breaks the protocol: old and new peers misunderstand each other\n"
+        "  id-changed: small/commands/jog: the id was 0x22, is 0x23: the request reaches another "
         "command, or none\n"
         "api (1): breaks callers of the generated Python\n"
-        "  class-renamed: small/types/axis: the class Axis is Way now\n"
+        "  class-renamed: small/types/axis: the class Axis is now Way\n"
         "docs (1): words and evidence\n"
-        "  doc-changed: small/frame: said: A frame.; says: Frame.\n"
+        "  doc-changed: small/frame: was: A frame.; is: Frame.\n"
         "1 wire, 1 api, 1 docs; version bump: major (before 1.0: minor)\n"
     )
 
@@ -68,13 +68,15 @@ def test_findings_stand_under_their_levels() -> None:
         (("doc: A frame.", "doc: Frame."), "patch (before 1.0: patch)", 0),
     ],
 )
-def test_the_bump_and_the_exit_code_follow(swap: tuple[str, str], bump: str, code: int) -> None:
+def test_version_bump_and_exit_code_follow_from_the_findings(
+    swap: tuple[str, str], bump: str, code: int
+) -> None:
     result = run(swap)
     assert result.output.endswith(f"version bump: {bump}\n")
     assert result.exit_code == code
 
 
-def test_json() -> None:
+def test_diff_prints_json() -> None:
     result = run(BREAKING, words=("--format", "json"))
     assert result.exit_code == 1
     assert json.loads(result.output) == {
@@ -91,7 +93,7 @@ def test_json() -> None:
                 "where": "small/commands/jog",
                 "old": "0x22",
                 "new": "0x23",
-                "message": "the id was 0x22, is 0x23: the call reaches another command, or none",
+                "message": "the id was 0x22, is 0x23: the request reaches another command, or none",
             }
         ],
         "waived": [],
@@ -99,56 +101,56 @@ def test_json() -> None:
     }
 
 
-def test_markdown() -> None:
+def test_diff_prints_markdown() -> None:
     result = run(BREAKING, ("A frame.", "One *frame*."), words=("--format", "markdown"))
     assert result.output == (
         "### Wire-breaking\n\n"
-        "- `small/commands/jog`: the id was 0x22, is 0x23: the call reaches another command, or "
+        "- `small/commands/jog`: the id was 0x22, is 0x23: the request reaches another command, or "
         "none (`id-changed`)\n\n"
         "### Docs\n\n"
-        "- `small/frame`: said: A frame.; says: One \\*frame\\*. (`doc-changed`)\n\n"
+        "- `small/frame`: was: A frame.; is: One \\*frame\\*. (`doc-changed`)\n\n"
         "1 wire, 1 docs; version bump: major (before 1.0: minor)\n"
     )
 
 
-def test_what_is_waived_is_shown_and_does_not_count() -> None:
+def test_waived_findings_are_shown_and_not_counted() -> None:
     result = run(BREAKING, waivers=WAIVED)
     assert result.exit_code == 0
     assert result.output == (
-        "waived (1): answered for, and not counted\n"
-        "  id-changed: small/commands/jog: the id was 0x22, is 0x23: the call reaches another "
+        "waived (1): accepted, and not counted\n"
+        "  id-changed: small/commands/jog: the id was 0x22, is 0x23: the request reaches another "
         "command, or none\n"
         "    because: No firmware ever had it.\n"
-        "no difference but what is waived\n"
+        "no difference except those waived\n"
     )
-    told = json.loads(run(BREAKING, waivers=WAIVED, words=("--format", "json")).output)
-    assert (told["bump"], told["findings"]) == ("none", [])
-    assert told["waived"][0]["reason"] == "No firmware ever had it."
+    document = json.loads(run(BREAKING, waivers=WAIVED, words=("--format", "json")).output)
+    assert (document["bump"], document["findings"]) == ("none", [])
+    assert document["waived"][0]["reason"] == "No firmware ever had it."
     shown = run(BREAKING, waivers=WAIVED, words=("--format", "markdown")).output
     assert "### Waived\n\n- `small/commands/jog`: " in shown
     assert "Waived: No firmware ever had it." in shown
 
 
-def test_a_waiver_is_for_one_rule_at_one_place() -> None:
+def test_waiver_applies_to_one_rule_at_one_place() -> None:
     result = run(BREAKING, ("id: 0x21", "id: 0x24"), waivers=WAIVED)
     assert result.exit_code == 1
     assert "1 wire; version bump: major" in result.output
 
 
-def test_a_waiver_that_matches_nothing_is_told() -> None:
+def test_unused_waiver_is_reported() -> None:
     result = run(waivers=WAIVED)
     assert result.exit_code == 0
-    unused = "unused-waiver: id-changed at small/commands/jog matches nothing; take it out"
+    unused = "unused-waiver: id-changed at small/commands/jog matches nothing; remove it"
     assert f"waivers.yaml:1:3: {unused}\n" in result.output
-    told = json.loads(run(waivers=WAIVED, words=("--format", "json")).output)
-    assert told["unused_waivers"] == [
+    document = json.loads(run(waivers=WAIVED, words=("--format", "json")).output)
+    assert document["unused_waivers"] == [
         {"rule": "id-changed", "where": "small/commands/jog", "place": "waivers.yaml:1:3"}
     ]
     assert "> Unused waiver: " in run(waivers=WAIVED, words=("--format", "markdown")).output
 
 
 @pytest.mark.parametrize(
-    ("waivers", "said"),
+    ("waivers", "message"),
     [
         ("- {rule: id-changed, where: a}", "1:3: missing-key: a waiver lacks the key reason"),
         ("- {rule: id-changed, where: a, reason: ''}", "1:40: wrong-kind: reason of a waiver"),
@@ -164,32 +166,32 @@ def test_a_waiver_that_matches_nothing_is_told() -> None:
         ("- {rule: [", "syntax: "),
     ],
 )
-def test_a_bad_waiver_is_told_with_its_place(waivers: str, said: str) -> None:
+def test_bad_waiver_is_reported_with_its_place(waivers: str, message: str) -> None:
     result = run(BREAKING, waivers=waivers)
     assert result.exit_code == 2
-    assert said in result.output
+    assert message in result.output
 
 
-def test_a_bad_spec_is_told_with_its_place() -> None:
+def test_problem_of_a_compared_spec_is_reported_with_its_place() -> None:
     result = run(("safety: motion", "safety: moton"))
     assert result.exit_code == 2
     assert "new.yaml:80:17: unknown-word: " in result.output
 
 
-def test_a_source_that_is_none_is_a_wrong_call() -> None:
+def test_diff_with_an_unknown_source_exits_with_2() -> None:
     result = CliRunner().invoke(main, ["diff", "old.yaml", "nowhere"])
     assert result.exit_code == 2
-    assert "Error: nowhere is no file, no folder and no git revision" in result.output
+    assert "Error: nowhere is not a file, a folder or a git revision" in result.output
 
 
-def test_rules_are_listed_and_help_tells_the_exit_codes() -> None:
+def test_diff_lists_rules_and_help_names_the_exit_codes() -> None:
     listed = CliRunner().invoke(main, ["diff", "--rules"])
     assert listed.exit_code == 0
-    assert "  id-changed: the id was OLD, is NEW: the call reaches another" in listed.output
+    assert "  id-changed: the id was OLD, is NEW: the request reaches another" in listed.output
     assert "Exit codes: 0 nothing breaks;" in CliRunner().invoke(main, ["diff", "--help"]).output
 
 
-def test_colour_is_for_terminals() -> None:
+def test_diff_uses_colour_only_on_terminals() -> None:
     assert "\x1b[" not in run(BREAKING).output
     coloured = CliRunner().invoke(main, ["diff", "old.yaml", "new.yaml"], color=True)
     assert "\x1b[31m\x1b[1mwire (1)" in coloured.output

@@ -1,4 +1,4 @@
-"""Every rule has a fixture: two small specs, and all that is said of what lies between them."""
+"""Every rule has a fixture: two small specs, and all findings of their comparison."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FIXTURES: dict[str, list[dict[str, Any]]] = {
     level: YAML(typ="safe").load(FOLDER / f"{level}.yaml") for level in LEVELS
 }
 ALL = [(level, fixture) for level in LEVELS for fixture in FIXTURES[level]]
-# What only whole folders show; the test below has them.
+# Rules that need whole folders; a test below covers them.
 FOLDERS = {"edition-added", "edition-removed"}
 
 
@@ -27,7 +27,9 @@ def _swaps(fixture: dict[str, Any], side: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(("level", "fixture"), ALL, ids=[f["rule"] for _, f in ALL])
-def test_a_rule_says_just_this(level: str, fixture: dict[str, Any], build: Build) -> None:
+def test_fixture_of_a_rule_has_exactly_its_findings(
+    level: str, fixture: dict[str, Any], build: Build
+) -> None:
     old, new = (
         build(_swaps(fixture, side), fixture.get("file", "base")) for side in ("before", "after")
     )
@@ -42,26 +44,26 @@ def test_every_rule_has_its_fixture() -> None:
         assert RULES[fixture["rule"]].level == level
 
 
-def test_editions_that_come_and_go(build: Build) -> None:
+def test_added_and_removed_editions_are_findings(build: Build) -> None:
     edition = build()
     [gone] = diff_all({"small": edition}, {})
     [came] = diff_all({}, {"small": edition})
     assert (gone.rule, gone.level, gone.message) == (
         "edition-removed",
         "api",
-        "the edition small went",
+        "the edition small was removed",
     )
     assert (came.rule, came.level, came.where) == ("edition-added", "addition", "small")
 
 
-def test_what_the_link_says_is_said_once(build: Build) -> None:
+def test_changed_deadline_of_the_transport_is_reported_once(build: Build) -> None:
     found = diff(build(), build([("deadline_ms: 500", "deadline_ms: 900")]))
     assert [one.where for one in found] == ["small/frame"]
 
 
-def test_what_a_type_says_is_not_said_of_its_users(build: Build) -> None:
-    """But what a user narrows for itself is."""
-    narrowed = ("{name: angle, is: angle}", "{name: angle, is: angle, range: [-90, 90]}")
+def test_finding_of_a_type_is_not_repeated_for_its_fields(build: Build) -> None:
+    """A range that a field narrows itself is a separate finding."""
+    narrowed = ("{name: angle, type: angle}", "{name: angle, type: angle, range: [-90, 90]}")
     found = diff(build(), build([("range: [-180, 180]", "range: [-120, 120]"), narrowed]))
     assert [one.where for one in found] == [
         "small/types/angle",

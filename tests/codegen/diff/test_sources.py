@@ -1,4 +1,4 @@
-"""OLD and NEW as people name them: files, folders, revisions of real repositories."""
+"""OLD and NEW may be files, folders, or revisions of real repositories."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def put(folder: Path, text: str, name: str = "small") -> Path:
 
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository with two revisions of a spec, v1 and v2, as the current folder."""
+    """Change to a repository with two revisions of a spec, v1 and v2."""
     folder = tmp_path / "repository"
     folder.mkdir()
     git(folder, "init", "--initial-branch=main")
@@ -45,26 +45,26 @@ def rules(old: str, new: str) -> list[str]:
     return [one.rule for one in diff_all(*paired(read(old), read(new)))]
 
 
-def test_revisions_of_the_repository_here(repository: Path) -> None:
+def test_diff_compares_revisions_of_the_repository(repository: Path) -> None:
     assert rules("v1", "v2") == ["id-changed"]
     assert rules("v2", "HEAD") == []
     assert rules("HEAD~1", "main") == ["id-changed"]
 
 
-def test_a_revision_against_what_is_not_committed(repository: Path) -> None:
+def test_diff_compares_a_revision_with_uncommitted_files(repository: Path) -> None:
     path = put(repository, BASE.replace("joints: 2", "joints: 3"))
     assert rules("v1", ".") == ["joints-changed"]
     assert rules("v1", str(path)) == ["joints-changed"]
     assert rules(str(path), "v1") == ["joints-changed"]
 
 
-def test_editions_of_folders_that_come_and_go(repository: Path) -> None:
+def test_diff_of_folders_reports_added_and_removed_editions(repository: Path) -> None:
     put(repository, BASE.replace("edition: small", "edition: other"), "other")
     assert rules("v2", ".") == ["edition-added"]
     assert rules(".", "v2") == ["edition-removed"]
 
 
-def test_from_a_folder_inside_the_repository(
+def test_diff_of_revisions_works_in_a_subfolder_of_the_repository(
     repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     inside = repository / "inside"
@@ -78,37 +78,41 @@ def test_from_a_folder_inside_the_repository(
 
 
 @pytest.mark.parametrize("word", ["v3", "--help", "-v", "v1..v2", "nowhere/spec.yaml", ""])
-def test_what_is_nothing_is_refused(repository: Path, word: str) -> None:
-    with pytest.raises(SourceError, match="is no file, no folder and no git revision"):
+def test_unknown_source_is_an_error(repository: Path, word: str) -> None:
+    with pytest.raises(SourceError, match="is not a file, a folder or a git revision"):
         read(word) if word else read("\t")
 
 
-def test_a_folder_without_a_spec_is_refused(repository: Path) -> None:
+def test_comparing_a_folder_without_a_spec_fails(repository: Path) -> None:
     (repository / "empty").mkdir()
-    with pytest.raises(SourceError, match="the folder empty holds no spec/editions"):
+    with pytest.raises(SourceError, match="the folder empty contains no spec/editions"):
         read("empty")
 
 
-def test_a_file_without_its_match_is_refused(repository: Path) -> None:
+def test_comparing_a_file_without_a_matching_edition_fails(repository: Path) -> None:
     path = put(repository, BASE.replace("edition: small", "edition: other"), "other")
     with pytest.raises(SourceError, match="there is no edition other in v1"):
         paired(read(str(path)), read("v1"))
 
 
-def test_no_repository_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_diff_outside_a_repository_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SourceError, match="no git revision"):
+    with pytest.raises(SourceError, match="is not a file, a folder or a git revision"):
         read("HEAD")
 
 
-def test_no_git_is_told(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_diff_reports_that_git_is_missing(
+    repository: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("PATH", str(repository))
     with pytest.raises(SourceError, match="git is not installed"):
         read("v1")
 
 
-def test_a_bad_spec_is_told_with_its_revision(repository: Path) -> None:
+def test_problem_of_a_compared_spec_is_reported_with_its_revision(repository: Path) -> None:
     put(repository, BASE.replace("safety: motion", "safety: moton"))
     git(repository, "commit", "-am", "bad")
     with pytest.raises(SpecError, match=r"HEAD:spec/editions/small\.yaml:80:17: unknown-word: "):

@@ -1,4 +1,4 @@
-"""Ctrl-C at any place of a run: the arm stands, and what was set is set back."""
+"""After Ctrl-C anywhere in a run, the arm is at rest and its settings are restored."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from itertools import count
 import pytest
 
 from cobotwire import editions
-from cobotwire.conformance.device import Line, Tester
-from cobotwire.sim import SimulatedArm
-from cobotwire.sim.clock import SteppedClock
-from cobotwire.sim.memory import MemoryLink
-from conformance.device.testing import HELD, leave, settings_of
+from cobotwire.conformance.device import DeviceConnection, Tester
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.memory import MemoryTransport
+from conformance.device.testing import HELD, permissions, settings_of
 
 TABLE = editions.load("mycobot").TABLE
-ALLOWED = leave("setting", "persistent-write", "power", "motion")
-# A joint that is stopped needs a moment to stand, in seconds.
+ALLOWED = permissions("setting", "persistent-write", "power", "motion")
+# A joint that is stopped needs a moment to come to rest, in seconds.
 SLOWS_DOWN = 0.5
 
 
-class CutShort(MemoryLink):
-    """A link on which the user presses Ctrl-C instead of some writes."""
+class CutShort(MemoryTransport):
+    """A transport that raises KeyboardInterrupt in place of some writes."""
 
     def __init__(self, arm: SimulatedArm, clock: SteppedClock, cuts: frozenset[int]) -> None:
         super().__init__(arm, clock)
@@ -34,53 +34,53 @@ class CutShort(MemoryLink):
 
     @property
     def written(self) -> int:
-        """How many writes there were until now; counts as one."""
+        """The number of writes so far; reading it counts as a write."""
         return next(self._numbers)
 
 
 def _run(*cuts: int) -> tuple[SimulatedArm, CutShort, Tester]:
     clock = SteppedClock()
     arm = SimulatedArm(TABLE, clock=clock)
-    link = CutShort(arm, clock, frozenset(cuts))
-    tester = Tester(Line(link, clock), TABLE, leave=ALLOWED)
+    transport = CutShort(arm, clock, frozenset(cuts))
+    tester = Tester(DeviceConnection(transport, clock), TABLE, permissions=ALLOWED)
     if cuts:
         with pytest.raises(KeyboardInterrupt):
             tester.run()
     else:
         tester.run()
-    return arm, link, tester
+    return arm, transport, tester
 
 
 @pytest.fixture(scope="module")
-def whole() -> int:
-    _, link, tester = _run()
+def writes() -> int:
+    _, transport, tester = _run()
     assert tester.report.finished
-    return link.written
+    return transport.written
 
 
-def _is_as_before(arm: SimulatedArm, link: CutShort) -> None:
-    link.clock.sleep(SLOWS_DOWN)
-    assert not arm.state.angles.moving(link.clock())
+def _is_as_before(arm: SimulatedArm, transport: CutShort) -> None:
+    transport.clock.sleep(SLOWS_DOWN)
+    assert not arm.state.angles.moving(transport.clock())
     assert settings_of(arm, but=HELD) == settings_of(SimulatedArm(TABLE), but=HELD)
 
 
 @pytest.mark.parametrize("share", [0.05, 0.2, 0.35, 0.5, 0.62, 0.71, 0.8, 0.86, 0.9, 0.95, 0.99])
-def test_anywhere(whole: int, share: float) -> None:
-    arm, link, tester = _run(int(whole * share))
-    _is_as_before(arm, link)
+def test_interrupt_anywhere_restores_the_arm(writes: int, share: float) -> None:
+    arm, transport, tester = _run(int(writes * share))
+    _is_as_before(arm, transport)
     assert not tester.report.finished
     assert tester.report.results
 
 
-def test_on_the_way_back_at_the_end(whole: int) -> None:
-    # The last writes ask again and again whether the arm is back yet.
-    arm, link, tester = _run(whole - 8)
-    _is_as_before(arm, link)
+def test_interrupt_while_the_arm_returns_restores_the_arm(writes: int) -> None:
+    # The last writes poll whether the arm is back.
+    arm, transport, tester = _run(writes - 8)
+    _is_as_before(arm, transport)
     assert not tester.report.finished
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
-def test_again_while_it_sets_back(whole: int, share: float) -> None:
-    first = int(whole * share)
-    arm, link, _ = _run(first, first + 2)
-    _is_as_before(arm, link)
+def test_second_interrupt_while_restoring_restores_the_arm(writes: int, share: float) -> None:
+    first = int(writes * share)
+    arm, transport, _ = _run(first, first + 2)
+    _is_as_before(arm, transport)

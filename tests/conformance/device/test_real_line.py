@@ -1,4 +1,4 @@
-"""The tester over a real pseudo-terminal: the verb, Ctrl-C, the pytest plugin, the recipe."""
+"""Run the tester on a real pseudo-terminal: the verb, Ctrl-C, the pytest plugin, the recipe."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ import pytest
 import vectors
 from cobotwire import editions
 from cobotwire.conformance import Verdict
-from cobotwire.conformance.device import Leave, Line, Tester
+from cobotwire.conformance.device import DeviceConnection, Permissions, Tester
 from cobotwire.conformance.reports import from_json, to_json
-from cobotwire.sim import PtyServer, SimulatedArm
-from cobotwire.sim.kinematics import prepare
-from cobotwire.transport import open_link
+from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire.simulator.kinematics import prepare
+from cobotwire.transport import open_transport
 from conformance.device.testing import prepared
 
 TABLE = editions.load("mycobot280").TABLE
@@ -30,23 +30,23 @@ PLUGIN = ["-p", "cobotwire.conformance.pytest_plugin"]
 INSTALLED = any(point.name == "cobotwire_conform" for point in entry_points(group="pytest11"))
 
 
-def test_a_run_of_queries_takes_less_than_five_seconds() -> None:
-    # Work and waiting are counted by themselves, for this machine may be busy with other things.
+def test_run_of_queries_takes_less_than_five_seconds() -> None:
+    # Computing and waiting are counted separately, because the machine may be busy.
     prepare()
     with PtyServer(SimulatedArm(TABLE)) as server:
-        link = open_link(server.url, TABLE.baudrate)
+        transport = open_transport(server.url, TABLE.baudrate)
         began = time.process_time()
-        report = Tester(Line(link), TABLE).run()
+        report = Tester(DeviceConnection(transport), TABLE).run()
         works = time.process_time() - began
-        link.close()
+        transport.close()
     assert report.conforms, [r for r in report.results if r.verdict is Verdict.FAIL]
-    stepped = prepared(TABLE, leave=Leave())
+    stepped = prepared(TABLE, permissions=Permissions())
     stepped.run()
-    assert works + stepped.line.now < 5
+    assert works + stepped.connection.now < 5
     assert len(report.reply_seconds["get_angles"]) >= 3
 
 
-def test_ctrl_c_stops_the_arm_sets_back_and_leaves_a_report(tmp_path: Path) -> None:
+def test_ctrl_c_stops_the_arm_restores_settings_and_writes_a_report(tmp_path: Path) -> None:
     arm = SimulatedArm(TABLE)
     file = tmp_path / "report.json"
     options = ["--allow", "motion,power,persistent-write", "--max-speed", "1"]
@@ -59,9 +59,9 @@ def test_ctrl_c_stops_the_arm_sets_back_and_leaves_a_report(tmp_path: Path) -> N
             time.sleep(0.05)
         assert arm.state.angles.moving(time.monotonic())
         run.send_signal(signal.SIGINT)
-        _, told = run.communicate(timeout=60)
+        _, output = run.communicate(timeout=60)
         assert not arm.state.angles.moving(time.monotonic())
-    assert "stopped" in told
+    assert "stopped" in output
     report = from_json(file.read_text())
     assert not report.finished
     assert report.results
@@ -73,30 +73,30 @@ def _run(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, capture_output=True, text=True, check=False, cwd=vectors.ROOT)
 
 
-def test_exit_codes() -> None:
+def test_exit_code_shows_whether_the_device_conforms() -> None:
     assert _run(*WORDS, "--simulated").returncode == 0
     assert _run(*WORDS, "/dev/no-such-port").returncode == 2
     refused = _run(*WORDS, "--simulated", "--allow", "motion")
     assert refused.returncode == 2
     assert "max_speed" in refused.stderr
-    # The document's edition asks what today's firmware does not know.
+    # The document's edition has commands that today's firmware lacks.
     other = [*VERB, "--edition", "mycobot", "conform", "device"]
     with PtyServer(SimulatedArm(TABLE)) as server:
         assert _run(*other, server.url).returncode == 1
 
 
-def test_a_report_goes_through_json_unharmed() -> None:
+def test_report_of_a_step_survives_json() -> None:
     with PtyServer(SimulatedArm(TABLE)) as server:
-        link = open_link(server.url, TABLE.baudrate)
-        tester = Tester(Line(link), TABLE)
+        transport = open_transport(server.url, TABLE.baudrate)
+        tester = Tester(DeviceConnection(transport), TABLE)
         tester.report.results += tester.results(next(tester.steps()))
-        link.close()
+        transport.close()
     again = from_json(to_json(tester.report))
     assert to_json(again) == to_json(tester.report)
     assert again.results[0].verdict is Verdict.PASS
 
 
-def test_the_plugin_says_that_there_is_no_device(tmp_path: Path) -> None:
+def test_plugin_without_a_device_is_a_usage_error(tmp_path: Path) -> None:
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     done = _pytest(tmp_path, str(tmp_path / "ttyNONE"))
     assert done.returncode == pytest.ExitCode.USAGE_ERROR
@@ -104,7 +104,7 @@ def test_the_plugin_says_that_there_is_no_device(tmp_path: Path) -> None:
     assert "ttyNONE: cannot be opened" in done.stderr
 
 
-def test_the_plugin_fails_where_the_device_does(tmp_path: Path) -> None:
+def test_plugin_fails_the_test_cases_that_the_device_fails(tmp_path: Path) -> None:
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     mycobot = editions.load("mycobot").TABLE
     with PtyServer(SimulatedArm(mycobot)) as server:
@@ -124,9 +124,9 @@ def _pytest(folder: Path, url: str, *words: str) -> subprocess.CompletedProcess[
     )
 
 
-# The first is the verb, the second makes a test of each rule and command.
+# The first command runs the verb; the second makes a test of each test case and command.
 @pytest.mark.parametrize("number", range(2))
-def test_the_commands_of_the_recipe_work(number: int, tmp_path: Path) -> None:
+def test_commands_of_the_recipe_work(number: int, tmp_path: Path) -> None:
     page = (vectors.ROOT / "docs" / "conformance.md").read_text()
     recipe = page.split("```yaml", 1)[1].split("```", 1)[0]
     commands = [line.split("run: ", 1)[1] for line in recipe.splitlines() if "run: " in line]

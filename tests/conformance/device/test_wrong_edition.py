@@ -1,19 +1,19 @@
-"""A wrong edition against the right arm fails, and says which field and which two values."""
+"""A wrong edition fails on a correct arm, and the failure names the field and both values."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from cobotwire import editions
-from cobotwire.table import Case, Command, Layout, Table
+from cobotwire.protocol.table import Case, Command, Table, Variant
 from conformance.device.testing import bad, prepared
 
 TABLE = editions.load("mycobot280").TABLE
 
 
 def _ten_times_finer(command: Command, field: str) -> Command:
-    def form(layout: Layout) -> Layout:
-        return Layout(
+    def finer(variant: Variant) -> Variant:
+        return Variant(
             tuple(
                 replace(
                     f,
@@ -24,11 +24,11 @@ def _ten_times_finer(command: Command, field: str) -> Command:
                 )
                 if f.name == field
                 else f
-                for f in layout.fields
+                for f in variant.fields
             )
         )
 
-    return replace(command, reply=tuple(map(form, command.reply)))
+    return replace(command, reply=tuple(map(finer, command.reply)))
 
 
 def _wrong(name: str, field: str) -> Table:
@@ -38,18 +38,18 @@ def _wrong(name: str, field: str) -> Table:
     )
 
 
-def test_one_scale_of_a_reply_is_told_with_the_field_and_both_values() -> None:
+def test_wrong_scale_of_a_reply_fails_with_the_field_and_both_values() -> None:
     report = prepared(_wrong("get_joint_min_angle", "angle"), device=TABLE).run()
-    [found] = [r for r in bad(report) if (r.rule, r.command) == ("read-back", "set_joint_min")]
+    [found] = [r for r in bad(report) if (r.case, r.command) == ("read-back", "set_joint_min")]
     assert "angle (degree): set -" in found.reason
     wanted, got = (
-        float(word.split()[-1]) for word in found.reason.split(" (and")[0].split(":")[1].split(",")
+        float(word.split()[-1]) for word in found.reason.rsplit(" (", 1)[0].split(":")[1].split(",")
     )
     assert got == wanted / 10
 
 
-def test_a_scale_that_nothing_sets_shows_against_another_query() -> None:
+def test_wrong_scale_that_nothing_sets_disagrees_with_another_query() -> None:
     report = prepared(_wrong("get_angles", "angles"), device=TABLE).run()
-    found = [r.reason for r in bad(report) if r.rule == "agrees" and r.command == "get_encoders"]
-    assert "get_angles says angles.j1 =" in found[0]
+    found = [r.reason for r in bad(report) if r.case == "agrees" and r.command == "get_encoders"]
+    assert "get_angles reports angles.j1 =" in found[0]
     assert "encoders.j1 is" in found[0]

@@ -1,45 +1,45 @@
-"""A whole run of the tester on a peer in memory, in stepped time."""
+"""Run the tester on a peer in memory, in stepped time."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 
-from cobotwire.conformance import Report, Result, Verdict
-from cobotwire.conformance.device import EVERYTHING, Leave, Line, Tester
-from cobotwire.sim import SimulatedArm
-from cobotwire.sim.clock import SteppedClock
-from cobotwire.sim.memory import MemoryLink
-from cobotwire.sim.peer import Peer
-from cobotwire.table import Table
+from cobotwire.conformance import Report, Result
+from cobotwire.conformance.device import ALL_PERMISSIONS, DeviceConnection, Permissions, Tester
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.memory import MemoryTransport
+from cobotwire.simulator.peer import Peer
 
 Wrap = Callable[[SimulatedArm], Peer]
 
 
-def leave(*classes: str, joints: int = 6) -> Leave:
-    """Leave for the classes, with a modest workspace where motion is among them."""
+def permissions(*classes: str, joints: int = 6) -> Permissions:
+    """Return permissions, with a small workspace if motion is among them."""
     space = {joint: (-60.0, 60.0) for joint in range(1, joints + 1)}
-    return Leave.of(classes, joints=joints, max_speed=60, workspace=space)
+    return Permissions.of(classes, joints=joints, max_speed=60, workspace=space)
 
 
 def prepared(
     table: Table, wrap: Wrap = lambda arm: arm, *, device: Table | None = None, **options: object
 ) -> Tester:
-    """A tester for an edition; the arm speaks that of ``device``, and is wrapped."""
+    """Return a tester for an edition; the arm has the edition of ``device``, and is wrapped."""
     clock = SteppedClock()
     peer = wrap(SimulatedArm(device or table, clock=clock))
-    allowed = options.pop("leave", leave(*EVERYTHING))
-    line = Line(MemoryLink(peer, clock), clock)
-    return Tester(line, table, leave=allowed, **options)  # type: ignore[arg-type]  # as they come
+    allowed = options.pop("permissions", permissions(*ALL_PERMISSIONS))
+    line = DeviceConnection(MemoryTransport(peer, clock), clock)
+    return Tester(line, table, permissions=allowed, **options)  # type: ignore[arg-type]  # as they come
 
 
 def bad(report: Report) -> list[Result]:
-    """What failed."""
-    wrong = (Verdict.FAIL, Verdict.UNSTABLE)
-    return [result for result in report.results if result.verdict in wrong]
+    """Return the failures."""
+    return report.failures
 
 
 class Altered:
-    """A peer whose answers go through a function: request, answer, number of the request."""
+    """A peer with replies changed by a function of request, reply, number of the request."""
 
     def __init__(self, peer: Peer, alter: Callable[[bytes, bytes, int], bytes]) -> None:
         self._peer = peer
@@ -58,12 +58,12 @@ class Altered:
         return self._peer.flush()
 
 
-# What a run that was cut short leaves as it is: an arm without power would fall.
+# An interrupted run does not restore the power, since an arm without power would fall.
 HELD = ("powered", "stopped")
 
 
-def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> str:
-    """All that can be set, as one text; ``but`` leaves some of it out."""
+def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> object:
+    """Return a copy of everything that can be set, except ``but``."""
     state = arm.state
     every = ("powered", "free", "stopped", "paused", "fresh_mode", "speed", "reference_frame")
     names = [name for name in every if name not in but]
@@ -72,4 +72,4 @@ def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> str:
     limits = (state.minimum, state.maximum)
     both = (state.pins, state.basic_pins)
     high = [sorted(pin for pin, high in pins.items() if high) for pins in both]
-    return repr((plain, rows, limits, high))
+    return deepcopy((plain, rows, limits, high))

@@ -1,4 +1,4 @@
-"""``cobotwire conform compare``, and the report files of a run, as a user has them."""
+"""``cobotwire conform compare``, and the report files of a run."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _run(*words: str) -> tuple[int, str]:
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a run's report in every form."""
+    """Return the folder with a run's report in every form."""
     folder = tmp_path_factory.mktemp("reports")
     files = [f"--{form}={folder / f'report.{form}'}" for form in ("json", "html", "junit")]
     status, _ = _run("conform", "device", "--simulated", *files)
@@ -29,7 +29,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_a_run_writes_every_form(written: Path) -> None:
+def test_run_writes_every_form_of_its_report(written: Path) -> None:
     report = from_json((written / "report.json").read_text())
     assert report.finished
     assert report.conforms
@@ -41,16 +41,16 @@ def test_a_run_writes_every_form(written: Path) -> None:
     assert suites.get("name") == "cobotwire conform device"
 
 
-def test_nothing_worse_ends_with_0(written: Path) -> None:
+def test_equal_reports_end_with_0(written: Path) -> None:
     report = str(written / "report.json")
     assert _run("conform", "compare", report, report) == (0, "No verdict differs.\n")
 
 
-def test_a_new_failure_ends_with_1_and_is_shown(written: Path, tmp_path: Path) -> None:
+def test_new_failure_ends_with_1_and_is_shown(written: Path, tmp_path: Path) -> None:
     report = from_json((written / "report.json").read_text())
     place = next(i for i, r in enumerate(report.results) if r.verdict is Verdict.PASS)
     old = report.results[place]
-    changed = type(old)(old.rule, old.command, Verdict.FAIL, "it went wrong")
+    changed = type(old)(old.case, old.command, Verdict.FAIL, "it went wrong")
     report.results[place] = changed
     worse = tmp_path / "worse.json"
     worse.write_text(to_json(report))
@@ -66,10 +66,10 @@ def test_a_new_failure_ends_with_1_and_is_shown(written: Path, tmp_path: Path) -
 
 
 @pytest.mark.parametrize("text", [None, "nonsense"])
-def test_what_cannot_be_read_ends_with_2(written: Path, tmp_path: Path, text: str | None) -> None:
+def test_unreadable_report_ends_with_2(written: Path, tmp_path: Path, text: str | None) -> None:
     path = tmp_path / "other.json"
     if text is not None:
         path.write_text(text)
-    status, told = _run("conform", "compare", str(written / "report.json"), str(path))
+    status, output = _run("conform", "compare", str(written / "report.json"), str(path))
     assert status == 2
-    assert "report" in told
+    assert "report" in output

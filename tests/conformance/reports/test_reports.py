@@ -1,4 +1,4 @@
-"""Reports: whatever a run found is in every form of its report, and nothing else is."""
+"""Every format of a report shows all results of a run, and nothing else."""
 
 from __future__ import annotations
 
@@ -9,13 +9,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cobotwire.conformance import Exchange, Report, Result, Verdict
+from cobotwire.conformance import Cause, Exchange, Report, Result, Verdict
 from cobotwire.conformance.reports import compare, from_json, to_html, to_json, to_junit
 from cobotwire.conformance.reports.matrix import GRAVEST, matrix
-from cobotwire.errors import UsageError
+from cobotwire.protocol.errors import UsageError
 
-BAD = {Verdict.FAIL, Verdict.UNSTABLE}
-# Whatever a device or a codec under test may have said stands in a reason.
+# The causes that go with each verdict.
+OUTCOMES = [
+    (Verdict.PASS, Cause.NONE),
+    (Verdict.FAIL, Cause.NONE),
+    (Verdict.FAIL, Cause.UNSTABLE),
+    (Verdict.INCONCLUSIVE, Cause.NOT_PERMITTED),
+    (Verdict.INCONCLUSIVE, Cause.NOT_SUPPORTED),
+]
+# A reason may quote anything that a device or a codec under test has sent.
 TEXT = st.text(max_size=30) | st.sampled_from(
     ["<script>alert(1)</script>", "a & b", "\x00\x1b[31m"]
 )
@@ -23,18 +30,18 @@ SECONDS = st.floats(0, 5)
 EXCHANGES = st.builds(
     Exchange,
     SECONDS.map(lambda at: round(at, 6)),
-    st.sampled_from(["sent", "heard"]),
+    st.sampled_from(["sent", "received"]),
     st.binary(max_size=20),
     TEXT,
 )
 RESULTS = st.builds(
-    Result,
-    st.sampled_from(["reply-once", "read-back", "unknown-id"]),
-    st.sampled_from(["", "get_angles", "set_color", "stop"]),
-    st.sampled_from(Verdict),
-    TEXT,
-    st.lists(EXCHANGES, max_size=3).map(tuple),
-    st.sampled_from(["", "spec/commands/motion.yaml:12"]),
+    lambda outcome, **fields: Result(verdict=outcome[0], cause=outcome[1], **fields),
+    st.sampled_from(OUTCOMES),
+    case=st.sampled_from(["reply-once", "read-back", "unknown-id"]),
+    command=st.sampled_from(["", "get_angles", "set_color", "stop"]),
+    reason=TEXT,
+    evidence=st.lists(EXCHANGES, max_size=3).map(tuple),
+    source=st.sampled_from(["", "spec/commands/motion.yaml:12"]),
 )
 TIMES = st.dictionaries(st.sampled_from(["get_angles", "stop"]), st.lists(SECONDS, max_size=5))
 REPORTS = st.builds(
@@ -52,7 +59,7 @@ REPORTS = st.builds(
 
 
 class Found(HTMLParser):
-    """What a page has: ids, links, what it loads, and its text."""
+    """The ids, links, loaded resources and text of a page."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -75,32 +82,32 @@ class Found(HTMLParser):
 
 
 @given(REPORTS)
-def test_json_gives_back_the_report(report: Report) -> None:
+def test_report_survives_json(report: Report) -> None:
     assert from_json(to_json(report)) == report
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"format": "other", "version": 1}', "nonsense"])
-def test_what_is_no_report_is_refused(text: str) -> None:
+def test_text_that_is_not_a_report_is_rejected(text: str) -> None:
     with pytest.raises(UsageError, match="report"):
         from_json(text)
 
 
 @given(REPORTS)
-def test_the_page_shows_every_cell_and_result_and_loads_nothing(report: Report) -> None:
+def test_page_shows_every_cell_and_result_and_loads_nothing(report: Report) -> None:
     page = Found(to_html(report))
     cells = matrix(report)
-    assert sorted(page.ids) == sorted(f"{cell.rule}-{cell.command}" for cell in cells.values())
+    assert sorted(page.ids) == sorted(f"{cell.case}-{cell.command}" for cell in cells.values())
     assert {link.removeprefix("#") for link in page.links} == set(page.ids)
     assert page.loads == []
-    assert page.scripts == 1, "what a device says is text, never a script"
+    assert page.scripts == 1, "what a device sends is text, never a script"
     for result in report.results:
-        assert _shown(result.reason) in page.text
+        assert _shown(result.reason).strip() in page.text
         for exchange in result.evidence:
             assert report.kind == "codec" or exchange.data.hex(" ").upper() in page.text
 
 
 def _shown(text: str) -> str:
-    """A page's parser reads line ends as one, and knows no NUL."""
+    """Return a text as a page's parser reads it: with one kind of line end."""
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -112,7 +119,7 @@ def test_junit_counts_every_cell_once(report: Report) -> None:
     run = 0 if report.finished else 1
     assert sum(int(suite.get("tests", "")) for suite in suites) == len(cells) + run
     assert len(root.findall(".//testcase")) == len(cells) + run
-    bad = sum(cell.verdict in BAD for cell in cells)
+    bad = sum(cell.verdict is Verdict.FAIL for cell in cells)
     assert len(root.findall(".//failure")) == bad
     assert sum(int(suite.get("failures", "")) for suite in suites) == bad
     skipped = sum(int(suite.get("skipped", "")) for suite in suites)
@@ -121,14 +128,14 @@ def test_junit_counts_every_cell_once(report: Report) -> None:
 
 
 @given(REPORTS)
-def test_a_cell_shows_its_gravest_result(report: Report) -> None:
-    for (command, rule), cell in matrix(report).items():
-        verdicts = [r.verdict for r in report.results if (r.command, r.rule) == (command, rule)]
+def test_cell_shows_its_most_severe_result(report: Report) -> None:
+    for (command, case), cell in matrix(report).items():
+        verdicts = [r.verdict for r in report.results if (r.command, r.case) == (command, case)]
         assert cell.verdict == min(verdicts, key=GRAVEST.index)
 
 
 @given(REPORTS)
-def test_a_report_does_not_differ_from_itself(report: Report) -> None:
+def test_report_does_not_differ_from_itself(report: Report) -> None:
     found = compare(report, report)
     assert found.changes == ()
     assert found.times == ()
@@ -136,29 +143,30 @@ def test_a_report_does_not_differ_from_itself(report: Report) -> None:
 
 
 @given(REPORTS, REPORTS)
-def test_what_differs_is_told_once_each_way(one: Report, other: Report) -> None:
+def test_each_difference_is_listed_once_in_both_directions(one: Report, other: Report) -> None:
     other.kind = one.kind
     there, back = compare(one, other), compare(other, one)
     mine, theirs = matrix(one), matrix(other)
     differing = {
         place
         for place in {*mine, *theirs}
-        if place not in mine or place not in theirs or mine[place].verdict != theirs[place].verdict
+        if place not in mine or place not in theirs or mine[place].outcome != theirs[place].outcome
     }
-    assert {(change.command, change.rule) for change in there.changes} == differing
+    assert {(change.command, change.case) for change in there.changes} == differing
     assert len(there.changes) == len(back.changes) == len(differing)
-    fixed = {(c.command, c.rule) for c in there.changes if c.kind == "better"}
-    assert fixed <= {(c.command, c.rule) for c in back.changes if c.kind == "worse"}
+    fixed = {(c.command, c.case) for c in there.changes if c.kind == "better"}
+    assert fixed <= {(c.command, c.case) for c in back.changes if c.kind == "worse"}
 
 
 @given(REPORTS, REPORTS)
-def test_a_new_failure_is_always_worse(one: Report, other: Report) -> None:
+def test_new_failure_or_lost_pass_is_worse(one: Report, other: Report) -> None:
     other.kind = one.kind
     mine, theirs = matrix(one), matrix(other)
     newly = [
         place
         for place, cell in theirs.items()
-        if cell.verdict in BAD and (place not in mine or mine[place].verdict not in BAD)
+        if cell.verdict is Verdict.FAIL
+        and (place not in mine or mine[place].verdict is not Verdict.FAIL)
     ]
     lost = [
         place
@@ -169,7 +177,7 @@ def test_a_new_failure_is_always_worse(one: Report, other: Report) -> None:
     assert compare(one, other).worse == bool(newly or lost)
 
 
-def test_reports_of_other_kinds_are_not_compared() -> None:
+def test_reports_of_different_kinds_are_not_compared() -> None:
     one, other = Report("device", "mycobot", "a", ""), Report("codec", "mycobot", "b", "")
     with pytest.raises(UsageError, match="kind"):
         compare(one, other)

@@ -1,7 +1,7 @@
-"""The C code behind the codec protocol: ``cobotwire conform codec -- python -m targets.c.adapter``.
+"""Offer the C code as a codec: ``cobotwire conform codec -- python -m targets.c.adapter``.
 
-Names and JSON are done here, since C has neither; every frame, value and event is the C code's. The
-greeting says the edition.
+This adapter handles names and JSON, since C has neither. The C code computes every frame, value
+and event. The first question names the edition.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CAN = [
 
 
 class Adapter:
-    """Answers the questions about one edition."""
+    """Answer the questions about one edition."""
 
     def __init__(self, name: str) -> None:
         edition = vectors.edition(name)
@@ -35,7 +35,7 @@ class Adapter:
         self._name = name
 
     def ask(self, question: Json) -> Json:
-        """The answer to one question."""
+        """Return the answer to one question."""
         does = {
             "hello": self._hello,
             "encode": self._encode,
@@ -47,7 +47,7 @@ class Adapter:
     def _hello(self, question: Json) -> Json:
         return {"protocol": 1, "edition": self._name, "name": "cobotwire's C", "can": CAN}
 
-    def _forms(self, question: Json) -> Iterator[tuple[int, Message]]:
+    def _variants(self, question: Json) -> Iterator[tuple[int, Message]]:
         for index, message in enumerate(self._messages):
             own = (message.command.name, message.direction)
             if own == (question["command"], question["direction"]):
@@ -55,7 +55,7 @@ class Adapter:
 
     def _encode(self, question: Json) -> Json:
         given = question["fields"]
-        for index, message in self._forms(question):
+        for index, message in self._variants(question):
             if {member.field.name for member in message.members} != set(given):
                 continue
             numbers = _numbers(message, given)
@@ -69,10 +69,10 @@ class Adapter:
         if question.get("command") is None:
             found = self._peer.read(question["direction"], data)
         else:
-            tries = [self._peer.decode(index, data) for index, _ in self._forms(question)]
-            # The form of another length says nothing of a frame that has the right one.
+            outcomes = [self._peer.decode(index, data) for index, _ in self._variants(question)]
+            # Another variant may have the right length: its reason goes before bad-length.
             rank = {"ok": 0, "bad-length": 2}
-            found = min(tries, key=lambda t: 0 if isinstance(t, Read) else rank.get(t.status, 1))
+            found = min(outcomes, key=lambda o: 0 if isinstance(o, Read) else rank.get(o.status, 1))
         if isinstance(found, Outcome):
             return {"error": found.status, "offset": found.offset}
         message = self._messages[found.message]
@@ -85,7 +85,7 @@ class Adapter:
 
 
 def _numbers(message: Message, given: Json) -> list[float] | None:
-    """What is given as the numbers of a struct; nothing, where a struct cannot say it."""
+    """Return the given fields as the numbers of a struct; None if the struct cannot hold them."""
     numbers: list[float] = []
     for member in message.members:
         value = given[member.field.name]
@@ -96,14 +96,14 @@ def _numbers(message: Message, given: Json) -> list[float] | None:
         parts = value if isinstance(value, list) else [value]
         if len(parts) != member.count or isinstance(value, list) != _many(member):
             return None
-        if not all(map(_sayable, parts, _scaled(member))):
+        if not all(map(_fits_struct, parts, _scaled(member))):
             return None
         numbers += parts
     return numbers
 
 
-def _sayable(value: object, scaled: bool) -> bool:
-    """A number; a whole one that a struct can hold, where there is no scale."""
+def _fits_struct(value: object, scaled: bool) -> bool:
+    """Return whether a struct can hold the value: without a scale, only integers of 32 bits."""
     if not isinstance(value, int | float):
         return False
     return scaled or (value == value // 1 and abs(value) < 2**31)
@@ -114,21 +114,21 @@ def _many(member: Member) -> bool:
 
 
 def _scaled(member: Member) -> list[bool]:
-    """Which of a member's numbers have a scale."""
+    """Return for each number of a member whether it has a scale."""
     type = member.field.type
     parts = [part for _, part in type.items] if isinstance(type, Value) else [type]
     return [isinstance(part, Quantity) and part.scale != 1 for part in parts]
 
 
 def _fields(message: Message, found: Read) -> Json:
-    told: Json = {}
+    fields: Json = {}
     for member in message.members:
         if member.field.const is not None:
-            told[member.field.name] = member.field.const
+            fields[member.field.name] = member.field.const
             continue
         numbers = found.values[member.index : member.index + member.count]
-        told[member.field.name] = numbers if _many(member) else numbers[0]
-    return told
+        fields[member.field.name] = numbers if _many(member) else numbers[0]
+    return fields
 
 
 def _event(event: Event) -> Json:
@@ -138,7 +138,7 @@ def _event(event: Event) -> Json:
 
 
 def main() -> None:
-    """Answer until there are no more questions."""
+    """Answer questions until the input ends."""
     adapter = None
     for line in sys.stdin:
         question = json.loads(line)

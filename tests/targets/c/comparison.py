@@ -17,10 +17,10 @@ from vectors import edition as edition_of
 
 
 def compare(edition: str) -> Comparison:
-    """The vectors of an edition, on the first compiler that is there.
+    """Run the vectors of an edition, with the first compiler that is installed.
 
     Raises:
-        ToolMissing: there is none.
+        ToolMissing: No compiler is installed.
     """
     compiler = next(filter(shutil.which, COMPILERS), None)
     if compiler is None:
@@ -35,13 +35,13 @@ def judged(
     flags: tuple[str, ...] = SANITIZERS,
     name: str = "",
 ) -> Comparison:
-    """A document's vectors on the C code of an edition, which may be a changed one."""
+    """Run a document's vectors on the C code of an edition, which may be a changed one."""
     with CPeer(program(edition, compiler, flags, name)) as peer:
         return Judge(document, edition, peer).all()
 
 
 class Judge:
-    """What a document says beside what the C code does; text outside frames is not its affair."""
+    """Compare a document with what the C code does; text outside frames is not compared."""
 
     def __init__(self, document: Record, edition: Edition, peer: CPeer) -> None:
         self._document = document
@@ -54,10 +54,13 @@ class Judge:
         }
 
     def all(self) -> Comparison:
-        """Every message, refused value, malformed frame and stream."""
+        """Compare every message, rejected value, malformed frame and stream."""
         parts = {
             "messages": (self._message, self._document["messages"]),
-            "refused": (self._refused, [r for r in self._document["refused"] if self._sayable(r)]),
+            "refused": (
+                self._refused,
+                [r for r in self._document["refused"] if self._fits_struct(r)],
+            ),
             "malformed": (self._malformed, self._document["malformed"]),
             "streams": (self._stream, self._document["streams"]),
         }
@@ -72,10 +75,10 @@ class Judge:
         return Comparison(count, fields, differences)
 
     def _place(self, record: Record) -> int:
-        return self._index[record["command"], record["direction"], record["form"]]
+        return self._index[record["command"], record["direction"], record["variant"]]
 
-    def _sayable(self, record: Record) -> bool:
-        """Whether the struct can hold it: not a constant, and not what is too large for it."""
+    def _fits_struct(self, record: Record) -> bool:
+        """Return whether the struct can hold the rejected value: no constant, and not too large."""
         found = self._messages[self._place(record)].members
         field = next(field for field in record["fields"] if field["name"] == record["field"])
         fits = -(2 ** (self._bits - 1)) <= field["whole"][record["element"]] < 2 ** (self._bits - 1)
@@ -103,8 +106,8 @@ class Judge:
 
     def _malformed(self, record: Record) -> Iterator[str]:
         found = self._peer.read(record["direction"], bytes.fromhex(record["bytes"]))
-        said = (found.status, found.offset) if isinstance(found, Outcome) else found
-        yield from _unequal("read", said, (record["reason"], record["offset"]))
+        outcome = (found.status, found.offset) if isinstance(found, Outcome) else found
+        yield from _unequal("read", outcome, (record["reason"], record["offset"]))
 
     def _stream(self, record: Record) -> Iterator[str]:
         data = bytes.fromhex(record["bytes"])
@@ -116,19 +119,19 @@ class Judge:
 
     @property
     def _at(self) -> int:
-        """Where a frame's command id stands."""
+        """Return the offset of the command id in a frame."""
         frame = self._document["frame"]
         return len(bytes.fromhex(frame["header"])) + bool(frame["addresses"]) + 1
 
     def _given(self, record: Record, key: str) -> list[Any]:
-        """The numbers of a record as they stand in the message's struct."""
+        """Return the numbers of a record in the order of the message's struct."""
         given = {field["name"]: field[key] for field in record["fields"]}
         members = self._messages[self._place(record)].fields
         return [number for member in members for number in given[member.field.name]]
 
 
 def joined(events: list[Event]) -> list[Event]:
-    """Events with adjacent noise of one reason as one span; of frames the reason is ``ok``."""
+    """Join adjacent spans of noise that have the same reason; a frame has the reason ``ok``."""
     found: list[Event] = []
     for event in events:
         if found and event.reason != "ok" and found[-1].reason == event.reason:
@@ -140,8 +143,8 @@ def joined(events: list[Event]) -> list[Event]:
 
 def _as_written(event: Event, id_at: int) -> Record:
     place = {"offset": event.offset, "size": len(event.data)}
-    told = {"frame": event.data[id_at]} if event.reason == "ok" else {"noise": event.reason}
-    return place | told
+    kind = {"frame": event.data[id_at]} if event.reason == "ok" else {"noise": event.reason}
+    return place | kind
 
 
 def _unequal(what: str, found: object, right: object) -> Iterator[str]:

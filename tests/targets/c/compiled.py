@@ -1,4 +1,4 @@
-"""Editions compiled to programs that a test can talk to; the reason where no compiler is."""
+"""Compile editions to programs that a test can talk to, or say which tool is missing."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recove
 
 @lru_cache
 def missing(*tools: str) -> str:
-    """Why a test that needs these programs cannot run here; nothing, where it can."""
+    """Return why a test that needs these programs cannot run here; empty if it can."""
     absent = [tool for tool in tools if shutil.which(tool) is None]
     return f"needs {', '.join(absent)}: not installed" if absent else ""
 
 
 @lru_cache
 def scratch() -> Path:
-    """A folder that goes when the tests end."""
+    """Return a folder that is removed when the tests end."""
     folder = Path(tempfile.mkdtemp(prefix="cobotwire-c-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
 
 
 def sources(edition: Edition, name: str = "") -> Path:
-    """A folder with the edition's header and source."""
+    """Return a folder with the edition's header and source."""
     folder = scratch() / (name or edition.name)
     folder.mkdir(exist_ok=True)
     for path, text in render_c(edition).items():
@@ -48,7 +48,7 @@ def sources(edition: Edition, name: str = "") -> Path:
 def program(
     edition: Edition, compiler: str = "gcc", flags: tuple[str, ...] = SANITIZERS, name: str = ""
 ) -> Path:
-    """The harness with the edition's code in it, compiled once; ``name``: of a changed edition."""
+    """Compile the harness with the edition's code, once; ``name`` names a changed edition."""
     folder = sources(edition, name)
     (folder / "physical.h").write_text(glue(edition))
     out = folder / f"harness-{compiler}"
@@ -61,7 +61,7 @@ def program(
 
 
 def compile_c(compiler: str, *arguments: str) -> None:
-    """Compile with every warning an error; what the compiler says is the test's failure."""
+    """Compile with every warning as an error; fail with the compiler's output."""
     command = [compiler, *WARNINGS, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stderr}"

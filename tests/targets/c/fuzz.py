@@ -1,8 +1,8 @@
-"""Random streams on the C code and on our codec, for as long as one likes; not part of the tests.
+"""Compare the C code with our codec on random streams for some seconds; not part of the tests.
 
     PYTHONPATH=tests .venv/bin/python tests/targets/c/fuzz.py 60
 
-Prints how many streams came out alike, frames and what they say; ends at the first difference.
+Prints how many streams gave the same frames and messages; ends at the first difference.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ NOISE = (b"\xfe", b"\xfe\xfe", b"\xfa", b"\xff\xff\x01\x04\x02\x38\x02\xbe", b"c
 
 
 def stream(chance: random.Random, frames: list[bytes]) -> bytes:
-    """Frames, some of them damaged, some cut, with noise between them."""
+    """Return frames, some damaged and some cut, with noise between them."""
     made = bytearray()
     for _ in range(chance.randrange(1, 9)):
         piece = bytearray(chance.choice(frames))
@@ -44,7 +44,7 @@ def stream(chance: random.Random, frames: list[bytes]) -> bytes:
 
 
 def differs(chance: random.Random, frames: list[bytes], beside: Beside, peer: CPeer) -> str:
-    """One stream, cut and flushed anywhere; nothing, if all is alike."""
+    """Frame one stream with both, cut and flushed anywhere; return the difference or nothing."""
     data, listening = stream(chance, frames), chance.choice(LISTENING)
     cuts = sorted(chance.randrange(len(data) + 1) for _ in range(chance.randrange(5)))
     chunks = [data[a:b] for a, b in zip([0, *cuts], [*cuts, len(data)])]
@@ -54,19 +54,19 @@ def differs(chance: random.Random, frames: list[bytes], beside: Beside, peer: CP
     for chunk, flush in zip(chunks, flushes):
         right += framer.feed(chunk) + (framer.flush() if flush else [])
     found, pending = peer.events(listening, list(zip(chunks, flushes)))
-    told = f"{data.hex(' ')}, {listening}, cut at {cuts}, flushed {flushes}"
+    summary = f"{data.hex(' ')}, {listening}, cut at {cuts}, flushed {flushes}"
     if joined(found) != joined(list(events(right))) or pending != framer.pending:
-        return f"framed otherwise: {told}"
+        return f"framed otherwise: {summary}"
     for event in right:
         if not isinstance(event, Frame):
             continue
         if beside.read_in_c(peer.read(listening, event.data)) != beside.event(event):
-            return f"read otherwise: {event.data.hex(' ')} of {told}"
+            return f"read otherwise: {event.data.hex(' ')} of {summary}"
     return ""
 
 
 def main() -> int:
-    """Take turns with the editions until the time is over."""
+    """Take the editions in turn until the time is over."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 60.0
     chance = random.Random()
     for edition in sorted(TABLES):

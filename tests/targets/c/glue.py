@@ -1,4 +1,4 @@
-"""The harness's part that is made for an edition: typed calls, values by the header's helpers."""
+"""Generate the harness's part for one edition: typed calls and the header's value helpers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cobotwire_codegen.targets.c.messages import Member, Message, messages
 
 
 def glue(edition: Edition) -> str:
-    """``physical.h``: what knows the edition's structs by name."""
+    """Return ``physical.h``, the part that uses the edition's structs by name."""
     p, found = edition.name, messages(edition)
     most = max(message.count for message in found)
     address = "address, " if edition.frame.addresses else ""
@@ -71,26 +71,26 @@ def _to_physical(p: str, message: Message) -> Iterator[str]:
 
 
 def _from_physical(p: str, message: Message) -> Iterator[str]:
-    ordered = sorted(_elements(message), key=lambda element: bool(element[0].field.by))
+    ordered = sorted(_elements(message), key=lambda element: bool(element[0].field.selector))
     for member, when, place, index, type in ordered:
         where = f"any->{message.symbol}.{place}"
         helper = _helper(p, type, "from")
-        # What is no number of steps at all is told by the largest one, which no field allows.
-        told = f"if (!{helper}(in[{index}], &{where})) {where} = INT32_MAX;"
+        # The largest number, which no field allows, marks a value that no number of steps holds.
+        scaled = f"if (!{helper}(in[{index}], &{where})) {where} = INT32_MAX;"
         plain = f"{where} = ({p}_whole_t)in[{index}];"
-        yield f"{_condition(message, member, when)}{{ {told if helper else plain} }}"
+        yield f"{_condition(message, member, when)}{{ {scaled if helper else plain} }}"
 
 
 def _condition(message: Message, member: Member, when: tuple[int, ...]) -> str:
     if not when:
         return ""
-    selector = next(other for other in message.members if other.field.name == member.field.by)
+    selector = next(other for other in message.members if other.field.name == member.field.selector)
     own = f"any->{message.symbol}.{names.member(selector.field.name)}"
     return "if (" + " || ".join(f"{own} == {value}" for value in when) + ") "
 
 
 def _elements(message: Message) -> Iterator[tuple[Member, tuple[int, ...], str, int, Type]]:
-    """Each number of a struct in each of its cases: member, when, name, place, type."""
+    """Yield each number of a struct in each of its cases: member, when, name, place, type."""
     for member in message.fields:
         own = names.member(member.field.name)
         for when, type in lower.cases(member.field):
@@ -102,7 +102,7 @@ def _elements(message: Message) -> Iterator[tuple[Member, tuple[int, ...], str, 
 
 
 def _helper(p: str, type: Type, way: str) -> str:
-    """The header's function for a scaled quantity; none where a step is one."""
+    """Return the header's function for a scaled quantity; empty if the scale is one."""
     if not isinstance(type, Quantity) or type.scale == 1:
         return ""
     return f"{p}_{type.name}_{way}_{type.unit or 'value'}"

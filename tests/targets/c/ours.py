@@ -1,4 +1,4 @@
-"""Our codec's words and the C code's, brought to the same form."""
+"""Bring the results of our codec and of the C code to the same representation."""
 
 from __future__ import annotations
 
@@ -6,19 +6,18 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import Any
 
-from cobotwire.codec.events import Message as Read
+from cobotwire.codec.events import DecodedMessage as Read
 from cobotwire.codec.interface import Codec, Event, Frame
-from cobotwire.codec.reference.decode import whole_numbers
-from cobotwire.errors import ProtocolError, UsageError
-from cobotwire.table import Direction
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import Direction
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.c.messages import messages
-from strategies import Form
+from strategies import CommandVariant
 from targets.c import peer
 
 
 class Beside:
-    """An edition's messages as the C code numbers them, beside a codec of ours."""
+    """An edition's messages as the C code numbers them, with a codec of ours to compare."""
 
     def __init__(self, edition: Edition, codec: Codec) -> None:
         self.codec = codec
@@ -27,12 +26,12 @@ class Beside:
             (m.command.name, m.direction, m.number): i for i, m in enumerate(self.messages)
         }
 
-    def number(self, form: Form) -> int:
-        """The C code's number of a form."""
-        return self.index[form.command.name, form.direction, form.number]
+    def number(self, variant: CommandVariant) -> int:
+        """Return the C code's number of a variant."""
+        return self.index[variant.command.name, variant.direction, variant.number]
 
     def flat(self, message: int, values: Sequence[Any]) -> list[float]:
-        """Values, one a field, as the numbers of a struct: constants have no place there."""
+        """Return the fields' values as the numbers of a struct, which leaves out constants."""
         return [
             float(number) if isinstance(number, float) else int(number)
             for member, value in zip(self.messages[message].members, values)
@@ -40,39 +39,41 @@ class Beside:
             if member.count
         ]
 
-    def encoded(self, form: Form, values: Sequence[Any]) -> object:
-        """The frame, or the field and the element that is refused."""
-        return _or_refusal(
-            lambda: self.codec.encode(form.command.name, form.direction, values, form=form.number),
-            form,
+    def encoded(self, variant: CommandVariant, values: Sequence[Any]) -> object:
+        """Return the frame, or the field and the element that is rejected."""
+        return _or_rejection(
+            lambda: self.codec.encode(
+                variant.command.name, variant.direction, values, variant=variant.number
+            ),
+            variant,
         )
 
-    def refused_in_c(self, found: object) -> object:
-        """A refusal of the C code as ``encoded`` tells it."""
+    def rejected_in_c(self, found: object) -> object:
+        """Return a rejection by the C code as ``encoded`` returns ours."""
         if not isinstance(found, peer.Outcome) or found.status != "bad-value":
             return found
         member = self.messages[found.message].members[found.field]
         return member.field.name, found.element
 
     def read(self, direction: Direction, data: bytes, of: str | None = None) -> object:
-        """What our codec reads, or its refusal, as ``read_in_c`` tells it."""
+        """Return what our codec reads, or its rejection, as ``read_in_c`` returns it."""
         try:
-            return self._told(self.codec.decode(direction, data, of=of), data)
+            return self._as_read(self.codec.decode(direction, data, of=of), data)
         except ProtocolError as error:
             return error.reason, error.offset, _field(error)
 
     def event(self, frame: Frame) -> object:
-        """What a frame of a framer says, told likewise."""
+        """Return the message of a framer's frame, or its rejection, as ``read`` does."""
         try:
-            return self._told(frame.message, frame.data)
+            return self._as_read(frame.message, frame.data)
         except ProtocolError as error:
             return error.reason, error.offset, _field(error)
 
-    def _told(self, found: Read, data: bytes) -> object:
-        forms = found.command.layouts(found.direction)
-        number = next(i for i, layout in enumerate(forms) if layout is found.layout)
+    def _as_read(self, found: Read, data: bytes) -> object:
+        variants = found.command.variants(found.direction)
+        number = next(i for i, variant in enumerate(variants) if variant is found.variant)
         index = self.index[found.command.name, found.direction, number]
-        wholes = whole_numbers(self.codec.table.frame, found.layout, data)
+        wholes = found.variant.unpack(self.codec.table.frame.data(data))
         return peer.Read(
             index,
             [int(whole) for whole in self.flat(index, wholes)],
@@ -80,7 +81,7 @@ class Beside:
         )
 
     def read_in_c(self, found: peer.Read | peer.Outcome) -> object:
-        """What the C code read, or its refusal: why, where, and which field of which command."""
+        """Return what the C code read, or its rejection: reason, offset, command and field."""
         if isinstance(found, peer.Read):
             return found
         name = ""
@@ -90,16 +91,16 @@ class Beside:
         return found.status, found.offset, name
 
 
-def _or_refusal(build: Callable[[], bytes], form: Form) -> object:
+def _or_rejection(build: Callable[[], bytes], variant: CommandVariant) -> object:
     try:
         return build()
     except UsageError as error:
-        return _argument(error.argument, form)
+        return _argument(error.argument, variant)
 
 
-def _argument(argument: str, form: Form) -> object:
-    for field in form.layout.fields:
-        # Each case has names of its own for the elements.
+def _argument(argument: str, variant: CommandVariant) -> object:
+    for field in variant.variant.fields:
+        # Each case names its elements itself.
         for element, number in chain.from_iterable(enumerate(c.numbers) for c in field.cases):
             part = f".{number.name}" if number.name else f"[{element}]"
             if argument == field.name + (part if field.many else ""):
@@ -108,12 +109,12 @@ def _argument(argument: str, form: Form) -> object:
 
 
 def _field(error: ProtocolError) -> str:
-    """The command and the field that a refusal names."""
-    return str(error).partition(" holds ")[0] if error.reason == "bad-value" else ""
+    """Return the command and the field that an error names."""
+    return str(error).partition(" is ")[0] if error.reason == "bad-value" else ""
 
 
 def events(found: Sequence[Event]) -> Iterator[peer.Event]:
-    """Our framer's events in the C code's words."""
+    """Yield our framer's events as events of the C code."""
     for event in found:
         reason = "ok" if isinstance(event, Frame) else event.reason
         yield peer.Event(reason, event.offset, event.data)

@@ -1,4 +1,4 @@
-"""An edition's C code in a process of its own, spoken to from Python."""
+"""Run an edition's C code in its own process, and talk to it from Python."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LISTENING = {"request": 1, "reply": 2, "both": 3}
 
 
 class Outcome(NamedTuple):
-    """What the C code said: a status, and for a refusal where."""
+    """The C code's status, and for a rejection its place."""
 
     status: str
     message: int
@@ -35,7 +35,7 @@ class Outcome(NamedTuple):
 
 
 class Read(NamedTuple):
-    """A message that was read: which, its numbers on the wire, what they stand for."""
+    """A decoded message: its index, its raw values, its physical values."""
 
     message: int
     wholes: list[int]
@@ -51,7 +51,7 @@ class Event(NamedTuple):
 
 
 class CPeer:
-    """Talks to a harness; ends with its process, and tells what the sanitizers said."""
+    """Talk to a harness in its own process; report what the sanitizers found."""
 
     def __init__(self, program: Path) -> None:
         self._process = subprocess.Popen(
@@ -70,20 +70,20 @@ class CPeer:
         self.close()
 
     def close(self) -> None:
-        """End it; a complaint of a sanitizer, a leak too, fails."""
-        _, said = self._process.communicate()
-        assert self._process.returncode == 0, said.decode()
+        """End the process; fail if a sanitizer found an error or a leak."""
+        _, errors = self._process.communicate()
+        assert self._process.returncode == 0, errors.decode()
 
     def encode(
         self, message: int, wholes: Iterable[int], address: int = 0, room: int = 300
     ) -> bytes | Outcome:
-        """Build a frame from numbers as they stand on the wire."""
+        """Build a frame from raw values."""
         return self._encode(b"w", message, list(wholes), address, room, "q")
 
     def encode_values(
         self, message: int, values: Iterable[float], address: int = 0
     ) -> bytes | Outcome:
-        """Build a frame from physical values, by the header's helpers."""
+        """Build a frame from physical values, with the header's helpers."""
         return self._encode(b"v", message, list(values), address, 300, "d")
 
     def _encode(
@@ -123,7 +123,7 @@ class CPeer:
         chunks: Sequence[tuple[bytes, bool]],
         accept_unknown: bool = False,
     ) -> tuple[list[Event], int]:
-        """Frame a stream, flushing behind the chunks that say so: the events and what waits."""
+        """Frame a stream, with a flush after the marked chunks; return events and bytes waiting."""
         found, pending = self.events_by_chunk(listening, chunks, accept_unknown)
         return [event for events in found for event in events], pending
 
@@ -133,7 +133,7 @@ class CPeer:
         chunks: Sequence[tuple[bytes, bool]],
         accept_unknown: bool = False,
     ) -> tuple[list[list[Event]], int]:
-        """The same, with the events that each chunk made certain."""
+        """Frame a stream as ``events`` does; return the events of each chunk by themselves."""
         parts = [struct.pack("=cHHH", b"f", LISTENING[listening], accept_unknown, len(chunks))]
         for data, flush in chunks:
             parts += [struct.pack("=HH", flush, len(data)), data]
@@ -146,7 +146,7 @@ class CPeer:
             yield Event(STATUS[reason], offset, self._take(size))
 
     def names(self) -> list[list[str]]:
-        """Each message's name and those of its fields."""
+        """Return each message's name and the names of its fields."""
         self._send(b"n")
         assert self._process.stdout is not None
         return [line.decode().split() for line in iter(self._process.stdout.readline, b"\n")]

@@ -1,4 +1,4 @@
-"""Random messages, values and streams: the C code does what our codec does."""
+"""The C code agrees with our codec on random messages, values and streams."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from hypothesis import strategies as st
 
 import vectors
 from cobotwire.codec.interface import Frame, Listening
-from cobotwire.table import Direction
+from cobotwire.protocol.table import Direction
 from strategies import (
     TABLES,
-    Form,
+    CommandVariant,
     chunked,
     codec_of,
-    forms_of,
     legal_values,
     near_frames,
     real_frames,
     received,
     streams,
+    variants_of,
 )
 from targets.c.comparison import joined
 from targets.c.compiled import missing, program
@@ -32,7 +32,7 @@ from targets.c.peer import CPeer
 
 pytestmark = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
 DIRECTIONS: st.SearchStrategy[Direction] = st.sampled_from(["request", "reply"])
-# Each test runs for each edition; fuzz.py beside this goes on for longer.
+# Each test runs for each edition; fuzz.py in this folder runs for longer.
 QUICK = settings(max_examples=40)
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
 
@@ -55,30 +55,30 @@ def peer(edition: str) -> Iterator[CPeer]:
 
 @QUICK
 @given(data=st.data())
-def test_a_legal_message_is_built_and_read_alike(
+def test_legal_message_encodes_and_decodes_as_in_codec(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
 ) -> None:
-    form = data.draw(st.sampled_from(forms_of(TABLES[edition])))
-    values = data.draw(legal_values(form.layout))
-    frame, number = beside.encoded(form, values), beside.number(form)
+    variant = data.draw(st.sampled_from(variants_of(TABLES[edition])))
+    values = data.draw(legal_values(variant.variant))
+    frame, number = beside.encoded(variant, values), beside.number(variant)
     assert isinstance(frame, bytes)
     found = peer.decode(number, frame)
     assert found == (number, found[1], beside.flat(number, values))
     assert peer.encode(number, found[1]) == frame
     assert peer.encode_values(number, beside.flat(number, values)) == frame
-    direction = form.direction
+    direction = variant.direction
     assert beside.read_in_c(peer.read(direction, frame)) == beside.read(direction, frame)
 
 
 def _numbers() -> st.SearchStrategy[float]:
-    """Between the steps, on their halves, at and beyond the bounds, and what is no number."""
+    """Draw numbers between the steps, on their halves, at and beyond the bounds, and NaN."""
     halves = st.integers(-80_000, 80_000).map(lambda steps: steps / 200)
     return st.one_of(st.floats(), st.floats(-400, 400), halves)
 
 
 @st.composite
-def _any_values(draw: st.DrawFn, form: Form) -> tuple[Any, ...]:
-    """Legal values, some replaced: a real number where there is a scale, else a whole one."""
+def _any_values(draw: st.DrawFn, variant: CommandVariant) -> tuple[Any, ...]:
+    """Draw legal values, some replaced by a real number (with a scale) or by an integer."""
 
     def other(value: Any) -> Any:
         if isinstance(value, tuple):
@@ -89,44 +89,52 @@ def _any_values(draw: st.DrawFn, form: Form) -> tuple[Any, ...]:
             return draw(_numbers())
         return draw(st.integers(-70_000, 70_000))
 
-    fields = form.layout.fields
+    fields = variant.variant.fields
     return tuple(
         value if field.choices and len(field.choices) == 1 else other(value)
-        for field, value in zip(fields, draw(legal_values(form.layout)))
+        for field, value in zip(fields, draw(legal_values(variant.variant)))
     )
 
 
 @QUICK
 @given(data=st.data())
-def test_any_value_is_built_or_refused_alike(
+def test_any_value_is_encoded_or_rejected_as_in_codec(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
 ) -> None:
-    form = data.draw(st.sampled_from(forms_of(TABLES[edition])).filter(lambda f: f.layout.fields))
-    values = data.draw(_any_values(form))
-    number = beside.number(form)
-    found = beside.refused_in_c(peer.encode_values(number, beside.flat(number, values)))
-    assert found == beside.encoded(form, values)
+    variant = data.draw(
+        st.sampled_from(variants_of(TABLES[edition])).filter(lambda f: f.variant.fields)
+    )
+    values = data.draw(_any_values(variant))
+    number = beside.number(variant)
+    found = beside.rejected_in_c(peer.encode_values(number, beside.flat(number, values)))
+    assert found == beside.encoded(variant, values)
 
 
 @pytest.mark.parametrize("eighths", [1, 3, 5, 7, -1, -3, -5, -7])
-def test_half_a_step_goes_to_the_even_one(
+def test_half_a_step_rounds_to_even(
     edition: str, beside: Beside, peer: CPeer, eighths: int
 ) -> None:
-    # Of hundredths, these alone are exactly between two.
-    form = next(form for form in forms_of(TABLES[edition]) if form.command.name == "send_angle")
+    # Only eighths lie exactly between two hundredths.
+    variant = next(
+        variant for variant in variants_of(TABLES[edition]) if variant.command.name == "send_angle"
+    )
     values = (1, eighths / 8, 20)
-    number = beside.number(form)
-    assert peer.encode_values(number, beside.flat(number, values)) == beside.encoded(form, values)
+    number = beside.number(variant)
+    assert peer.encode_values(number, beside.flat(number, values)) == beside.encoded(
+        variant, values
+    )
 
 
 @QUICK
 @given(data=st.data())
-def test_any_bytes_are_read_or_refused_alike(
+def test_any_bytes_are_decoded_or_rejected_as_in_codec(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
 ) -> None:
     table = TABLES[edition]
     direction = data.draw(DIRECTIONS)
-    frame = bytearray(data.draw(real_frames(table) | near_frames(table) | _near_values(form_bytes)))
+    frame = bytearray(
+        data.draw(real_frames(table) | near_frames(table) | _near_values(variant_bytes))
+    )
     for place in data.draw(st.lists(st.integers(0, 40), max_size=2)):
         if place < len(frame):
             frame[place] = data.draw(st.integers(0, 255))
@@ -135,22 +143,22 @@ def test_any_bytes_are_read_or_refused_alike(
 
 
 def _near_values(make: Any) -> st.SearchStrategy[bytes]:
-    return st.sampled_from(forms_of(TABLES["mycobot280"])).flatmap(make)
+    return st.sampled_from(variants_of(TABLES["mycobot280"])).flatmap(make)
 
 
-def form_bytes(form: Form) -> st.SearchStrategy[bytes]:
-    """A whole frame of a form with any data."""
+def variant_bytes(variant: CommandVariant) -> st.SearchStrategy[bytes]:
+    """Draw a whole frame of a variant with any data."""
     frame = TABLES["mycobot280"].frame
-    head = frame.header + bytes([frame.length(form.layout.size), form.command.id])
-    size = form.layout.size
+    head = frame.header + bytes([frame.length(variant.variant.size), variant.command.id])
+    size = variant.variant.size
     return st.binary(min_size=size, max_size=size).map(lambda data: head + data + frame.footer)
 
 
-def test_what_several_calls_could_mean_is_read_or_refused_as_the_first(
+def test_ambiguous_frame_decodes_as_first_command(
     edition: str, beside: Beside, peer: CPeer
 ) -> None:
     table = TABLES[edition]
-    lengths = Counter((form.command.id, form.layout.size) for form in forms_of(table))
+    lengths = Counter((variant.command.id, variant.variant.size) for variant in variants_of(table))
     shared = sorted(key for key, count in lengths.items() if count > 1 and key[1])
     assert shared
     for id, size in shared:
@@ -166,20 +174,22 @@ def test_what_several_calls_could_mean_is_read_or_refused_as_the_first(
 
 @QUICK
 @given(data=st.data())
-def test_a_frame_is_refused_as_the_message_that_is_asked_for(
+def test_frame_is_rejected_as_the_requested_message(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
 ) -> None:
-    forms = forms_of(TABLES[edition])
-    alone = [form for form in forms if len(form.command.layouts(form.direction)) == 1]
-    form = data.draw(st.sampled_from(alone))
-    frame = data.draw(form_bytes(form) | real_frames(TABLES[edition]))
-    found = beside.read_in_c(peer.decode(beside.number(form), frame))
-    assert found == beside.read(form.direction, frame, form.command.name)
+    variants = variants_of(TABLES[edition])
+    alone = [
+        variant for variant in variants if len(variant.command.variants(variant.direction)) == 1
+    ]
+    variant = data.draw(st.sampled_from(alone))
+    frame = data.draw(variant_bytes(variant) | real_frames(TABLES[edition]))
+    found = beside.read_in_c(peer.decode(beside.number(variant), frame))
+    assert found == beside.read(variant.direction, frame, variant.command.name)
 
 
 @QUICK
 @given(data=st.data())
-def test_a_stream_is_framed_alike_however_it_is_cut(
+def test_stream_is_framed_as_in_codec_however_it_is_cut(
     edition: str, beside: Beside, peer: CPeer, data: st.DataObject
 ) -> None:
     table, listening = TABLES[edition], data.draw(LISTENING)
@@ -200,7 +210,7 @@ def test_a_stream_is_framed_alike_however_it_is_cut(
 
 
 @pytest.mark.parametrize("longer", [-1, 0, 1])
-def test_a_frame_of_an_unknown_id_is_as_long_as_any_at_most(
+def test_frame_of_unknown_id_is_limited_to_the_longest_length(
     edition: str, beside: Beside, peer: CPeer, longer: int
 ) -> None:
     table = TABLES[edition]
@@ -215,14 +225,14 @@ def test_a_frame_of_an_unknown_id_is_as_long_as_any_at_most(
     assert joined(found) == joined(right)
 
 
-def test_names_are_those_of_the_spec(beside: Beside, peer: CPeer) -> None:
+def test_names_in_c_are_those_of_the_spec(beside: Beside, peer: CPeer) -> None:
     assert peer.names() == [
         [message.command.name, *(member.field.name for member in message.members)]
         for message in beside.messages
     ]
 
 
-def test_a_buffer_that_is_too_small_is_refused_untouched(
+def test_too_small_buffer_is_rejected_and_unchanged(
     edition: str, beside: Beside, peer: CPeer
 ) -> None:
     for number, message in enumerate(beside.messages):

@@ -1,4 +1,4 @@
-"""The code as a build meets it: warnings are errors, no library is needed, no state kept."""
+"""The C code compiles without warnings, needs no library and keeps no state."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 import vectors
 from strategies import TABLES
+from targets.built import built
 from targets.c.compiled import compile_c, missing, scratch
 from vectors import ROOT
 
@@ -30,55 +31,57 @@ def _needs(*tools: str) -> pytest.MarkDecorator:
 @pytest.mark.parametrize(
     ("compiler", "flags"), [pytest.param(*build, marks=_needs(build[0])) for build in BUILDS]
 )
-def test_it_compiles_without_a_word(edition: str, compiler: str, flags: tuple[str, ...]) -> None:
+def test_c_code_compiles_without_warnings(
+    edition: str, compiler: str, flags: tuple[str, ...]
+) -> None:
     _object(edition, compiler, flags)
 
 
 @_needs("arm-none-eabi-gcc", "arm-none-eabi-nm", "arm-none-eabi-size")
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_a_firmware_gives_it_flash_and_nothing_else(edition: str) -> None:
+def test_c_library_needs_flash_only(edition: str) -> None:
     made = _object(edition, *BUILDS[-1])
-    needed = _said("arm-none-eabi-nm", "--undefined-only", made).split()
+    needed = _output("arm-none-eabi-nm", "--undefined-only", made).split()
     assert [name for name in needed if name != "U"] in ([], ["memcpy"])
-    sizes = _said("arm-none-eabi-size", made).splitlines()[1].split()
+    sizes = _output("arm-none-eabi-size", made).splitlines()[1].split()
     text, data, bss = map(int, sizes[:3])
     assert (data, bss) == (0, 0), "no state, and tables in flash"
     assert text < 8192
 
 
 @_needs("g++")
-def test_a_program_in_cpp_may_include_the_header() -> None:
+def test_cpp_program_can_include_the_header() -> None:
     source = scratch() / "includes.cpp"
     source.write_text("".join(f'#include "{edition}.h"\n' for edition in EDITIONS))
-    folders = [f"-I{ROOT / 'targets' / 'c' / edition}" for edition in EDITIONS]
+    folders = [f"-I{built('c') / edition}" for edition in EDITIONS]
     command = ["g++", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *folders, str(source)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
 @_needs("gcc")
-def test_the_firmware_loop_of_the_guide_compiles_and_answers() -> None:
+def test_firmware_loop_of_the_guide_compiles_and_replies() -> None:
     text = (ROOT / "docs" / "c.md").read_text()
     loop = re.search(r"```c\n(.*?)```", text, re.DOTALL)
     assert loop is not None
     source, made = scratch() / "loop.c", scratch() / "loop"
     source.write_text(loop[1])
-    folder = ROOT / "targets" / "c" / "mycobot280"
+    folder = built("c") / "mycobot280"
     main = str(vectors.ROOT / "tests" / "targets" / "c" / "loop_main.c")
     compile_c(
         "gcc", f"-I{folder}", str(source), main, str(folder / "mycobot280.c"), "-o", str(made)
     )
-    asked = bytes.fromhex("00 FE FE 02 20 FA FE FE 03 FF FA")
-    done = subprocess.run([made], input=asked, capture_output=True, check=True)
+    stdin = bytes.fromhex("00 FE FE 02 20 FA FE FE 03 FF FA")
+    done = subprocess.run([made], input=stdin, capture_output=True, check=True)
     assert done.stdout == bytes.fromhex("FE FE 0E 20 00 00 23 28 DC D8 00 00 00 00 00 00 FA")
 
 
 def _object(edition: str, compiler: str, flags: tuple[str, ...]) -> str:
     made = scratch() / f"{edition}-{compiler}-{len(flags)}.o"
-    folder = ROOT / "targets" / "c" / edition
+    folder = built("c") / edition
     compile_c(compiler, *flags, "-c", str(folder / f"{edition}.c"), "-o", str(made))
     return str(made)
 
 
-def _said(tool: str, *arguments: str) -> str:
+def _output(tool: str, *arguments: str) -> str:
     return subprocess.run([tool, *arguments], capture_output=True, text=True, check=True).stdout

@@ -1,4 +1,4 @@
-"""Any protocol that the spec's language can say becomes C that reads, builds and frames it."""
+"""C code generated from a random protocol reads, builds and frames its messages."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 import random_specs
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Listening
-from cobotwire.table import Direction
+from cobotwire.protocol.table import Direction
 from cobotwire_codegen import lower
 from cobotwire_codegen.check import check
 from json_tables import table_of
-from strategies import Form, chunked
+from strategies import CommandVariant, chunked
 from targets.c.comparison import joined
 from targets.c.compiled import missing, program
 from targets.c.ours import Beside, events
@@ -30,7 +30,7 @@ LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "
 
 @settings(max_examples=5, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_a_random_protocol_runs_in_c(tmp_path: Path, data: st.DataObject) -> None:
+def test_random_protocol_runs_in_c(tmp_path: Path, data: st.DataObject) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}"))
     check(edition)
     table = table_of(lower.table(edition))
@@ -40,9 +40,11 @@ def test_a_random_protocol_runs_in_c(tmp_path: Path, data: st.DataObject) -> Non
     with CPeer(program(edition)) as peer:
         for vector, frame in zip(edition.vectors, frames):
             message = beside.codec.decode(vector.direction, frame)
-            forms = message.command.layouts(vector.direction)
-            number = next(i for i, layout in enumerate(forms) if layout is message.layout)
-            index = beside.number(Form(message.command, vector.direction, message.layout, number))
+            variants = message.command.variants(vector.direction)
+            number = next(i for i, variant in enumerate(variants) if variant is message.variant)
+            index = beside.number(
+                CommandVariant(message.command, vector.direction, message.variant, number)
+            )
             found = peer.decode(index, frame)
             assert isinstance(found, Read)
             assert found == beside.read(vector.direction, frame)

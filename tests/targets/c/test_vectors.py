@@ -1,4 +1,4 @@
-"""The C code runs every vector as the spec has it, built by each compiler, under the sanitizers."""
+"""The C code agrees with every vector, built by each compiler, under the sanitizers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ON_EACH = pytest.mark.parametrize(
 
 @ON_EACH
 @pytest.mark.parametrize("name", EDITIONS)
-def test_every_vector_runs(name: str, compiler: str) -> None:
+def test_c_code_agrees_with_every_vector(name: str, compiler: str) -> None:
     found = judged(read(name), vectors.edition(name), compiler)
     assert found.differences == []
     assert found.vectors > 1000
@@ -40,7 +40,7 @@ def test_every_vector_runs(name: str, compiler: str) -> None:
 
 @ON_EACH
 @pytest.mark.parametrize("family", ["mercury", "mybuddy"])
-def test_other_frame_formats_run_as_well(family: str, compiler: str) -> None:
+def test_c_code_of_other_frame_formats_agrees_with_vectors(family: str, compiler: str) -> None:
     edition = build_edition(FAMILIES / f"{family}.yaml", FAMILIES)
     found = judged(json.loads(document(edition)), edition, compiler)
     assert found.differences == []
@@ -49,8 +49,8 @@ def test_other_frame_formats_run_as_well(family: str, compiler: str) -> None:
 
 @WITH_GCC
 @pytest.mark.parametrize("kind", WRONG)
-def test_a_wrong_model_shows(kind: str) -> None:
-    # Of its own name, for a quantity has one scale wherever it is used.
+def test_wrong_model_is_detected(kind: str) -> None:
+    # The changed quantity gets a new name, since a quantity has one scale wherever it is used.
     wrong = with_wrong_angles(
         vectors.edition("mycobot"), lambda part: replace(WRONG[kind](part), name="wrong_angle")
     )
@@ -60,5 +60,5 @@ def test_a_wrong_model_shows(kind: str) -> None:
 
 
 @WITH_GCC
-def test_what_the_report_asks_is_what_the_tests_ask() -> None:
+def test_report_counts_what_the_tests_compare() -> None:
     assert compare("mycobot") == judged(read("mycobot"), vectors.edition("mycobot"), "gcc")

@@ -1,4 +1,4 @@
-"""The declarations for construct, read by that library, beside our codecs and the vectors."""
+"""Compare the declarations for construct, run by that library, with codecs and vectors."""
 
 from __future__ import annotations
 
@@ -9,27 +9,26 @@ from typing import Any
 
 from construct import ConstructError
 
+from targets.built import built
 from targets.comparison import Comparison
 from targets.vectors.comparison import Record, read
-from vectors import ROOT
 
-FOLDER = ROOT / "targets" / "construct"
 Key = tuple[str, str, int]
 
 
 @lru_cache
 def messages(edition: str) -> dict[Key, Any]:
-    """The declarations of an edition's module, by command, direction and form."""
-    found: dict[Key, Any] = runpy.run_path(str(FOLDER / f"{edition}.py"))["MESSAGES"]
+    """Return the declarations of an edition's module, by command, direction and variant."""
+    found: dict[Key, Any] = runpy.run_path(str(built("construct") / f"{edition}.py"))["MESSAGES"]
     return found
 
 
 def compare(edition: str, declared: dict[Key, Any] | None = None) -> Comparison:
-    """Every vector of an edition; by other declarations than ours, where there are any."""
+    """Compare every vector of an edition, with the given declarations or the generated ones."""
     document, declared = read(edition), declared or messages(edition)
     differences = []
     for record in document["messages"]:
-        declaration = declared[record["command"], record["direction"], record["form"]]
+        declaration = declared[record["command"], record["direction"], record["variant"]]
         differences += [f"{record['name']}: {text}" for text in _message(record, declaration)]
     for record in document["malformed"]:
         differences += [f"{record['name']}: {text}" for text in _malformed(record, declared)]
@@ -39,19 +38,19 @@ def compare(edition: str, declared: dict[Key, Any] | None = None) -> Comparison:
 
 
 def numbers(value: Any) -> list[Any]:
-    """What construct read in a field, as a list of numbers."""
+    """Return what construct read in a field, as a list of numbers."""
     if isinstance(value, dict):
         return [part for name, part in value.items() if name != "_io"]
     return [int(value) if isinstance(value, str | bool) else value]
 
 
-def said(record: Record) -> dict[str, Any]:
-    """A vector's values as construct builds from them."""
+def as_built_from(record: Record) -> dict[str, Any]:
+    """Return a vector's values as construct builds a frame from them."""
     return {field["name"]: field["value"] for field in record["fields"]}
 
 
-def built(declaration: Any, values: dict[str, list[Any]]) -> bytes:
-    """The frame that construct makes of these values."""
+def frame_built(declaration: Any, values: dict[str, list[Any]]) -> bytes:
+    """Return the frame that construct builds from these values."""
     given: dict[str, Any] = {}
     for part in declaration.subcons:
         name = part.name.removesuffix("_ahead")
@@ -74,11 +73,11 @@ def _message(record: Record, declaration: Any) -> Iterator[str]:
     data = bytes.fromhex(record["bytes"])
     try:
         parsed = declaration.parse(data)
-        again = built(declaration, said(record))
+        again = frame_built(declaration, as_built_from(record))
     except ConstructError as error:
         yield f"refused: {error}"
         return
-    for name, right in said(record).items():
+    for name, right in as_built_from(record).items():
         if numbers(parsed[name]) != right:
             yield f"{name} reads {numbers(parsed[name])}, not {right}"
     if again != data:
@@ -86,16 +85,16 @@ def _message(record: Record, declaration: Any) -> Iterator[str]:
 
 
 def _malformed(record: Record, declared: dict[Key, Any]) -> Iterator[str]:
-    """No message of that direction may take what is malformed."""
+    """Yield every message of that direction that accepts malformed bytes."""
     data = bytes.fromhex(record["bytes"])
-    for (command, direction, form), declaration in declared.items():
-        # The others refuse the id, which each of them says as a constant.
+    for (command, direction, variant), declaration in declared.items():
+        # The others reject the id, which each of them declares as a constant.
         if direction == record["direction"] and data[3:4] in (b"", _id(declaration)):
             try:
                 declaration.parse(data)
             except ConstructError:
                 continue
-            yield f"taken for form {form} of {command}"
+            yield f"taken for variant {variant} of {command}"
 
 
 def _id(declaration: Any) -> bytes:

@@ -1,4 +1,4 @@
-"""An oracle that nobody here wrote: construct reads what the generated declarations say."""
+"""The construct library, an independent oracle, agrees with our codecs and the vectors."""
 
 from __future__ import annotations
 
@@ -12,62 +12,65 @@ from hypothesis import strategies as st
 
 import vectors
 from cobotwire.codec.interface import Codec
-from cobotwire.errors import ProtocolError
+from cobotwire.protocol.errors import ProtocolError
 from cobotwire_codegen.targets.construct import render_construct
-from strategies import TABLES, Form, codec_of, forms_of, legal_values
-from targets.construct.comparison import built, compare, messages, numbers
+from strategies import TABLES, CommandVariant, codec_of, legal_values, variants_of
+from targets.construct.comparison import compare, frame_built, messages, numbers
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_construct_reads_and_builds_every_vector(edition: str) -> None:
+def test_construct_parses_and_builds_every_vector(edition: str) -> None:
     found = compare(edition)
     assert found.differences == []
     assert found.vectors > 900
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_every_form_is_declared_and_no_other(edition: str) -> None:
-    right = {(form.command.name, form.direction, form.number) for form in forms_of(TABLES[edition])}
+def test_declarations_are_exactly_the_variants(edition: str) -> None:
+    right = {
+        (variant.command.name, variant.direction, variant.number)
+        for variant in variants_of(TABLES[edition])
+    }
     assert set(messages(edition)) == right
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
 @given(data=st.data())
-def test_random_messages_read_and_build_alike(edition: str, data: st.DataObject) -> None:
-    form = data.draw(st.sampled_from(forms_of(TABLES[edition])))
-    values = data.draw(legal_values(form.layout))
+def test_random_messages_agree_with_codec(edition: str, data: st.DataObject) -> None:
+    variant = data.draw(st.sampled_from(variants_of(TABLES[edition])))
+    values = data.draw(legal_values(variant.variant))
     codec = codec_of(edition, "native")
-    frame = codec.encode(form.command.name, form.direction, values, form=form.number)
-    declaration = messages(edition)[form.command.name, form.direction, form.number]
+    frame = codec.encode(variant.command.name, variant.direction, values, variant=variant.number)
+    declaration = messages(edition)[variant.command.name, variant.direction, variant.number]
     parsed = declaration.parse(frame)
     lists = [list(value) if isinstance(value, tuple) else [value] for value in values]
-    right = dict(zip((field.name for field in form.layout.fields), lists))
+    right = dict(zip((field.name for field in variant.variant.fields), lists))
     assert {name: numbers(parsed[name]) for name in right} == right
-    assert built(declaration, right) == frame
+    assert frame_built(declaration, right) == frame
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
 @given(data=st.data())
-def test_any_data_is_taken_by_both_or_by_neither(edition: str, data: st.DataObject) -> None:
-    form = data.draw(st.sampled_from(forms_of(TABLES[edition])))
-    frame = data.draw(st.binary(min_size=form.layout.size, max_size=form.layout.size))
+def test_any_data_is_accepted_by_both_or_neither(edition: str, data: st.DataObject) -> None:
+    variant = data.draw(st.sampled_from(variants_of(TABLES[edition])))
+    frame = data.draw(st.binary(min_size=variant.variant.size, max_size=variant.variant.size))
     table = TABLES[edition].frame
-    whole = bytes([table.length(form.layout.size), form.command.id]) + frame
+    whole = bytes([table.length(variant.variant.size), variant.command.id]) + frame
     whole = table.header + whole + table.footer
-    assert _taken(edition, form, whole) == _reads(codec_of(edition, "reference"), form, whole)
+    assert _taken(edition, variant, whole) == _reads(codec_of(edition, "reference"), variant, whole)
 
 
-def _taken(edition: str, form: Form, frame: bytes) -> bool:
-    """Whether construct takes it as a form of that size of the command."""
+def _taken(edition: str, variant: CommandVariant, frame: bytes) -> bool:
+    """Return whether construct accepts the frame as a variant of that size of the command."""
     sizes = {
         other.number
-        for other in forms_of(TABLES[edition])
-        if other[:2] == form[:2] and other.layout.size == form.layout.size
+        for other in variants_of(TABLES[edition])
+        if other[:2] == variant[:2] and other.variant.size == variant.variant.size
     }
-    return any(_parses(edition, (form.command.name, form.direction, n), frame) for n in sizes)
+    return any(_parses(edition, (variant.command.name, variant.direction, n), frame) for n in sizes)
 
 
 def _parses(edition: str, key: tuple[str, str, int], frame: bytes) -> bool:
@@ -78,9 +81,9 @@ def _parses(edition: str, key: tuple[str, str, int], frame: bytes) -> bool:
     return True
 
 
-def _reads(codec: Codec, form: Form, frame: bytes) -> bool:
+def _reads(codec: Codec, variant: CommandVariant, frame: bytes) -> bool:
     try:
-        codec.decode(form.direction, frame, of=form.command.name)
+        codec.decode(variant.direction, frame, of=variant.command.name)
     except ProtocolError:
         return False
     return True
@@ -88,7 +91,7 @@ def _reads(codec: Codec, form: Form, frame: bytes) -> bool:
 
 @pytest.mark.parametrize("kind", WRONG)
 @pytest.mark.parametrize("name", EDITIONS)
-def test_a_wrong_model_shows(name: str, kind: str, tmp_path: Path) -> None:
+def test_wrong_model_is_detected(name: str, kind: str, tmp_path: Path) -> None:
     wrong = with_wrong_angles(vectors.edition(name), WRONG[kind])
     for path, text in render_construct([wrong]).items():
         (tmp_path / path).write_text(text)

@@ -1,4 +1,4 @@
-"""Headless Chromium, for pages that are files on this machine."""
+"""Run headless Chromium on pages that are local files."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ SECONDS = 120
 
 
 def chromium() -> str:
-    """The browser's program.
+    """Return the path of the browser.
 
     Raises:
-        ToolMissing: there is none.
+        ToolMissing: Chromium is not installed.
     """
     for name in NAMES:
         found = shutil.which(name)
@@ -30,26 +30,26 @@ def chromium() -> str:
 
 
 def dom(url: str, *options: str) -> str:
-    """The page's document after its scripts have run."""
+    """Return the page's document after its scripts have run."""
     return _run("--dump-dom", "--virtual-time-budget=20000", *options, url)
 
 
 def result(page: Path) -> Any:
-    """What a page's scripts wrote, as JSON, into its ``<pre id="result">``."""
+    """Return what a page's scripts wrote, as JSON, into its ``<pre id="result">``."""
     found = re.search(r'<pre id="result">(.*?)</pre>', dom(page.as_uri()), re.DOTALL)
-    assert found is not None, "the page's scripts did not come to their end"
+    assert found is not None, "the page's scripts did not run to their end"
     return json.loads(html.unescape(found.group(1)))
 
 
 def picture(url: str, path: Path, width: int, height: int, *, dark: bool = False) -> None:
-    """A screenshot of a page as a PNG file; a phone's is 390 wide."""
+    """Write a screenshot of a page to a PNG file; 390 is the width of a phone."""
     shades = ["--blink-settings=preferredColorScheme=0"] if dark else []
     size = f"--window-size={width},{height}"
     _run(f"--screenshot={path}", size, "--hide-scrollbars", *shades, url)
 
 
 def _run(*arguments: str) -> str:
-    # Without a sandbox, as CI runs as root; it opens nothing but our own files.
+    # No sandbox, since CI runs as root; Chromium opens only our own files.
     command = [chromium(), "--headless=new", "--no-sandbox", "--disable-gpu", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=True)
     return done.stdout

@@ -1,4 +1,4 @@
-"""The decoder page's law, run in a browser over every vector."""
+"""Compare the decoder page's script, run in a browser, with every vector."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ HARNESS = Path(__file__).with_name("harness.js")
 
 
 def compare(edition: str) -> Comparison:
-    """Every vector of an edition.
+    """Compare every vector of an edition.
 
     Raises:
-        ToolMissing: there is no Chromium here.
+        ToolMissing: Chromium is not installed.
     """
     return judged(read(edition), (SCRIPTS / "tables" / f"{edition}.js").read_text())
 
 
 def judged(document: Record, table: str) -> Comparison:
-    """The messages, malformed bytes and streams of a document, by a table's script."""
+    """Run a document's messages, malformed bytes and streams with a table's script."""
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "harness.html"
         page.write_text(_page(document, table))
@@ -58,7 +58,7 @@ def _page(document: Record, table: str) -> str:
 
 def _message(record: Record, made: Any) -> Iterator[str]:
     fields = [{key: f[key] for key in ("name", "whole", "value")} for f in record["fields"]]
-    # Another call of the same id may be what the bytes read as; then it alone is told.
+    # The bytes may decode as another command with the same id; then only that one is reported.
     if "error" in made or made["read_as"] != record["read_as"]:
         yield f"{made}, not read as {record['read_as']}"
     elif made.get("fields") != fields:

@@ -6,10 +6,10 @@
     messages(record, table) {
       const readings = new cobotwire.Law(table, [record.direction]).read(bytes(record.bytes));
       const mine = readings.find(
-        (each) => each.command.name === record.command && each.number === record.form);
+        (each) => each.command.name === record.command && each.number === record.variant);
       const fields = mine && mine.fields.map(({ field, numbers }) => ({
         name: field.name,
-        whole: numbers.map((each) => each.whole),
+        whole: numbers.map((each) => each.raw),
         value: numbers.map((each) => each.value),
       }));
       return { read_as: readings[0].command.name, fields };

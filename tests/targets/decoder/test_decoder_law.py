@@ -1,4 +1,4 @@
-"""The decoder page reads as the Python codecs do: in a real browser, on every vector."""
+"""The decoder page, run in a real browser, agrees with the Python codecs on every vector."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_the_page_agrees_on_every_vector(edition: str) -> None:
+def test_decoder_page_agrees_with_every_vector(edition: str) -> None:
     found = compare(edition)
     assert found.differences == []
     assert found.vectors > 1000
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_streams_of_both_directions_are_cut_alike(edition: str) -> None:
+def test_streams_of_both_directions_are_framed_as_in_codec(edition: str) -> None:
     chance = random.Random(6)
     document = read(edition)
     frames = [bytes.fromhex(record["bytes"]) for record in document["messages"]]
@@ -50,7 +50,7 @@ def test_streams_of_both_directions_are_cut_alike(edition: str) -> None:
 
 
 def _damaged(chance: random.Random, frames: list[bytes]) -> bytes:
-    """Frames of both directions, some with a byte changed, lost or put in."""
+    """Return frames of both directions, some with a byte changed, lost or inserted."""
     data = bytearray(b"".join(chance.choices(frames, k=4)))
     for _ in range(chance.randrange(4)):
         at = chance.randrange(len(data))
@@ -66,7 +66,7 @@ def _record(codec: Codec, data: bytes) -> Record:
 
 
 @pytest.mark.parametrize("kind", WRONG)
-def test_a_wrong_model_shows(kind: str) -> None:
+def test_wrong_model_is_detected(kind: str) -> None:
     wrong = with_wrong_angles(vectors.edition("mycobot"), WRONG[kind])
     script = render_decoder([wrong]).popitem()[1]
     found = judged(read("mycobot"), script).differences

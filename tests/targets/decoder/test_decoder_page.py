@@ -1,4 +1,4 @@
-"""The decoder page itself: what is pasted shows at once, byte by byte, as the codec reads it."""
+"""The decoder page shows pasted bytes at once, one by one, as the codec reads them."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ DRESSES = [
     ("[0xFE, 0xFE, 0x2, 0x20, 0xFA]", "request at 0"),
     ("fefe0220fa", "request at 0"),
     ("FE FE 02 2", "odd number of digits"),
-    ("hello <script>", "no hex"),
+    ("hello <script>", "not hex"),
 ]
 WRONG = "FE FE 03 12 07 FA"
-# Does what a person does at the page: chooses and pastes. Keeps what is shown each time.
+# Act as a person at the page: choose and paste. Keep what is shown each time.
 DRIVER = """
 document.addEventListener("DOMContentLoaded", () => {
   const root = document.getElementById("decoder");
@@ -56,7 +56,7 @@ pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page's own HTML, without the site around it."""
+    """Write the page's own HTML, without the site around it."""
     path = tmp_path_factory.mktemp("decoder") / "decoder.html"
     body = re.findall(r"^```\{raw\} html\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)[0]
     path.write_text(f'<!doctype html><meta charset="utf-8"><body>{body}</body>')
@@ -65,7 +65,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _shown(page: Path, **state: str) -> str:
-    """What the page shows of a state that stands in its address."""
+    """Return what the page shows of the state in its address."""
     found = browser.dom(f"{page.as_uri()}#{urlencode(state)}")
     output = found[found.index('class="output"') :]
     return html.unescape(output)
@@ -73,7 +73,7 @@ def _shown(page: Path, **state: str) -> str:
 
 @pytest.fixture(scope="module")
 def typed(page: Path) -> dict[str, str]:
-    """What the page shows of each pasted text; all in one browser, which is slow to start."""
+    """Return what the page shows of each pasted text; one browser, since it starts slowly."""
     states = [*_streams(), *(_state(pasted) for pasted, _ in DRESSES), _state(WRONG, "reply")]
     driven = page.with_name("driven.html")
     driver = DRIVER.replace("STATES", json.dumps(states).replace("<", "\\u003c"))
@@ -101,12 +101,12 @@ def _cells(shown: str) -> list[list[str]]:
     return [re.sub(r"<[^>]*>", "\t", row).split("\t") for row in rows]
 
 
-def test_the_page_lists_every_edition() -> None:
+def test_decoder_page_lists_every_edition() -> None:
     scripts = re.findall(r"tables/(\w+)\.js", PAGE)
     assert sorted(scripts) == sorted(TABLES)
 
 
-def test_each_byte_of_a_frame_says_what_it_is(page: Path) -> None:
+def test_each_byte_of_a_frame_is_labelled(page: Path) -> None:
     shown = _shown(page, edition="mycobot", hex="FE FE 06 21 01 00 1D 14 FA", direction="both")
     rows = [[cell for cell in row if cell] for row in _cells(shown)]
     assert rows == [
@@ -114,7 +114,7 @@ def test_each_byte_of_a_frame_says_what_it_is(page: Path) -> None:
         ["2", "06", "LEN", "6 bytes follow"],
         ["3", "21", "CMD", "send_angle"],
         ["4", "01", "joint", "1"],
-        ["5", "00 1D", "angle", "0.29°  (29 on the wire)"],
+        ["5", "00 1D", "angle", "0.29°  (raw 29)"],
         ["7", "14", "speed", "20 %"],
         ["8", "FA", "footer", "the frame ends here"],
     ]
@@ -122,7 +122,7 @@ def test_each_byte_of_a_frame_says_what_it_is(page: Path) -> None:
 
 
 @pytest.mark.parametrize("edition", sorted(TABLES))
-def test_it_shows_the_events_of_the_codec(typed: dict[str, str], edition: str) -> None:
+def test_decoder_page_shows_the_events_of_the_codec(typed: dict[str, str], edition: str) -> None:
     for record in _longest(edition):
         data = bytes.fromhex(record["bytes"])
         framer = codec_of(edition, "reference").framer(record["direction"])
@@ -135,15 +135,15 @@ def test_it_shows_the_events_of_the_codec(typed: dict[str, str], edition: str) -
         assert f"{len(data)} byte(s): {frames} frame(s)" in shown
 
 
-@pytest.mark.parametrize(("pasted", "told"), DRESSES)
-def test_hex_in_any_dress_or_the_reason_why_not(
-    typed: dict[str, str], pasted: str, told: str
+@pytest.mark.parametrize(("pasted", "shown_text"), DRESSES)
+def test_hex_in_any_notation_is_read_or_its_error_is_shown(
+    typed: dict[str, str], pasted: str, shown_text: str
 ) -> None:
-    assert told in typed[pasted]
+    assert shown_text in typed[pasted]
 
 
-def test_a_value_that_is_not_allowed_is_shown_where_it_stands(typed: dict[str, str]) -> None:
+def test_rejected_value_is_shown_at_its_bytes(typed: dict[str, str]) -> None:
     shown = typed[WRONG]
-    assert "refused" in shown
-    assert "holds 7, allowed: one of 0, 1 (byte 4)" in shown
+    assert "rejected" in shown
+    assert "is 7, allowed: one of 0, 1 (byte 4)" in shown
     assert 'class="byte wrong">07' in shown

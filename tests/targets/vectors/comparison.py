@@ -1,4 +1,4 @@
-"""What our codecs make of the shared vectors; a reader for any implementation would do the same."""
+"""Compare our codecs with the shared vectors, as a test of any implementation can do."""
 
 from __future__ import annotations
 
@@ -9,27 +9,26 @@ from typing import Any
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Noise
-from cobotwire.errors import ProtocolError, UsageError
+from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.session import text
 from strategies import codec_of
+from targets.built import built
 from targets.comparison import Comparison
-from vectors import ROOT
 
 Record = dict[str, Any]
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
-FOLDER = ROOT / "targets" / "vectors"
 # A stream is fed whole, byte by byte, and in pieces of these sizes.
 PIECES = (1, 2, 7, 1000)
 
 
 def read(edition: str) -> Record:
-    """An edition's document."""
-    found: Record = json.loads((FOLDER / f"{edition}.json").read_text(encoding="utf-8"))
+    """Return an edition's document."""
+    found: Record = json.loads((built("vectors") / f"{edition}.json").read_text(encoding="utf-8"))
     return found
 
 
 def compare(edition: str) -> Comparison:
-    """Everything in an edition's document, on both codecs."""
+    """Run an edition's document on both codecs."""
     document = read(edition)
     found = [judged(document, codec_of(edition, name)) for name in CODECS]
     return Comparison(
@@ -40,7 +39,7 @@ def compare(edition: str) -> Comparison:
 
 
 def judged(document: Record, codec: Codec) -> Comparison:
-    """Everything in the document, on a codec."""
+    """Run the document on one codec."""
     parts = {
         "messages": _message,
         "refused": _refused,
@@ -60,10 +59,14 @@ def judged(document: Record, codec: Codec) -> Comparison:
 
 def _message(record: Record, codec: Codec) -> Iterator[str]:
     data = bytes.fromhex(record["bytes"])
-    layout = codec.table.command(record["command"]).layouts(record["direction"])[record["form"]]
-    values = _values(record, layout.fields)
+    variant = codec.table.command(record["command"]).variants(record["direction"])[
+        record["variant"]
+    ]
+    values = _values(record, variant.fields)
     try:
-        built = codec.encode(record["command"], record["direction"], values, form=record["form"])
+        built = codec.encode(
+            record["command"], record["direction"], values, variant=record["variant"]
+        )
         read = codec.decode(record["direction"], data, of=record["command"])
         named = codec.decode(record["direction"], data).command.name
     except (UsageError, ProtocolError) as error:
@@ -71,17 +74,21 @@ def _message(record: Record, codec: Codec) -> Iterator[str]:
         return
     if built != data:
         yield f"built {built.hex(' ')}, not {data.hex(' ')}"
-    if read.layout == layout and read.values != values:
+    if read.variant == variant and read.values != values:
         yield f"read {read.values}, not {values}"
     if named != record["read_as"]:
         yield f"read as {named}, not {record['read_as']}"
 
 
 def _refused(record: Record, codec: Codec) -> Iterator[str]:
-    layout = codec.table.command(record["command"]).layouts(record["direction"])[record["form"]]
-    values = _values(record, layout.fields)
+    variant = codec.table.command(record["command"]).variants(record["direction"])[
+        record["variant"]
+    ]
+    values = _values(record, variant.fields)
     try:
-        built = codec.encode(record["command"], record["direction"], values, form=record["form"])
+        built = codec.encode(
+            record["command"], record["direction"], values, variant=record["variant"]
+        )
     except UsageError as error:
         if not error.argument.startswith(record["field"]):
             yield f"refused for {error.argument}, not for {record['field']}"
@@ -112,7 +119,7 @@ def _stream(record: Record, codec: Codec) -> Iterator[str]:
 
 
 def joined(events: list[Event]) -> list[Record]:
-    """Events as the document writes them: adjacent noise of one reason is one span."""
+    """Return events as the document writes them: adjacent noise of one reason is one span."""
     found: list[Record] = []
     for event in events:
         place = {"offset": event.offset, "size": len(event.data)}
@@ -127,11 +134,11 @@ def joined(events: list[Event]) -> list[Record]:
 
 def _text(record: Record, codec: Codec) -> Iterator[str]:
     command = codec.table.command(record["command"])
-    form = command.request_text if record["direction"] == "request" else command.text
+    variant = command.request_text if record["direction"] == "request" else command.text
     data = bytes.fromhex(record["bytes"])
-    if form is None or text.spell(form, record["fields"]) != data:
+    if variant is None or text.encode(variant, record["fields"]) != data:
         yield "spelt otherwise"
-    elif text.read(form, data) != record["fields"]:
+    elif text.decode(variant, data) != record["fields"]:
         yield "read otherwise"
 
 

@@ -1,4 +1,4 @@
-"""The language-neutral vectors: complete, true to their schema, and what both codecs say."""
+"""The language-neutral vectors are complete, match their schema, and agree with both codecs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ from cobotwire_codegen.model import Enum, Field, Quantity
 from cobotwire_codegen.targets.vectors.document import document
 from json_tables import table_of
 from strategies import TABLES, codec_of
-from targets.vectors.comparison import CODECS, FOLDER, Record, judged, read
+from targets.built import built
+from targets.vectors.comparison import CODECS, Record, judged, read
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)
@@ -28,7 +29,7 @@ FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
 
 @pytest.mark.parametrize("name", CODECS)
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_a_codec_agrees_with_every_vector(edition: str, name: codecs.CodecName) -> None:
+def test_every_vector_agrees_with_codec(edition: str, name: codecs.CodecName) -> None:
     found = judged(read(edition), codec_of(edition, name))
     assert found.differences == []
     assert found.vectors > 1000
@@ -37,7 +38,9 @@ def test_a_codec_agrees_with_every_vector(edition: str, name: codecs.CodecName) 
 
 @pytest.mark.parametrize("name", CODECS)
 @pytest.mark.parametrize("family", ["mercury", "mybuddy"])
-def test_other_frame_formats_have_vectors_as_true(family: str, name: codecs.CodecName) -> None:
+def test_vectors_of_other_frame_formats_agree_with_codecs(
+    family: str, name: codecs.CodecName
+) -> None:
     edition = build_edition(FAMILIES / f"{family}.yaml", FAMILIES)
     found = json.loads(document(edition))
     codec = codecs.load(table_of(lower.table(edition)), name)
@@ -45,8 +48,8 @@ def test_other_frame_formats_have_vectors_as_true(family: str, name: codecs.Code
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_the_document_keeps_to_its_schema(edition: str) -> None:
-    schema = json.loads((FOLDER / "schema.json").read_text())
+def test_vector_document_matches_its_schema(edition: str) -> None:
+    schema = json.loads((built("vectors") / "schema.json").read_text())
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)
     found = read(edition)
@@ -57,34 +60,34 @@ def test_the_document_keeps_to_its_schema(edition: str) -> None:
 
 
 @pytest.mark.parametrize("name", EDITIONS)
-def test_no_form_choice_or_case_is_without_a_vector(name: str) -> None:
+def test_every_variant_choice_and_case_has_a_vector(name: str) -> None:
     edition = vectors.edition(name)
     found = read(name)["messages"]
-    forms = Counter((r["command"], r["direction"], r["form"]) for r in found)
+    variants = Counter((r["command"], r["direction"], r["variant"]) for r in found)
     for command in edition.commands:
         for direction in ("request", "reply"):
-            for index, form in enumerate(command.forms(direction)):
+            for index, variant in enumerate(command.variants(direction)):
                 key = (command.name, direction, index)
-                assert forms[key], key
-                mine = [r for r in found if (r["command"], r["direction"], r["form"]) == key]
-                for field in form:
+                assert variants[key], key
+                mine = [r for r in found if (r["command"], r["direction"], r["variant"]) == key]
+                for field in variant:
                     _has_all(field, mine, key)
 
 
 def _has_all(field: Field, records: list[Record], key: Any) -> None:
     numbers = [part for r in records for part in r["fields"] if part["name"] == field.name]
-    said = {whole for part in numbers for whole in part["whole"]}
-    assert set(lower.field_choices(field)) <= said, (key, field.name)
+    used = {whole for part in numbers for whole in part["whole"]}
+    assert set(lower.field_choices(field)) <= used, (key, field.name)
     if isinstance(field.type, Enum) and field.const is None:
         labels = {part["label"] for part in numbers}
         assert labels == {member.name for member in field.type.members}, (key, field.name)
     for _, type in lower.cases(field):
         if isinstance(type, Quantity) and field.const is None:
-            assert {int(bound) for bound in type.bounds} <= said, (key, field.name, type.name)
+            assert {int(bound) for bound in type.bounds} <= used, (key, field.name, type.name)
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_every_kind_of_fault_and_event_is_there(edition: str) -> None:
+def test_vectors_contain_every_kind_of_fault_and_event(edition: str) -> None:
     found = read(edition)
     reasons = {record["reason"] for record in found["malformed"]}
     kinds = {"no-header", "bad-length", "unknown-id", "bad-check", "truncated", "bad-value"}
@@ -99,14 +102,14 @@ def test_every_kind_of_fault_and_event_is_there(edition: str) -> None:
 
 @pytest.mark.parametrize("kind", WRONG)
 @pytest.mark.parametrize("name", EDITIONS)
-def test_a_wrong_model_makes_vectors_that_a_codec_refutes(name: str, kind: str) -> None:
+def test_vectors_of_a_wrong_model_differ_from_codec(name: str, kind: str) -> None:
     wrong = json.loads(document(with_wrong_angles(vectors.edition(name), WRONG[kind])))
     found = judged(wrong, codec_of(name, "reference")).differences
     assert found
     assert all("get_angles" in difference for difference in found)
 
 
-def test_an_edition_that_answers_nothing_has_vectors_too() -> None:
+def test_edition_without_replies_has_vectors() -> None:
     edition = vectors.edition("mycobot")
     silent = [replace(c, replies=(), text=None) for c in edition.commands if not c.text]
     family = replace(edition.families[0], commands=tuple(silent))
@@ -114,6 +117,6 @@ def test_an_edition_that_answers_nothing_has_vectors_too() -> None:
     assert {record["direction"] for record in found["messages"]} == {"request"}
 
 
-def test_the_folder_is_what_the_guide_says() -> None:
-    names = {path.name for path in FOLDER.iterdir()}
+def test_vector_folder_holds_the_files_of_the_guide() -> None:
+    names = {path.name for path in built("vectors").iterdir()}
     assert names == {"schema.json", *(f"{edition}.json" for edition in EDITIONS)}

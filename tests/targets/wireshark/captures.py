@@ -1,4 +1,4 @@
-"""Captures for the dissectors: recordings of a serial line, and TCP connections to port 9000."""
+"""Make captures for the dissectors: recordings of serial lines, and TCP to port 9000."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from cobotwire.capture import CaptureWriter, Interface, Packet
 from cobotwire.capture.packet import Direction as Way
 from cobotwire.codec.interface import Listening
 
-WAYS: dict[Listening, Way] = {"request": "sent", "reply": "heard", "both": "unknown"}
+WAYS: dict[Listening, Way] = {"request": "sent", "reply": "received", "both": "unknown"}
 START_NS = 1_700_000_000_000_000_000
-# Nanoseconds between packets that tell no time: a line that never falls silent.
+# Nanoseconds between packets without a time: too short for a silence.
 STEP_NS = 1000
 ARM_PORT = 9000
 _GLOBAL = struct.pack("<IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 262144, 1)
 
 
 class Chunk(NamedTuple):
-    """Bytes that went over line number ``line`` together; without a time, right after the last."""
+    """Bytes sent together on line number ``line``; without a time, right after the last ones."""
 
     line: int
     direction: Listening
@@ -30,7 +30,7 @@ class Chunk(NamedTuple):
 
 
 def timed(chunks: Sequence[Chunk]) -> list[Chunk]:
-    """Every chunk with its time."""
+    """Return the chunks, each with a time."""
     return [
         chunk if chunk.at_ns >= 0 else chunk._replace(at_ns=number * STEP_NS)
         for number, chunk in enumerate(chunks)
@@ -38,7 +38,7 @@ def timed(chunks: Sequence[Chunk]) -> list[Chunk]:
 
 
 def serial(chunks: Sequence[Chunk], edition: str) -> bytes:
-    """A recording: each line an interface, each chunk a packet as it was read or written."""
+    """Return a recording in which each line is an interface and each chunk a packet."""
     file = io.BytesIO()
     writer = CaptureWriter(file)
     for line in range(1 + max((chunk.line for chunk in chunks), default=0)):
@@ -52,8 +52,8 @@ def serial(chunks: Sequence[Chunk], edition: str) -> bytes:
 
 
 def tcp(chunks: Sequence[Chunk], edition: str = "") -> bytes:
-    """The same over the network: each line a connection, each chunk a segment."""
-    del edition  # nothing in a segment tells it
+    """Return a network capture in which each line is a connection and each chunk a segment."""
+    del edition  # a segment does not name it
     sequences: dict[tuple[int, Listening], int] = defaultdict(lambda: 1000)
     packets = []
     for chunk in timed(chunks):
@@ -64,7 +64,7 @@ def tcp(chunks: Sequence[Chunk], edition: str = "") -> bytes:
 
 
 def pcap(packets: Iterable[tuple[int, bytes]]) -> bytes:
-    """A file of Ethernet packets, each with its time."""
+    """Return a pcap file of Ethernet packets, each with its time."""
     records = (
         struct.pack("<IIII", *divmod(START_NS + at, 10**9), len(data), len(data)) + data
         for at, data in packets
@@ -73,7 +73,7 @@ def pcap(packets: Iterable[tuple[int, bytes]]) -> bytes:
 
 
 def segment(chunk: Chunk, sequence: int, to_arm: bool) -> bytes:
-    """An Ethernet packet with a TCP segment; line n is the client's port 20000 + n."""
+    """Return an Ethernet packet with a TCP segment; line n is the client's port 20000 + n."""
     client, arm = (20000 + chunk.line, b"\x0a\0\0\x01"), (ARM_PORT, b"\x0a\0\0\x02")
     (source, source_ip), (target, target_ip) = (client, arm) if to_arm else (arm, client)
     head = struct.pack(">HHIIBBHHH", source, target, sequence, 1, 5 << 4, 0x18, 65535, 0, 0)

@@ -1,4 +1,4 @@
-"""Every vector in a capture, and whether the dissector shows what the Python codec says."""
+"""Put every vector into a capture, and compare the dissector with the Python codec."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import vectors
-from cobotwire.codec.interface import Codec, Frame, Listening, Message
-from cobotwire.errors import ProtocolError
-from cobotwire.table import Field, Number
+from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Listening
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Field, Number
 from cobotwire_codegen.render.words import units
 from strategies import codec_of
 from targets.comparison import Comparison, ToolMissing
 from targets.vectors.comparison import read
 from targets.wireshark.captures import Chunk, serial
 from targets.wireshark.dissecting import ABSENT, Item, dissected, joined
-from targets.wireshark.truth import events_of, told
+from targets.wireshark.truth import events_of, summary
 
-# Streams come whole, and in pieces of seven.
+# Streams are sent whole, and in pieces of seven bytes.
 PIECES = (10_000, 7)
 
 
 class Line(NamedTuple):
-    """A vector on a line of its own: its chunks, and the fields of a text where it is one."""
+    """A vector on its own line: its chunks, and its fields if it is a text."""
 
     name: str
     direction: Listening
     chunks: list[bytes]
     text: dict[str, str] = {}  # noqa: RUF012  (never changed)
-    # What asks for a text, on the other side of the line.
-    asked: bytes = b""
+    # The request for a text, in the other direction.
+    text_request: bytes = b""
 
 
 class Check(NamedTuple):
-    """One thing that was compared: how it differs, or nothing; whether it is a field's value."""
+    """One comparison: the difference, empty if there is none; whether a field was compared."""
 
     difference: str
     is_field: bool = False
@@ -76,14 +76,14 @@ def compared(lines: list[Line], codec: Codec, scripts: list[Path] | None = None)
 
 
 def _chunks(number: int, line: Line) -> Iterator[Chunk]:
-    if line.asked:
-        yield Chunk(number, "request", line.asked)
+    if line.text_request:
+        yield Chunk(number, "request", line.text_request)
     for data in line.chunks:
         yield Chunk(number, line.direction, data)
 
 
 def lines_of(edition: str) -> Iterator[Line]:
-    """The spec's own vectors, and the shared ones."""
+    """Return the spec's own vectors and the shared ones."""
     for name, vector in vectors.every():
         printed = vector.frame or vector.printed
         if name == edition and printed is not None:
@@ -110,7 +110,7 @@ def lines_of(edition: str) -> Iterator[Line]:
 def _text(
     edition: str, name: str, direction: Listening, data: bytes, fields: dict[str, str]
 ) -> Line:
-    """A text, behind the request that it answers or belongs to."""
+    """Return a text on a line, after its request."""
     frame = codec_of(edition, "reference").encode(name, "request", ())
     if direction == "request":
         return Line(f"text of {name}", direction, [frame, data], fields)
@@ -118,9 +118,9 @@ def _text(
 
 
 def _judge(line: Line, codec: Codec, packets: list[list[Item]]) -> Iterator[Check]:
-    """Everything that is compared."""
+    """Yield every comparison of a line."""
     truth = events_of(codec, line.direction, ((chunk, False) for chunk in line.chunks))
-    wanted = told(truth, b"".join(line.chunks))
+    wanted = summary(truth, b"".join(line.chunks))
     found = joined(packets)
     yield Check("" if found == wanted else f"events {found}, not {wanted}")
     frames = [event for event in truth[0] if isinstance(event, Frame)]
@@ -143,9 +143,9 @@ def _frame(frame: Frame, item: Item, codec: Codec, direction: Listening) -> Iter
         yield Check("" if fits else f"{item.experts}, not {error}")
         return
     yield Check("" if not item.experts else f"{item.experts}")
-    said = item.own["frame.command"], item.own["frame.direction"]
-    same = said == (message.command.name, message.direction)
-    yield Check("" if same else f"{said}, not {message.command.name}")
+    named = item.own["frame.command"], item.own["frame.direction"]
+    same = named == (message.command.name, message.direction)
+    yield Check("" if same else f"{named}, not {message.command.name}")
     numbers = list(_numbers(message, frame.data, codec.table.frame.overhead + 1))
     yield Check("" if len(numbers) == len(item.leaves) else f"{len(item.leaves)} numbers")
     for leaf, (field, number, value, data) in zip(item.leaves, numbers):
@@ -153,20 +153,19 @@ def _frame(frame: Frame, item: Item, codec: Codec, direction: Listening) -> Iter
         words = _label(name, field, number, value)
         shown = leaf.filter.split(".")[-1], _value(leaf.value), leaf.data
         label = re.sub(r" \[-?\d+ on the wire\]| \[echo of the request\]$", "", leaf.label)
-        # Wireshark shows 15 digits, which is all that the editions' values have.
+        # Wireshark shows 15 digits, and the editions' values have no more.
         digits = float(f"{value:.15g}")
         same = shown == (name, digits, data) and label == words
         difference = f"{name}: {shown} {label!r}, not {value} {data.hex()} {words!r}"
         yield Check("" if same else difference, is_field=True)
 
 
-def _numbers(message: Message, frame: bytes, at: int) -> Iterator[tuple[Field, Number, Any, bytes]]:
-    for field, value in zip(message.layout.fields, message.values):
-        picked = [case for case in field.cases if not case.when]
-        if field.selector >= 0:
-            selected = message.values[field.selector]
-            picked = [case for case in field.cases if selected in case.when]
-        for number, part in zip(picked[0].numbers, value if field.many else [value]):
+def _numbers(
+    message: DecodedMessage, frame: bytes, at: int
+) -> Iterator[tuple[Field, Number, Any, bytes]]:
+    for field, value in zip(message.variant.fields, message.values):
+        numbers = message.variant.case(field, message.values).numbers
+        for number, part in zip(numbers, value if field.many else [value]):
             yield field, number, part, frame[at : at + number.width]
             at += number.width
 
@@ -181,5 +180,5 @@ def _label(name: str, field: Field, number: Number, value: Any) -> str:
 
 
 def _value(shown: str) -> float:
-    # A yes or no is 1 or 0, and a word in later versions of Wireshark.
+    # A boolean is 1 or 0; later versions of Wireshark write a word.
     return float({"True": "1", "False": "0"}.get(shown, shown))

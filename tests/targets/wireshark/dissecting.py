@@ -1,4 +1,4 @@
-"""What tshark shows of a capture with our dissectors, as records."""
+"""Run tshark with our dissectors on a capture, and return what it shows as records."""
 
 from __future__ import annotations
 
@@ -13,16 +13,15 @@ from pathlib import Path
 import pytest
 
 from cobotwire_codegen.targets.wireshark.fields import OWN
-from vectors import ROOT
+from targets.built import built
 
-DISSECTORS = ROOT / "targets" / "wireshark"
 ABSENT = "tshark is not installed (Debian: apt install tshark)"
 needs_tshark = pytest.mark.skipif(shutil.which("tshark") is None, reason=ABSENT)
 
 
 @dataclass
 class Leaf:
-    """A value in the tree: its filter name, its value, what a person reads, its bytes."""
+    """A value in the tree: its filter name, its value, its label, its bytes."""
 
     filter: str
     value: str
@@ -32,7 +31,7 @@ class Leaf:
 
 @dataclass
 class Item:
-    """A frame, a span of noise (``kind`` is its reason), or what is incomplete."""
+    """A frame, a span of noise (``kind`` is its reason), or incomplete bytes."""
 
     kind: str
     data: bytes
@@ -43,21 +42,21 @@ class Item:
 
 
 def tshark(capture: Path, *words: str, scripts: list[Path] | None = None) -> str:
-    """What tshark prints; a mistake in a script of ours fails the test."""
-    used = sorted(DISSECTORS.glob("*.lua")) if scripts is None else scripts
+    """Return what tshark prints; fail if one of our scripts has an error."""
+    used = sorted(built("wireshark").glob("*.lua")) if scripts is None else scripts
     loaded = [word for script in used for word in ("-X", f"lua_script:{script}")]
     result = subprocess.run(
         ["tshark", "-n", *loaded, "-r", str(capture), *words],
         capture_output=True,
         text=True,
         check=False,
-        # Nobody's own plugins and preferences.
+        # Ignore the user's plugins and preferences.
         env={**os.environ, "WIRESHARK_CONFIG_DIR": str(capture.parent)},
     )
-    said = result.stdout + result.stderr
+    output = result.stdout + result.stderr
     assert "Lua" not in result.stderr, result.stderr
-    assert "Lua Error" not in said
-    assert "Dissector bug" not in said
+    assert "Lua Error" not in output
+    assert "Dissector bug" not in output
     assert result.returncode == 0 or "cut short" in result.stderr, result.stderr
     return result.stdout
 
@@ -65,7 +64,7 @@ def tshark(capture: Path, *words: str, scripts: list[Path] | None = None) -> str
 def dissected(
     capture: Path, edition: str, *words: str, scripts: list[Path] | None = None
 ) -> list[list[Item]]:
-    """The items of each packet."""
+    """Return the items of each packet."""
     out = tshark(capture, "-T", "pdml", "-J", edition, *words, scripts=scripts)
     return [
         [item for proto in packet if proto.get("name") == edition for item in _items(proto)]
@@ -74,9 +73,9 @@ def dissected(
 
 
 def joined(packets: list[list[Item]]) -> list[tuple[str, bytes]]:
-    """The events of one direction of a line; noise of one reason is one, also over packets.
+    """Join the events of one direction, and noise of one reason also across packets.
 
-    What waits counts where it waits at the end.
+    Incomplete bytes count only at the end of the line.
     """
     found: list[tuple[str, bytes]] = []
     for number, packet in enumerate(packets, 1):

@@ -1,4 +1,4 @@
-"""Requests and their replies, on captures of our own simulated arm and on lines made up for it."""
+"""The dissector matches replies to requests, on captures of the simulated arm and on made lines."""
 
 from __future__ import annotations
 
@@ -11,30 +11,31 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture import Recording, read
 from cobotwire.codec.interface import Listening
-from cobotwire.sim import PtyServer, SimulatedArm
-from cobotwire.transport.opening import open_link
-from cobotwire.transport.tapped import TappedLink
+from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire.transport.opening import open_transport
+from cobotwire.transport.tapped import TappedTransport
 from strategies import codec_of
+from targets.built import built
 from targets.wireshark.captures import Chunk, serial, tcp
-from targets.wireshark.dissecting import DISSECTORS, Item, dissected, needs_tshark, tshark
+from targets.wireshark.dissecting import Item, dissected, needs_tshark, tshark
 
 pytestmark = needs_tshark
 TWICE = ("-2", "-R", "frame")
 MS = 1_000_000
 
 
-def line(edition: str, *said: tuple[int, Listening, str, tuple[object, ...]]) -> list[Chunk]:
-    """A line's frames: when (ms), which way, and what."""
+def line(edition: str, *frames: tuple[int, Listening, str, tuple[object, ...]]) -> list[Chunk]:
+    """Return a line's frames from their time (ms), direction, command and values."""
     codec = codec_of(edition, "reference")
     return [
         Chunk(0, way, codec.encode(name, way, values), at * MS)
-        for at, way, name, values in said
+        for at, way, name, values in frames
         if way != "both"
     ]
 
 
 def exchanges(chunks: list[Chunk], edition: str, path: Path) -> list[dict[str, str]]:
-    """Of each packet's only item: what it says of its exchange, and what an expert says."""
+    """Return the exchange and the expert message of each packet's only item."""
     path.write_bytes(serial(chunks, edition))
     return [exchange(items[0]) for items in dissected(path, edition, *TWICE)]
 
@@ -48,19 +49,21 @@ def exchange(item: Item) -> dict[str, str]:
 
 
 def ends(shown: list[list[Item]], key: str) -> list[tuple[int, Item]]:
-    """The items that name their other end, each with the number of its packet."""
+    """Return the items that name their other end, each with the number of its packet."""
     return [(n, item) for n, items in enumerate(shown, 1) for item in items if key in item.own]
 
 
 @pytest.mark.parametrize("cut", ["frames", "chunks"])
 @pytest.mark.parametrize("edition", ["mycobot", "mycobot280"])
-def test_a_recording_of_the_simulated_arm(edition: str, cut: str, tmp_path: Path) -> None:
+def test_recording_of_the_simulated_arm_is_dissected(
+    edition: str, cut: str, tmp_path: Path
+) -> None:
     package: Any = editions.load(edition)
     path = tmp_path / "arm.pcapng"
     codec = codecs.load(package.TABLE)
     with PtyServer(SimulatedArm(package.TABLE)) as server:
         with Recording(path, codec if cut == "frames" else None, url=server.url) as recording:
-            link = TappedLink(open_link(server.url, 115200), recording.record)
+            link = TappedTransport(open_transport(server.url, 115200), recording.record)
             with package.CLIENT(link) as arm:
                 arm.power_on()
                 arm.send_angles([1, 2, 3, 4, 5, 6], speed=50)
@@ -69,8 +72,8 @@ def test_a_recording_of_the_simulated_arm(edition: str, cut: str, tmp_path: Path
                     arm.is_power_on()
                 arm.get_ssid_pwd()
     packets = list(read(path))
-    # Chunks name no edition; where only one is installed, there is no doubt.
-    only = [DISSECTORS / f"{edition}.lua"]
+    # Chunks name no edition; if only one is installed, it is used.
+    only = [built("wireshark") / f"{edition}.lua"]
     shown = dissected(path, edition, *TWICE, scripts=only if cut == "chunks" else None)
     items = [item for found in shown for item in found]
     assert [item.kind for item in items if item.kind not in ("frame", "incomplete")] == [
@@ -78,16 +81,16 @@ def test_a_recording_of_the_simulated_arm(edition: str, cut: str, tmp_path: Path
     ]
     account = {leaf.filter: leaf.value for leaf in items[-1].leaves}
     assert set(account) == {"text.ssid", "text.password"}
-    asked, answered = ends(shown, "response_in"), ends(shown, "request_in")
-    assert len(asked) == len(answered) >= 7
-    for (question, asks), (reply, answers) in zip(asked, answered):
-        assert (asks.own["response_in"], answers.own["request_in"]) == (str(reply), str(question))
-        took = packets[reply - 1].time_ns - packets[question - 1].time_ns
-        assert answers.own["response_time"] == f"{took / 1e9:.9f}"
+    requests, replies = ends(shown, "response_in"), ends(shown, "request_in")
+    assert len(requests) == len(replies) >= 7
+    for (sent, request), (received, reply) in zip(requests, replies):
+        assert (request.own["response_in"], reply.own["request_in"]) == (str(received), str(sent))
+        took = packets[received - 1].time_ns - packets[sent - 1].time_ns
+        assert reply.own["response_time"] == f"{took / 1e9:.9f}"
     assert not [item.experts for item in items if item.experts]
 
 
-def test_a_reply_names_its_request_and_a_question_that_nobody_answers_is_told(
+def test_reply_names_its_request_and_query_without_reply_is_marked(
     tmp_path: Path,
 ) -> None:
     chunks = line(
@@ -105,36 +108,36 @@ def test_a_reply_names_its_request_and_a_question_that_nobody_answers_is_told(
     ]
 
 
-def test_a_question_that_was_lost_makes_no_later_one_answered_late(tmp_path: Path) -> None:
-    question, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
-    times = [(0, question), (100, question), (108, reply)]
-    times += [(200, question), (208, reply), (300, question), (308, reply)]
+def test_lost_request_does_not_delay_later_matches(tmp_path: Path) -> None:
+    request, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
+    times = [(0, request), (100, request), (108, reply)]
+    times += [(200, request), (208, reply), (300, request), (308, reply)]
     chunks = line("mycobot", *((at, *what) for at, what in times))  # type: ignore[arg-type]
     shown = exchanges(chunks, "mycobot", tmp_path / "line")
-    # Which of the first two was answered nobody can tell; from there on all is clear again.
+    # Either of the first two requests may be the one that got a reply; later pairs are certain.
     assert [found["ms"] for found in shown if "ms" in found] == ["108", "8", "8"]
     assert shown[1] == {"expert": "unanswered"}
 
 
-def test_questions_at_once_are_answered_in_turn(tmp_path: Path) -> None:
-    question, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
-    times = [(0, question), (1, question), (8, reply), (9, reply)]
+def test_simultaneous_requests_match_replies_in_order(tmp_path: Path) -> None:
+    request, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
+    times = [(0, request), (1, request), (8, reply), (9, reply)]
     chunks = line("mycobot", *((at, *what) for at, what in times))  # type: ignore[arg-type]
     shown = exchanges(chunks, "mycobot", tmp_path / "line")
     assert [found["ms"] for found in shown if "ms" in found] == ["8", "8"]
-    # Two in one segment, their answers in another one.
+    # Two requests in one segment, their replies in another one.
     both = [
         Chunk(0, "request", chunks[0].data * 2, 0),
         Chunk(0, "reply", chunks[2].data * 2, 5 * MS),
     ]
     path = tmp_path / "segments"
     path.write_bytes(tcp(both))
-    asked, answered = dissected(path, "mycobot280", *TWICE)
-    assert [exchange(item) for item in asked] == [{"response_in": "2"}] * 2
-    assert [exchange(item) for item in answered] == [{"request_in": "1", "ms": "5"}] * 2
+    two_requests, two_replies = dissected(path, "mycobot280", *TWICE)
+    assert [exchange(item) for item in two_requests] == [{"response_in": "2"}] * 2
+    assert [exchange(item) for item in two_replies] == [{"request_in": "1", "ms": "5"}] * 2
 
 
-def test_an_answer_too_late_or_to_other_arguments_is_nobodys(tmp_path: Path) -> None:
+def test_late_reply_or_one_with_other_arguments_matches_no_request(tmp_path: Path) -> None:
     chunks = line(
         "mycobot",
         (0, "request", "get_joint_min_angle", (1,)),
@@ -150,7 +153,7 @@ def test_an_answer_too_late_or_to_other_arguments_is_nobodys(tmp_path: Path) -> 
     ]
 
 
-def test_text_over_tcp_in_pieces_is_read_as_a_whole(tmp_path: Path) -> None:
+def test_text_over_tcp_in_pieces_is_joined(tmp_path: Path) -> None:
     codec = codec_of("mycobot280", "reference")
     chunks = [
         Chunk(0, "request", codec.encode("get_ssid_pwd", "request", ()), 0),
@@ -177,19 +180,19 @@ def test_text_over_tcp_in_pieces_is_read_as_a_whole(tmp_path: Path) -> None:
     assert shown[3][0].experts == []
 
 
-def test_each_line_is_read_by_the_edition_that_its_recording_names(tmp_path: Path) -> None:
+def test_each_interface_uses_the_edition_that_its_recording_names(tmp_path: Path) -> None:
     path = tmp_path / "line"
     frame = codec_of("mycobot", "reference").encode("get_angles", "request", ())
     for edition in ("mycobot", "mycobot280"):
         path.write_bytes(serial([Chunk(0, "request", frame)], edition))
         assert [len(items) for items in dissected(path, edition)] == [1]
-    # A dissector alone reads what another one should have read, and says so.
-    only = [DISSECTORS / "mycobot.lua"]
+    # If only one dissector is installed, it also reads another edition's interface, and says so.
+    only = [built("wireshark") / "mycobot.lua"]
     words = ("-T", "fields", "-e", "_ws.expert.message")
     assert "read as mycobot" in tshark(path, *words, scripts=only)
 
 
-def test_which_edition_reads_tcp_is_the_users_choice(tmp_path: Path) -> None:
+def test_user_chooses_the_edition_for_tcp(tmp_path: Path) -> None:
     path = tmp_path / "segments"
     frame = codec_of("mycobot", "reference").encode("get_angles", "request", ())
     path.write_bytes(tcp([Chunk(0, "request", frame)]))

@@ -1,4 +1,4 @@
-"""Every field of every vector, as Wireshark itself shows it, is what the Python codec says."""
+"""Wireshark shows every field of every vector with the value that the Python codec returns."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_every_field_of_every_vector_is_what_the_codec_says(edition: str) -> None:
+def test_every_field_of_every_vector_agrees_with_codec(edition: str) -> None:
     found = compare(edition)
     assert found.differences == []
     assert found.vectors > 1000
@@ -32,18 +32,18 @@ def test_every_field_of_every_vector_is_what_the_codec_says(edition: str) -> Non
 
 
 @pytest.mark.parametrize("fault", sorted(WRONG))
-def test_a_model_that_is_wrong_is_noticed(fault: str, tmp_path: Path) -> None:
+def test_fields_of_a_wrong_model_differ_from_codec(fault: str, tmp_path: Path) -> None:
     wrong = with_wrong_angles(vectors.edition(), WRONG[fault])
     write(Target(tmp_path, render_wireshark([wrong])))
     lines = [line for line in lines_of("mycobot") if "angles re" in line.name]
     found = compared(lines, codec_of("mycobot", "reference"), [tmp_path / "mycobot.lua"])
     assert found.differences
-    # What is wrong is told, and nothing else.
+    # The wrong field is reported, and nothing else.
     assert {text.split(" reply")[0] for text in found.differences} == {"messages: get_angles"}
 
 
 @pytest.mark.parametrize("name", ["mercury", "mybuddy"])
-def test_other_frame_formats_are_read_as_well(name: str, tmp_path: Path) -> None:
+def test_other_frame_formats_are_dissected(name: str, tmp_path: Path) -> None:
     edition = build_edition(FAMILIES / f"{name}.yaml", FAMILIES)
     write(Target(tmp_path / "lua", render_wireshark([edition])))
     script = tmp_path / "lua" / f"{name}.lua"
@@ -68,7 +68,7 @@ def test_other_frame_formats_are_read_as_well(name: str, tmp_path: Path) -> None
         assert ("frame.address" in item.own) == bool(lower.table(edition)["frame"]["addresses"])
 
 
-def test_filters_find_values_by_name_and_word(tmp_path: Path) -> None:
+def test_filters_find_values_by_field_and_by_label(tmp_path: Path) -> None:
     def found(query: str) -> list[str]:
         return tshark(path, "-Y", query, "-T", "fields", "-e", "frame.number").split()
 

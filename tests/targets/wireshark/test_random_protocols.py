@@ -1,4 +1,4 @@
-"""Any protocol that the spec's language can say becomes a dissector that reads it."""
+"""A dissector generated from a random protocol reads its messages."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NUMBERS = itertools.count()
 
 @settings(max_examples=5, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_a_random_protocol_is_dissected(tmp_path: Path, data: st.DataObject) -> None:
+def test_random_protocol_is_dissected(tmp_path: Path, data: st.DataObject) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}"))
     check(edition)
     write(Target(tmp_path / edition.name, render_wireshark([edition])))

@@ -1,4 +1,4 @@
-"""Whatever a line carries, and however it is cut: the events are those of the Python framer."""
+"""The dissector shows the Python framer's events for any stream, however it is cut."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import damage
-from cobotwire.capture.blocks import SIMPLE_PACKET, interface, section
+from cobotwire.capture.block_encoding import SIMPLE_PACKET, interface, section
 from cobotwire.codec.interface import Listening
 from codec.test_found import STREAMS
 from strategies import TABLES, chunked, codec_of, received, streams
 from streams import stream_a
+from targets.built import built
 from targets.wireshark.captures import STEP_NS, Chunk, pcap, segment, serial, tcp
-from targets.wireshark.dissecting import DISSECTORS, Item, dissected, joined, needs_tshark, tshark
-from targets.wireshark.truth import events_of, told
+from targets.wireshark.dissecting import Item, dissected, joined, needs_tshark, tshark
+from targets.wireshark.truth import events_of, summary
 
 pytestmark = needs_tshark
 EDITIONS = sorted(TABLES)
@@ -32,7 +33,7 @@ ON = bytes.fromhex("FE FE 03 12 01 FA")
 
 
 class Cut(NamedTuple):
-    """A direction of a line: its chunks, each with whether the line is silent behind it."""
+    """One direction of a line: its chunks, each with whether silence follows it."""
 
     direction: Listening
     chunks: list[tuple[bytes, bool]]
@@ -43,7 +44,7 @@ class Cut(NamedTuple):
 
 
 def packets_of(lines: Sequence[Cut]) -> list[Chunk]:
-    """All lines at once, their chunks in turn; each line has a clock of its own."""
+    """Return the chunks of all lines in turn; each line has its own clock."""
     found = []
     clocks = [0] * len(lines)
     for turn in range(max(len(line.chunks) for line in lines)):
@@ -67,14 +68,14 @@ def shown_by_line(data: bytes, chunks: list[Chunk], edition: str) -> dict[int, l
 
 
 def agrees(lines: Sequence[Cut], edition: str, over_tcp: bool) -> None:
-    """The dissector's events of every line are the framer's, byte for byte."""
+    """Check that the dissector's events of every line are the framer's, byte for byte."""
     chunks = packets_of(lines)
     write = tcp if over_tcp else serial
     shown = shown_by_line(write(chunks, edition), chunks, edition)
     codec = codec_of(edition, "native")
     for number, line in enumerate(lines):
         truth = events_of(codec, line.direction, line.chunks)
-        assert joined(shown[number]) == told(truth, line.data), line
+        assert joined(shown[number]) == summary(truth, line.data), line
 
 
 @st.composite
@@ -88,7 +89,7 @@ def cuts(draw: st.DrawFn, edition: str, directions: list[Listening]) -> Cut:
 @pytest.mark.parametrize("over_tcp", [False, True], ids=["serial", "tcp"])
 @settings(max_examples=4, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_any_stream_cut_anywhere_has_the_framers_events(
+def test_any_stream_cut_anywhere_shows_the_framers_events(
     over_tcp: bool, data: st.DataObject
 ) -> None:
     edition = data.draw(st.sampled_from(EDITIONS))
@@ -98,14 +99,14 @@ def test_any_stream_cut_anywhere_has_the_framers_events(
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_what_was_hard_once_has_its_events(edition: str) -> None:
+def test_found_streams_show_the_framers_events(edition: str) -> None:
     found = [each for each in STREAMS if each.table == edition and not each.unknown]
     assert len(found) >= 3
     agrees([Cut(each.listening, each.chunks) for each in found], edition, over_tcp=False)
 
 
 @pytest.mark.parametrize("over_tcp", [False, True], ids=["serial", "tcp"])
-def test_a_bad_line_in_reads_of_any_size(over_tcp: bool) -> None:
+def test_bad_line_in_reads_of_any_size_shows_the_framers_events(over_tcp: bool) -> None:
     table = TABLES["mycobot280"]
     sent = stream_a(table, 800, seed=8)
     lines = [damage.damage(table, sent, "mixed", 0.004), damage.noisy(table, sent, share=0.2)]
@@ -119,7 +120,7 @@ def test_a_bad_line_in_reads_of_any_size(over_tcp: bool) -> None:
     agrees(cut, "mycobot280", over_tcp)
 
 
-def test_a_frame_over_packets_names_where_it_begins_and_goes_on(tmp_path: Path) -> None:
+def test_frame_over_several_packets_names_its_first_and_last(tmp_path: Path) -> None:
     path = tmp_path / "line.pcapng"
     pieces = [FRAME[:5], FRAME[5:9], FRAME[9:] + ON[:3]]
     path.write_bytes(serial([Chunk(0, "reply", piece) for piece in pieces], "mycobot"))
@@ -135,13 +136,13 @@ def test_a_frame_over_packets_names_where_it_begins_and_goes_on(tmp_path: Path) 
     assert began.split() == ["1", "1"]
 
 
-def test_what_stands_in_one_packet_begins_in_no_other(tmp_path: Path) -> None:
+def test_frame_in_one_packet_names_no_other(tmp_path: Path) -> None:
     path = tmp_path / "line.pcapng"
     path.write_bytes(serial([Chunk(0, "reply", piece) for piece in (FRAME, ON, ON)], "mycobot"))
     assert tshark(path, "-Y", "mycobot.began_in || mycobot.continued_in") == ""
 
 
-def test_silence_refutes_what_waits_on_a_serial_line_and_not_over_tcp(tmp_path: Path) -> None:
+def test_silence_ends_a_waiting_candidate_on_serial_but_not_on_tcp(tmp_path: Path) -> None:
     path = tmp_path / "line"
     chunks = [Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", ON, SILENCE_NS)]
     path.write_bytes(serial(chunks, "mycobot"))
@@ -150,13 +151,13 @@ def test_silence_refutes_what_waits_on_a_serial_line_and_not_over_tcp(tmp_path: 
         ("no-header", FRAME[1:6]),
         ("frame", ON),
     ]
-    # As for the recorder, half a second is silence, and no less.
+    # As for the recorder, silence is half a second or more.
     for gap, kind in ((499_000_000, "frame"), (500_000_000, "truncated")):
         path.write_bytes(
             serial([Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", FRAME[6:], gap)], "mycobot")
         )
         assert joined(dissected(path, "mycobot"))[0][0] == kind
-    # A lost segment is sent again after a second or so: a frame must outlast that.
+    # TCP resends a lost segment after about a second, so a frame must wait that long.
     path.write_bytes(tcp([Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", FRAME[6:], 10**9)]))
     assert joined(dissected(path, "mycobot280"))[-1] == ("frame", FRAME)
 
@@ -168,7 +169,7 @@ IN_ORDER = ("-o", "tcp.reassemble_out_of_order:TRUE")
 def segments(
     folder: Path, *parts: tuple[int, bytes], words: Sequence[str] = ()
 ) -> list[list[Item]]:
-    """What is shown of segments of one direction, each with its place in the stream."""
+    """Return what is shown of segments of one direction, each given with its stream offset."""
     packets = [segment(Chunk(0, "reply", data), 1000 + at, False) for at, data in parts]
     path = folder / "segments.pcap"
     path.write_bytes(pcap((number * 1000, data) for number, data in enumerate(packets)))
@@ -179,23 +180,23 @@ def bytes_in(shown: list[list[Item]]) -> list[list[bytes]]:
     return [[item.data for item in items] for items in shown]
 
 
-def test_a_segment_that_comes_again_is_shown_once(tmp_path: Path) -> None:
+def test_retransmitted_segment_is_shown_once(tmp_path: Path) -> None:
     again = (0, FRAME[:9]), (0, FRAME[:9]), (9, FRAME[9:]), (9, FRAME[9:])
     for words in ((), NO_ANALYSIS):
         assert bytes_in(segments(tmp_path, *again, words=words))[2:] == [[FRAME], []]
 
 
-def test_a_segment_that_repeats_a_part_and_goes_on(tmp_path: Path) -> None:
+def test_overlapping_segment_is_shown_only_without_sequence_analysis(tmp_path: Path) -> None:
     parts = (0, FRAME[:9]), (5, FRAME[5:] + ON), (23, ON)
-    # Wireshark hands it to no dissector, unless it is told to look no closer at sequence numbers.
+    # Wireshark gives it to a dissector only if it does not analyze sequence numbers.
     assert bytes_in(segments(tmp_path, *parts))[1:] == [[], [FRAME[:1], FRAME[1:9], ON]]
     assert bytes_in(segments(tmp_path, *parts, words=NO_ANALYSIS))[1:] == [[FRAME, ON], [ON]]
 
 
-def test_a_segment_that_comes_late(tmp_path: Path) -> None:
+def test_segment_out_of_order_fills_the_gap_unless_wireshark_drops_it(tmp_path: Path) -> None:
     parts = (0, ON), (23, ON), (6, FRAME)
     assert bytes_in(segments(tmp_path, *parts, words=IN_ORDER)) == [[ON], [], [FRAME, ON]]
-    # It fills the hole that was left for it; or Wireshark keeps it to itself.
+    # The late segment fills its gap, or Wireshark gives it to no dissector.
     assert bytes_in(segments(tmp_path, *parts, words=NO_ANALYSIS)) == [[ON], [ON], [FRAME]]
     assert bytes_in(segments(tmp_path, *parts)) == [[ON], [ON], []]
     path = tmp_path / "segments.pcap"
@@ -203,7 +204,7 @@ def test_a_segment_that_comes_late(tmp_path: Path) -> None:
     assert missing.split() == ["2"]
 
 
-def test_a_segment_that_was_lost_ends_the_frame_that_waited(tmp_path: Path) -> None:
+def test_lost_segment_ends_the_waiting_frame(tmp_path: Path) -> None:
     lost = segments(tmp_path, (0, FRAME[:9]), (23, ON))
     assert [(item.kind, item.data) for item in lost[1]] == [
         ("truncated", FRAME[:1]),
@@ -213,7 +214,7 @@ def test_a_segment_that_was_lost_ends_the_frame_that_waited(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("over_tcp", [False, True], ids=["serial", "tcp"])
-def test_a_capture_that_breaks_off_anywhere_breaks_nothing(over_tcp: bool, tmp_path: Path) -> None:
+def test_truncated_capture_is_dissected_without_error(over_tcp: bool, tmp_path: Path) -> None:
     stream = (FRAME + b"\xfe\xfe\x0e" + ON) * 3
     chunks = [Chunk(0, "reply", stream[at : at + 7]) for at in range(0, len(stream), 7)]
     whole = (tcp if over_tcp else serial)(chunks, "mycobot280")
@@ -229,11 +230,11 @@ def test_a_capture_that_breaks_off_anywhere_breaks_nothing(over_tcp: bool, tmp_p
         ]
 
 
-def test_packets_that_were_cut_off_when_captured_are_told(tmp_path: Path) -> None:
+def test_packets_truncated_by_the_capture_are_marked(tmp_path: Path) -> None:
     packet = segment(Chunk(0, "reply", ON + FRAME), 1000, False)
     path = tmp_path / "snapped.pcap"
     data = pcap([(0, packet), (1, segment(Chunk(0, "reply", ON), 1023, False))])
-    # The first record's captured length, and the bytes that it has no more.
+    # Shorten the first record's captured length and remove the bytes beyond it.
     short = len(packet) - 8
     head = 24 + 16
     data = (
@@ -247,30 +248,30 @@ def test_packets_that_were_cut_off_when_captured_are_told(tmp_path: Path) -> Non
         ("no-header", FRAME[1:9]),
     ]
     assert [i.data for i in second] == [ON]
-    told = tshark(path, "-Y", "mycobot280.cut_off", "-T", "fields", "-e", "frame.number")
-    assert told.split() == ["1"]
-    # What was cut off was on the line: nothing is missing between the two.
+    marked = tshark(path, "-Y", "mycobot280.cut_off", "-T", "fields", "-e", "frame.number")
+    assert marked.split() == ["1"]
+    # The bytes that the capture cut off were on the line, so no segment is missing.
     assert not tshark(path, "-Y", "mycobot280.missing", "-T", "fields", "-e", "frame.number")
 
 
-def test_packets_without_time_or_direction_are_read(tmp_path: Path) -> None:
-    """Simple packets of pcapng, as other programs write them."""
+def test_packets_without_time_or_direction_are_dissected(tmp_path: Path) -> None:
+    """Read simple packets of pcapng, as other programs write them."""
     path = tmp_path / "simple.pcapng"
-    question = bytes.fromhex("FE FE 02 12 FA")
+    query = bytes.fromhex("FE FE 02 12 FA")
     packets = []
-    for data in (question, ON):
+    for data in (query, ON):
         padded = data + bytes(-len(data) % 4)
         size = 16 + len(padded)
         packets.append(struct.pack("<III", SIMPLE_PACKET, size, len(data)) + padded)
         packets[-1] += struct.pack("<I", size)
     path.write_bytes(section("test") + interface("", "", 0) + b"".join(packets))
-    asked, answered = dissected(path, "mycobot", scripts=[DISSECTORS / "mycobot.lua"])
-    assert (asked[0].own["frame.direction"], asked[0].data) == ("request", question)
-    assert (answered[0].own["frame.direction"], answered[0].data) == ("reply", ON)
-    assert answered[0].own["request_in"] == "1"
+    requests, replies = dissected(path, "mycobot", scripts=[built("wireshark") / "mycobot.lua"])
+    assert (requests[0].own["frame.direction"], requests[0].data) == ("request", query)
+    assert (replies[0].own["frame.direction"], replies[0].data) == ("reply", ON)
+    assert replies[0].own["request_in"] == "1"
 
 
-def test_packets_in_any_order_show_the_same(tmp_path: Path) -> None:
+def test_order_of_dissection_does_not_change_the_result(tmp_path: Path) -> None:
     random = np.random.default_rng(3)
     stream = damage.damage(TABLES["mycobot"], stream_a(TABLES["mycobot"], 60), "mixed", 0.01).data
     ends = np.cumsum(random.integers(1, 30, len(stream) // 15))
@@ -278,7 +279,7 @@ def test_packets_in_any_order_show_the_same(tmp_path: Path) -> None:
     path = tmp_path / "line.pcapng"
     path.write_bytes(serial(chunks, "mycobot"))
     once = dissected(path, "mycobot")
-    # Two passes, the second over a part of the packets.
+    # Dissect in two passes, the second over a part of the packets.
     again = dissected(path, "mycobot", "-2", "-R", "frame", "-Y", "frame.number > 20")
     assert len(again) == len(once) - 20
     for before, now in zip(once[20:], again, strict=True):

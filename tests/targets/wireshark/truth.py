@@ -1,4 +1,4 @@
-"""What the Python framer says of a line, in the form in which dissected packets are joined."""
+"""The Python framer's events of a line, in the form that joined dissected packets have."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Iterable
 
 from cobotwire.codec.interface import Codec, Event, Frame, Listening
 
-# The events so far, and how many bytes wait.
+# The events so far, and the number of bytes that wait.
 Truth = tuple[list[Event], int]
 
 
 def events_of(codec: Codec, direction: Listening, chunks: Iterable[tuple[bytes, bool]]) -> Truth:
-    """The events of chunks, each with whether the line is silent behind it; what waits, waits."""
+    """Return the events of chunks, each given with whether silence follows it."""
     framer = codec.framer(direction)
     events: list[Event] = []
     for data, silent in chunks:
@@ -21,8 +21,8 @@ def events_of(codec: Codec, direction: Listening, chunks: Iterable[tuple[bytes, 
     return events, framer.pending
 
 
-def told(truth: Truth, data: bytes) -> list[tuple[str, bytes]]:
-    """Kinds and bytes, adjacent noise of one reason joined, and at the end what waits."""
+def summary(truth: Truth, data: bytes) -> list[tuple[str, bytes]]:
+    """Return kinds and bytes, with adjacent noise of one reason joined and waiting bytes last."""
     events, pending = truth
     found: list[tuple[str, bytes]] = []
     for event in events:

@@ -1,1 +1,1 @@
-"""Tools for whoever writes a spec: explanations, first drafts, what a line shows, editors' help."""
+"""Tools for authors of a spec: explanations, drafts, unknown frames in captures."""

@@ -1,6 +1,6 @@
-"""Entries added to YAML files as text, so that comments and layout stay as they are.
+"""Adds entries to YAML files as text, so that comments and formatting stay as they are.
 
-No YAML writer is used: a place is found through ``load``, and lines are put there.
+No YAML writer is used: ``load`` finds the place, and lines are inserted there.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ _LISTED = ("frame", "types", "commands", "vectors", "errata", "changes")
 
 
 def appended(text: str, name: str, key: str, entry: list[str], blank: bool) -> str:
-    """A file's text with an entry at the end of what stands under a key of the whole file.
+    """Return a file's text with an entry added at the end of a top-level key.
 
     Raises:
-        SpecError: it stands there on one line, in brackets, or is no list or mapping.
+        SpecError: the key's value is on one line, or is not a list or mapping.
     """
     root = parse(text, name)
     held = root.entries.get(key) if isinstance(root, Mapping) else None
@@ -31,7 +31,7 @@ def appended(text: str, name: str, key: str, entry: list[str], blank: bool) -> s
         new = [f"{key}:", *(f"  {line}".rstrip() for line in entry)]
         return "\n".join([*_without_end(lines), "", *new]) + "\n"
     if isinstance(held, Scalar) or held.place.line == root.keys[key].line:
-        message = f"{key} stands on one line here; write it line by line, so that it can grow"
+        message = f"{key} is written on one line; write one entry a line, so that more can be added"
         raise SpecError([Problem(held.place, "wrong-kind", message)])
     margin = " " * (held.place.column - 1)
     end = _end(lines, root, key)
@@ -41,13 +41,13 @@ def appended(text: str, name: str, key: str, entry: list[str], blank: bool) -> s
 
 
 def _end(lines: list[str], root: Mapping, key: str) -> int:
-    """The line, from 0, at which what stands under a key has ended."""
+    """Return the line, from 0, after the end of a key's value."""
     here = root.keys[key].line
     later = [place.line for place in root.keys.values() if place.line > here]
     if not later:
         return len(lines)
     end = min(later) - 1
-    # What stands right above the next key speaks of it.
+    # A comment right above the next key belongs to that key.
     while lines[end - 1].startswith("#"):
         end -= 1
     return end
@@ -64,7 +64,7 @@ def _gap(after: list[str]) -> list[str]:
 
 
 def files_of(path: Path) -> Iterator[Path]:
-    """An edition's file and every file that it is read from."""
+    """Return an edition's file and every file that it names."""
     yield path
     root = load(path)
     entries = root.entries if isinstance(root, Mapping) else {}
@@ -83,17 +83,17 @@ def _names(node: Node | None) -> Iterator[str]:
 
 
 def built_with(path: Path, changed: dict[Path, str]) -> Edition:
-    """The edition as it would be with some files changed; nothing on disk is touched.
+    """Return the edition as it would be with some files changed; nothing on disk changes.
 
     Raises:
-        SpecError: with every problem that it would have; places are those of the changed files.
+        SpecError: the changed edition has problems; their places refer to the changed files.
     """
     files = {file.resolve() for file in files_of(path)}
     texts = {file.resolve(): text for file, text in changed.items()}
     here = Path.cwd().resolve()
     top = Path(os.path.commonpath([here, *files]))
     with TemporaryDirectory() as folder:
-        # A copy of the files, laid out as they are, so that they find each other.
+        # Copy the files with their relative paths, so that they find each other.
         for file in files:
             copy = Path(folder) / file.relative_to(top)
             copy.parent.mkdir(parents=True, exist_ok=True)

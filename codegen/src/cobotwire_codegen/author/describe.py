@@ -1,4 +1,4 @@
-"""A problem code or a command in plain text, for a terminal."""
+"""Describes a problem code or a command as plain text for a terminal."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from textwrap import fill, indent
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.author.codes import Explanation
-from cobotwire_codegen.model import Command, Edition, Evidence, Form, Vector
+from cobotwire_codegen.model import Command, Edition, Evidence, Variant, Vector
 from cobotwire_codegen.render import markdown, words
 
 _WIDTH = 96
 
 
 def describe_code(explanation: Explanation) -> str:
-    """All that is said of a problem code."""
+    """Return the explanation of a problem code."""
     parts = [
         f"{explanation.code}: {explanation.means}",
         f"Why: {explanation.why}",
-        f"Mend: {explanation.mend}",
+        f"Fix: {explanation.mend}",
     ]
     text = "\n".join(fill(part, _WIDTH, subsequent_indent="  ") for part in parts)
     wrong, right = indent(explanation.wrong, "  "), indent(explanation.right, "  ")
@@ -26,7 +26,7 @@ def describe_code(explanation: Explanation) -> str:
 
 
 def describe_command(edition: Edition, command: Command) -> str:
-    """The reference of a command."""
+    """Return the reference of a command."""
     return "\n".join(line.rstrip() for line in _command(edition, command))
 
 
@@ -37,9 +37,9 @@ def _command(edition: Edition, command: Command) -> Iterator[str]:
     for note in command.notes:
         yield _paragraph(f"Note: {note}")
     if command.alias:
-        yield _paragraph(f"The same message as {command.alias}, under a name of its own.")
-    for form in command.requests:
-        yield from _message(edition, command, "request", form)
+        yield _paragraph(f"The same message as {command.alias}, under a second name.")
+    for variant in command.requests:
+        yield from _message(edition, command, "request", variant)
     yield from _answer(edition, command)
     yield from _fields(command)
     yield from _vectors(edition, command)
@@ -51,24 +51,24 @@ def _paragraph(text: str) -> str:
     return fill(text, _WIDTH, initial_indent="  ", subsequent_indent="    ")
 
 
-def _message(edition: Edition, command: Command, direction: str, form: Form) -> Iterator[str]:
+def _message(edition: Edition, command: Command, direction: str, variant: Variant) -> Iterator[str]:
     yield ""
     yield f"{direction.capitalize()}, byte by byte:"
-    for position, content, value in markdown.byte_rows(edition, command, form):
+    for position, content, value in markdown.byte_rows(edition, command, variant):
         yield f"  {position:<6} {content.replace('`', ''):<24} {value}"
 
 
 def _answer(edition: Edition, command: Command) -> Iterator[str]:
     if command.request_text is not None:
         yield f"\nFollowed by text outside any frame: {markdown.pattern(command.request_text)}"
-    for form in command.replies:
-        yield from _message(edition, command, "reply", form)
+    for variant in command.replies:
+        yield from _message(edition, command, "reply", variant)
     if command.ack:
-        yield "  An acknowledgement: it may come, late or never, and is not waited for."
+        yield "  An acknowledgement: it may come, come late or never; clients do not wait for it."
     if command.text is not None:
         yield f"\nReply, text outside any frame: {markdown.pattern(command.text)}"
     if command.answers:
-        yield f"  Answered within {command.deadline_ms} ms."
+        yield f"  Deadline of the reply: {command.deadline_ms} ms."
     elif not command.replies:
         yield "\nReply: none."
 

@@ -1,4 +1,4 @@
-"""A new command and its first vectors, as lines of YAML."""
+"""Writes a new command and its first vectors as lines of YAML."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from fractions import Fraction
 from textwrap import wrap
 from typing import Literal
 
-from cobotwire_codegen.model import Command, Edition, Enum, Flag, Type, Value
+from cobotwire_codegen.model import Command, Edition
 from cobotwire_codegen.render.words import decimal
-from cobotwire_codegen.wire import build_frame, size
+from cobotwire_codegen.wire import build_frame
 
 Direction = Literal["request", "reply"]
 _PLAIN = re.compile(r"[A-Za-z][\w ,.;()'/+=-]*\Z")
-# Words that YAML takes for something else.
+# Words that YAML does not read as text.
 _NO_TEXT = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"}
 
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """What is said of a new command. A field is its name, its type and whether it is an echo."""
+    """A new command. A field is its name, its type and whether it is an echo."""
 
     name: str
     id: int
@@ -34,7 +34,7 @@ class Draft:
 
 
 def command_lines(draft: Draft) -> list[str]:
-    """The entry of the commands file."""
+    """Return the entry of the commands file."""
     lines = [f"{draft.name}:", f"  id: 0x{draft.id:02X}"]
     lines += [f"  title: {_scalar(draft.title)}", *_long("  doc", draft.doc)]
     lines.append(f"  safety: {draft.safety}")
@@ -45,7 +45,7 @@ def command_lines(draft: Draft) -> list[str]:
             lines.append(f"  {key}:")
         for name, type, echo in fields:
             more = ", echo: required" if echo else ""
-            lines.append(f"    - {{name: {name}, is: {type}{more}}}")
+            lines.append(f"    - {{name: {name}, type: {type}{more}}}")
     return lines
 
 
@@ -57,7 +57,7 @@ def vector_lines(
     values: dict[str, object],
     seen: bool,
 ) -> list[str]:
-    """An entry of the vectors file; ``which`` counts the forms of the message from 0."""
+    """Return an entry of the vectors file; ``which`` counts the message's variants from 0."""
     lines = [
         f"- name: {draft.name.replace('_', '-')}-{direction}{f'-{which + 1}' if which else ''}",
         f"  command: {draft.name}",
@@ -70,61 +70,28 @@ def vector_lines(
         shown = ", ".join(f"{name}: {_value(value)}" for name, value in values.items())
         lines.append(f"  values: {{{shown}}}")
     if not seen:
-        lines.append("  why: Computed from the layout; a frame that was seen on a line is better.")
+        lines.append("  why: Computed from the variant; a captured frame would be better evidence.")
     return lines
-
-
-def smallest(type: Type) -> object:
-    """The smallest legal value of a type."""
-    if isinstance(type, Flag):
-        return False
-    if isinstance(type, Enum):
-        return min(type.members, key=lambda member: member.value).name
-    if isinstance(type, Value):
-        return tuple(smallest(item) for _, item in type.items)
-    return _plain(type.bounds[0] * type.scale)
 
 
 def read(
     edition: Edition, command: Command, direction: Direction, frame: bytes
 ) -> dict[str, object]:
-    """The values that a frame carries, which must have the message's full form.
+    """Return the values that a frame carries; it must be the message's full variant.
 
     Raises:
         ValueError: the frame is not that message.
     """
-    form = command.forms(direction)[0]
-    widths = [size(field.type) for field in form]
+    variant = command.variants(direction)[0]
+    widths = [field.type.size for field in variant]
     start = len(frame) - edition.frame.check_size - sum(widths)
     values: dict[str, object] = {}
-    for field, width in zip(form, widths):
-        values[field.name] = _read(field.type, frame[max(start, 0) : max(start, 0) + width])
+    for field, width in zip(variant, widths):
+        values[field.name] = field.type.read(frame[max(start, 0) : max(start, 0) + width])
         start += width
     if build_frame(edition.frame, command, direction, values) != frame:
-        raise ValueError(f"{frame.hex(' ').upper()} is not the {direction} that is described")
+        raise ValueError(f"{frame.hex(' ').upper()} is not the described {direction}")
     return values
-
-
-def _read(type: Type, data: bytes) -> object:
-    if isinstance(type, Value):
-        values = []
-        for _, item in type.items:
-            values.append(_read(item, data[: item.wire.width]))
-            data = data[item.wire.width :]
-        return tuple(values)
-    raw = int.from_bytes(data, type.wire.order)
-    whole = raw - 256**type.wire.width if raw > type.wire.signed_at else raw
-    if isinstance(type, Flag):
-        return whole == 1
-    if isinstance(type, Enum):
-        names = {member.value: member.name for member in type.members}
-        return names.get(whole, str(whole))
-    return _plain(whole * type.scale)
-
-
-def _plain(exact: Fraction | int) -> object:
-    exact = Fraction(exact)
-    return int(exact) if exact.denominator == 1 else exact
 
 
 def _value(value: object) -> str:

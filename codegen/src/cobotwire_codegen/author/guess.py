@@ -1,4 +1,4 @@
-"""What the bytes of an unknown message suggest. Guesses, no more: the words say so."""
+"""Guesses what the bytes of an unknown message mean."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-# A word that is measured seldom jumps further than this between two frames.
+# A measured word rarely changes by more than this between two frames.
 _SMOOTH = 2500
 _FEW = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """What some bytes of the data look like; ``first`` counts from 0."""
+    """A guess about some bytes of the data; ``first`` counts from 0."""
 
     first: int
     width: int
@@ -22,7 +22,7 @@ class Guess:
 
 
 def guess(payloads: Sequence[bytes]) -> list[Guess]:
-    """Guesses for every byte of messages of one length, in the order in which they were seen."""
+    """Return guesses for every byte of messages of one length, in order of arrival."""
     return list(_guesses(payloads)) if payloads else []
 
 
@@ -49,7 +49,7 @@ def _text(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
 
 
 def _word(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
-    # Two bytes whose second one starts a word are no word: that one is a high byte.
+    # If the second byte starts a word, it is a high byte, and these two are not a word.
     if not _smooth(payloads, first, length) or _smooth(payloads, first + 1, length):
         return None
     words = [_signed(payload, first) for payload in payloads]
@@ -58,7 +58,7 @@ def _word(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
 
 
 def _smooth(payloads: Sequence[bytes], first: int, length: int) -> bool:
-    """Whether two bytes move as one number; only a carry into the high byte tells that."""
+    """Return whether two bytes change as one number, which only a carry can show."""
     if first + 2 > length:
         return False
     high = {payload[first] for payload in payloads}

@@ -1,4 +1,4 @@
-"""Where a new command and its vectors belong in the files of an edition."""
+"""Finds the files of an edition that a new command and its vectors belong to."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 
 
 def families(edition: Path) -> dict[str, Path]:
-    """The edition's own commands files by family; in a one-file protocol, one without a name."""
+    """Return the commands files by family; a one-file protocol has one without a name."""
     commands = _under(edition, "commands")
     if isinstance(commands, Mapping):
         return {"": edition}
@@ -21,7 +21,7 @@ def families(edition: Path) -> dict[str, Path]:
 
 
 def vectors_file(edition: Path) -> Path:
-    """The file that new vectors go to: missing.yaml, else the last one, else the edition's own."""
+    """Return the file for new vectors: missing.yaml, else the last one, else the edition."""
     paths = _files(edition, _under(edition, "vectors"))
     named = [path for path in paths if path.name == "missing.yaml"]
     return [edition, *paths, *named][-1]

@@ -1,4 +1,4 @@
-"""Ids and lengths seen on a line that the edition lacks, each with a draft of its entry."""
+"""Finds ids and lengths in a capture that the edition lacks, and drafts their entries."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from cobotwire_codegen.author.guess import Guess, guess
-from cobotwire_codegen.author.scan import Seen, known_layouts, scan
-from cobotwire_codegen.model import Edition, Flag, Quantity
+from cobotwire_codegen.author.scan import Seen, known_variants, scan
+from cobotwire_codegen.model import Edition
 
 _HEX = re.compile(rb"[0-9A-Fa-fxX\s,]*\Z")
 _EXAMPLES = 3
@@ -25,26 +25,26 @@ class News:
 
     @property
     def id(self) -> int:
-        """The id."""
+        """The command id."""
         return self.frames[0].id
 
     @property
     def data_bytes(self) -> int:
-        """How many data bytes the messages have."""
+        """The number of data bytes of the messages."""
         return len(self.frames[0].data)
 
     @property
     def examples(self) -> list[str]:
-        """A few frames that differ, in hex."""
+        """A few different frames, in hex."""
         differing = dict.fromkeys(seen.frame for seen in self.frames)
         return [frame.hex(" ").upper() for frame in list(differing)[:_EXAMPLES]]
 
 
 def capture_bytes(given: bytes) -> bytes:
-    """The bytes of a capture: raw, or hex as text.
+    """Return the bytes of a capture that is raw or hex text.
 
     Raises:
-        ValueError: it is hex text with half a byte.
+        ValueError: the hex text has half a byte.
     """
     if not _HEX.match(given):
         return given
@@ -52,8 +52,8 @@ def capture_bytes(given: bytes) -> bytes:
 
 
 def reconcile(edition: Edition, line: bytes, direction: str) -> tuple[int, list[News]]:
-    """How many frames stand on a line, and what in them the edition lacks."""
-    known = known_layouts(edition, direction)
+    """Return the number of frames in a capture, and the messages that the edition lacks."""
+    known = known_variants(edition, direction)
     ids = {command.id: command.name for command in edition.commands}
     groups: dict[tuple[int, int], list[Seen]] = {}
     count = 0
@@ -70,16 +70,16 @@ def reconcile(edition: Edition, line: bytes, direction: str) -> tuple[int, list[
 
 
 def draft_lines(edition: Edition, news: News, direction: str) -> Iterator[str]:
-    """A draft of the entry in the commands file."""
+    """Return a draft of the entry in the commands file."""
     yield f"# GUESSED from {len(news.frames)} frame(s); {news.why}."
     yield from (f"# Seen: {example}" for example in news.examples)
     yield f"unknown_{news.id:02x}_{news.data_bytes}:"
     yield f"  id: 0x{news.id:02X}"
     yield f"  title: Unknown 0x{news.id:02X}"
-    yield "  doc: Nobody knows yet."
-    yield "  safety: persistent write  # the strictest, until it is known"
+    yield "  doc: Unknown."
+    yield "  safety: persistent write  # the strictest class, until it is known"
     if news.guesses:
-        note = "  # or reply: the line does not say" if direction == "both" else ""
+        note = "  # or reply: the capture does not show which" if direction == "both" else ""
         yield f"  {'reply' if direction == 'reply' else 'request'}:{note}"
     yield from (line for item in news.guesses for line in _fields(edition, item))
 
@@ -90,23 +90,22 @@ def _fields(edition: Edition, item: Guess) -> Iterator[str]:
         const = item.says.removeprefix("always ") if kind == "constant" else ""
         more = f", const: {const}" if const else ""
         name = f"{kind}_{first}"
-        yield f"    - {{name: {name}, is: {_type(edition, kind)}{more}}}  # guess: {item.says}"
+        yield f"    - {{name: {name}, type: {_type(edition, kind)}{more}}}  # guess: {item.says}"
 
 
 def _type(edition: Edition, kind: str) -> str:
-    """A type of the edition that could say it; a name that the checker will ask about if none."""
+    """Return a type of the edition that fits, or a name that the checker will report."""
     width = 2 if kind == "word" else 1
     for type in edition.types:
-        if kind == "flag" and isinstance(type, Flag):
+        if kind == type.kind == "flag":
             return type.name
-        plain = isinstance(type, Quantity) and type.wire.width == width and not type.choices
-        if plain and kind != "flag" and isinstance(type, Quantity) and type.range is None:
+        if kind != "flag" and type.can_hold_any(width):
             return type.name
     return "unknown_word" if kind == "word" else "unknown_byte"
 
 
 def plain(news: News, draft: list[str]) -> dict[str, Any]:
-    """The same as data."""
+    """Return the message as data for JSON."""
     return {
         "id": news.id,
         "data_bytes": news.data_bytes,

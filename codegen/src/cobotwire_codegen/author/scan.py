@@ -1,4 +1,4 @@
-"""Cuts frames out of a line by the law of framing, knowing the frame but not the commands.
+"""Finds frames in a capture by the framing law, knowing the frame format but no commands.
 
 As docs/framing.md has it for unknown firmware: any id, any LEN up to the frame's longest; a
 candidate is refuted by the first byte that refutes it and the scan goes on one byte behind its
@@ -14,12 +14,12 @@ from dataclasses import dataclass
 
 from cobotwire_codegen.lower import maximum_length
 from cobotwire_codegen.model import Edition, Frame
-from cobotwire_codegen.wire import check_of, size
+from cobotwire_codegen.wire import check_of
 
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """A frame on the line; ``offset`` counts bytes of the capture."""
+    """A frame in the capture; ``offset`` counts bytes of the capture."""
 
     offset: int
     id: int
@@ -27,20 +27,20 @@ class Seen:
     frame: bytes
 
 
-def known_layouts(edition: Edition, direction: str) -> set[tuple[int, int]]:
-    """The ids with the data lengths that the edition has; of both directions by default."""
+def known_variants(edition: Edition, direction: str) -> set[tuple[int, int]]:
+    """Return the ids with the data lengths that the edition has in one or both directions."""
     directions = ("request", "reply") if direction == "both" else (direction,)
     return {
-        (command.id, sum(size(field.type) for field in form))
+        (command.id, sum(field.type.size for field in variant))
         for command in edition.commands
-        for way, forms in (("request", command.requests), ("reply", command.replies))
+        for way, variants in (("request", command.requests), ("reply", command.replies))
         if way in directions
-        for form in forms
+        for variant in variants
     }
 
 
 def scan(edition: Edition, line: bytes, known: set[tuple[int, int]]) -> Iterator[Seen]:
-    """The frames of a line, in order."""
+    """Return the frames of a capture, in order."""
     start = 0
     while start < len(line):
         start = line.find(edition.frame.header, start)
@@ -55,7 +55,7 @@ def scan(edition: Edition, line: bytes, known: set[tuple[int, int]]) -> Iterator
 
 
 def _frame_at(edition: Edition, line: bytes, start: int) -> Seen | None:
-    """The frame that stands at a place, or None."""
+    """Return the frame that starts at an offset, or None."""
     frame = edition.frame
     if not line.startswith(frame.header, start):
         return None
@@ -82,7 +82,7 @@ def _checks(frame: Frame, whole: bytes) -> bool:
 
 
 def _hides(edition: Edition, line: bytes, seen: Seen, known: set[tuple[int, int]]) -> bool:
-    """Whether an unknown candidate would swallow the start of a frame that the edition knows."""
+    """Return whether an unknown candidate would hide the start of a known frame."""
     if (seen.id, len(seen.data)) in known:
         return False
     end = seen.offset + len(seen.frame)

@@ -1,4 +1,4 @@
-"""A first protocol: a commented file that passes the checker as it is."""
+"""Writes a first protocol: a commented file without problems."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from cobotwire_codegen.author.schema import schema_json
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
+from cobotwire_codegen.language.schema import schema_json
 
 
 def first_protocol(name: str, schema: str) -> tuple[str, str]:
-    """The texts of a protocol's file and of its schema; ``schema`` is the schema's file name.
+    """Return the texts of a protocol's file and of its schema; ``schema`` is its file name.
 
     Raises:
-        SpecError: the name is none that an edition can have.
+        SpecError: the name is not a valid edition name.
     """
     text = (files("cobotwire_codegen.author") / "protocol.yaml").read_text(encoding="utf-8")
     class_name = "".join(map(str.capitalize, name.split("_")))

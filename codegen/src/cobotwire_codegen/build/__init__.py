@@ -1,4 +1,4 @@
-"""Nodes to the model: references resolved, defaults filled in."""
+"""Builds the model from nodes: resolves references and fills in defaults."""
 
 from cobotwire_codegen.build.edition import build_edition
 

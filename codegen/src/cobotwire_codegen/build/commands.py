@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from cobotwire_codegen.build.fields import build_field, build_forms
+from cobotwire_codegen import language
+from cobotwire_codegen.build.fields import build_field, build_variants
 from cobotwire_codegen.build.parts import FamilyParts, Parts
-from cobotwire_codegen.build.read_back import build_read_back, build_tries
-from cobotwire_codegen.build.text import build_text
+from cobotwire_codegen.build.read_back import build_read_back, build_samples
+from cobotwire_codegen.build.text import build_reply_text, build_request_text
 from cobotwire_codegen.build.types import Types, disputes
 from cobotwire_codegen.errors import Place, Problem
 from cobotwire_codegen.load import Node
-from cobotwire_codegen.model import ROLES, SAFETY, Command, Family, Form
+from cobotwire_codegen.model import Command, Family, Variant
 from cobotwire_codegen.reader import Reader
 
 
 def build_family(
     family: FamilyParts, parts: Parts, types: Types, deadline_ms: int, problems: list[Problem]
 ) -> Family:
-    """A family with its commands."""
+    """Return a family with its commands."""
     acks = _Acks(parts, types, problems)
     commands = [
         _command(name, place, node, parts, types, acks, deadline_ms, problems)
@@ -26,29 +27,29 @@ def build_family(
 
 
 class _Acks:
-    """The edition's rule for commands that nothing else answers."""
+    """The edition's rule for commands that have no reply of their own."""
 
     def __init__(self, parts: Parts, types: Types, problems: list[Problem]) -> None:
-        self.forms: tuple[Form, ...] = ()
-        self._except: list[str] = []
+        self.variants: tuple[Variant, ...] = ()
+        self._except: tuple[str, ...] = ()
         if parts.acks is None:
             return
-        reader = Reader(parts.acks, "the acks", problems)
-        field = reader.required("field")
-        self._except = reader.names("except")
-        reader.text("why")
+        spec = language.Acks
+        reader = Reader(parts.acks, spec, "the acks", problems)
+        field = reader.get(spec.field)
+        self._except = reader.get(spec.except_)
+        reader.get(spec.why)
         known = set(parts.commands())
         for name in self._except:
             if name not in known:
                 reader.problem("unknown-command", f"there is no command {name}")
         if field is not None:
-            # One byte, or a bare frame: both are seen on the line.
-            self.forms = ((build_field(field, "reply", reader, types),), ())
-        reader.done()
+            # Both a frame with one byte and a bare frame have been observed.
+            self.variants = ((build_field(field, "reply", reader, types),), ())
 
-    def of(self, name: str) -> tuple[Form, ...]:
-        """The acknowledgement of a command that has no other reply."""
-        return () if name in self._except else self.forms
+    def of(self, name: str) -> tuple[Variant, ...]:
+        """Return the acknowledgement of a command that has no other reply."""
+        return () if name in self._except else self.variants
 
 
 def _command(
@@ -61,36 +62,35 @@ def _command(
     deadline_ms: int,
     problems: list[Problem],
 ) -> Command:
-    reader = Reader(node, f"the command {name}", problems)
-    replies = build_forms(reader, "reply", types)
-    text = build_text(reader, "reply_text")
-    ack = reader.yes("ack")
+    spec = language.Command
+    reader = Reader(node, spec, f"the command {name}", problems)
+    replies = build_variants(reader, "reply", types)
+    text = build_reply_text(reader, spec.reply_text)
+    ack = reader.get(spec.ack)
     if not replies and text is None:
         replies = acks.of(name)
         ack = bool(replies)
-    command = Command(
+    return Command(
         place=place,
-        id=reader.integer("id"),
+        id=reader.get(spec.id),
         name=name,
-        title=reader.text("title"),
-        doc=reader.text("doc"),
-        safety=reader.one_of("safety", SAFETY),
-        role=reader.one_of("role", ROLES, ""),
-        source=reader.lines("source"),
-        deadline_ms=reader.positive("deadline_ms", deadline_ms),
-        requests=build_forms(reader, "request", types) or ((),),
+        title=reader.get(spec.title),
+        doc=reader.get(spec.doc),
+        safety=reader.get(spec.safety),
+        role=reader.get(spec.role),
+        source=reader.get(spec.source),
+        deadline_ms=reader.get(spec.deadline_ms) or deadline_ms,
+        requests=build_variants(reader, "request", types) or ((),),
         replies=replies,
         ack=ack,
-        alias=reader.text("alias", ""),
-        shares_id=tuple(reader.names("shares_id")),
+        alias=reader.get(spec.alias),
+        shares_id=reader.get(spec.shares_id),
         text=text,
-        request_text=build_text(reader, "request_text"),
+        request_text=build_request_text(reader, spec.request_text),
         read_by=build_read_back(reader),
-        tries=build_tries(reader),
-        agrees_with=tuple(reader.names("agrees_with")),
-        notes=reader.texts("notes"),
-        disputed=disputes(reader),
+        samples=build_samples(reader),
+        agrees_with=reader.get(spec.agrees_with),
+        notes=reader.get(spec.notes),
+        disputed=disputes(reader, spec.disputed),
         changes=tuple(parts.changes.get(name, ())),
     )
-    reader.done()
-    return command

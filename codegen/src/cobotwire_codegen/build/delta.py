@@ -1,58 +1,53 @@
 """Changes of a delta edition, applied to the nodes of its base.
 
-A change keeps the place of what it brings, so that a mistake in it is told where it stands. Each
-gives its reason and its evidence; one that changes what is not there is a problem.
+What a change adds keeps its place in the changes file, so that a mistake in it is reported there.
+Each change gives its reason and its evidence. Changing what does not exist is a problem.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from cobotwire_codegen import language
 from cobotwire_codegen.build.delta_fields import change_fields, set_keys
-from cobotwire_codegen.build.parts import SECTIONS, Named, Parts, find
+from cobotwire_codegen.build.parts import Named, Parts, find
 from cobotwire_codegen.build.types import evidence
 from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.load import Mapping, Node, Scalar
 from cobotwire_codegen.model import Change
-from cobotwire_codegen.reader import Reader
+from cobotwire_codegen.reader import Reader, chosen
 
-Operation = Callable[[Parts, Reader, list[str]], str]
+Operation = Callable[[Parts, Reader, tuple[str, ...]], str]
 
 
 def apply_changes(parts: Parts, root: Node, problems: list[Problem]) -> None:
-    """Apply a changes file, in its order; or a change that stands in the edition itself."""
+    """Apply a changes file in its order, or one change that is part of the edition file."""
     if isinstance(root, Mapping) and "changes" not in root.entries:
         _apply(parts, root, problems)
         return
-    reader = Reader(root, "the changes file", problems)
-    for node in reader.items("changes"):
+    spec = language.ChangesFile
+    for node in Reader(root, spec, "the changes file", problems).get(spec.changes):
         _apply(parts, node, problems)
-    reader.done()
 
 
 def _apply(parts: Parts, node: Node, problems: list[Problem]) -> None:
-    reader = Reader(node, "a change", problems)
-    chosen = [name for name in OPERATIONS if reader.node(name) is not None]
-    if len(chosen) != 1:
-        reader.problem("bad-change", f"a change is just one of {', '.join(OPERATIONS)}")
+    verb = chosen(node, language.CHANGE, "a change", problems)
+    if verb is None:
         return
-    names = reader.names(chosen[0])
-    for key in _KEYS.get(chosen[0], ()):
-        reader.node(key)
-    what = OPERATIONS[chosen[0]](parts, reader, names)
-    change = Change(node.place, what, reader.text("why"), evidence(reader))
-    if not change.evidence:
-        reader.problem("no-evidence", "a change must carry its evidence")
-    reader.done()
-    if chosen[0] == "rename":
-        names = [reader.text("to", "")]
-    if chosen[0] in ("change", "rename"):
+    spec = language.ChangeCommands
+    reader = Reader(node, language.CHANGE, "a change", problems)
+    names = reader.get(reader.record.keys()[verb])
+    what = OPERATIONS[verb](parts, reader, names)
+    change = Change(node.place, what, reader.get(spec.why), evidence(reader, spec.evidence))
+    if verb == "rename":
+        names = (reader.get(language.RenameCommand.to),)
+    if verb in ("change", "rename"):
         for name in names:
             parts.changes.setdefault(name, []).append(change)
     parts.general_changes.append(change)
 
 
-def _remove(parts: Parts, reader: Reader, names: list[str]) -> str:
+def _remove(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     for name in names:
         holder = _holder(parts, reader, name)
         if holder is not None:
@@ -60,8 +55,8 @@ def _remove(parts: Parts, reader: Reader, names: list[str]) -> str:
     return f"Removed {', '.join(names)}."
 
 
-def _rename(parts: Parts, reader: Reader, names: list[str]) -> str:
-    new = reader.text("to")
+def _rename(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
+    new = reader.get(language.RenameCommand.to)
     for name in names:
         holder = _holder(parts, reader, name)
         if holder is not None:
@@ -72,7 +67,7 @@ def _rename(parts: Parts, reader: Reader, names: list[str]) -> str:
     return f"Renamed {', '.join(names)} to {new}."
 
 
-def _change(parts: Parts, reader: Reader, names: list[str]) -> str:
+def _change(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     words: list[str] = []
     for name in names:
         holder = _holder(parts, reader, name)
@@ -80,21 +75,21 @@ def _change(parts: Parts, reader: Reader, names: list[str]) -> str:
         if holder is None or not isinstance(node, Mapping):
             continue
         changed, words = set_keys(node, reader, f"the command {name}")
-        for key in ("request", "reply"):
-            operations = list(reader.items(key))
+        for key in (language.ChangeCommands.request, language.ChangeCommands.reply):
+            operations = reader.get(key)
             if operations:
-                words.append(change_fields(changed, key, operations, reader))
+                words.append(change_fields(changed, key.name, operations, reader))
         holder[name] = (holder[name][0], changed)
     return f"Changed {', '.join(names)}: {'; '.join(words) or 'nothing'}."
 
 
-def _change_type(parts: Parts, reader: Reader, names: list[str]) -> str:
+def _change_type(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     words: list[str] = []
     for name in names:
         known = (name for named in parts.types.values() for name in named)
         if not find(known, name, "type", reader.place, reader.problems):
             continue
-        section = next(section for section in SECTIONS if name in parts.types[section])
+        section = next(section for section in language.SECTIONS if name in parts.types[section])
         place, node = parts.types[section][name]
         if isinstance(node, Mapping):
             changed, words = set_keys(node, reader, f"the type {name}")
@@ -102,7 +97,7 @@ def _change_type(parts: Parts, reader: Reader, names: list[str]) -> str:
     return f"Changed the type {', '.join(names)}: {'; '.join(words) or 'nothing'}."
 
 
-def _withdraw(parts: Parts, reader: Reader, names: list[str]) -> str:
+def _withdraw(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     """Drop vectors of the base that do not hold here."""
     known = {_vector_name(node): node for node in parts.vectors}
     for name in names:
@@ -117,14 +112,6 @@ OPERATIONS: dict[str, Operation] = {
     "change": _change,
     "change_type": _change_type,
     "withdraw": _withdraw,
-}
-
-
-# The keys that a change may have, whether or not what it changes is there.
-_KEYS = {
-    "rename": ("to",),
-    "change": ("set", "unset", "request", "reply"),
-    "change_type": ("set", "unset"),
 }
 
 

@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
+from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import find
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
-from cobotwire_codegen.reader import Reader
-
-# What may be done to a field, and the keys that go with it.
-_VERBS: dict[str, tuple[str, ...]] = {
-    "add": ("after",),
-    "remove": (),
-    "rename": ("to",),
-    "change": ("set", "unset"),
-}
+from cobotwire_codegen.reader import Reader, chosen
 
 
 def set_keys(node: Mapping, reader: Reader, what: str) -> tuple[Mapping, list[str]]:
-    """A copy of a mapping with keys set and unset; and what was done, in words."""
+    """Return a copy of a mapping with keys set and unset, and a description of the changes."""
     changed = Mapping(node.place, dict(node.entries), dict(node.keys))
     words = []
-    for key, place, value in reader.entries("set"):
+    spec = language.ChangeCommands
+    for key, place, value in reader.get(spec.set):
         changed.entries[key], changed.keys[key] = value, place
         words.append(f"{key} set{_shown(value)}")
-    for key in reader.names("unset"):
+    for key in reader.get(spec.unset):
         if key not in changed.entries:
             reader.problem("nothing-there", f"{what} has no {key} that could be unset")
         changed.entries.pop(key, None)
@@ -30,8 +24,8 @@ def set_keys(node: Mapping, reader: Reader, what: str) -> tuple[Mapping, list[st
     return changed, words
 
 
-def change_fields(command: Mapping, key: str, operations: list[Node], outer: Reader) -> str:
-    """Add, remove, rename and change fields of a message."""
+def change_fields(command: Mapping, key: str, operations: tuple[Node, ...], outer: Reader) -> str:
+    """Add, remove, rename and change fields of a message; return a description."""
     node = command.entries.get(key)
     fields = list(node.items) if isinstance(node, Sequence) else []
     words = [_change_field(fields, operation, key, outer) for operation in operations]
@@ -44,28 +38,22 @@ def change_fields(command: Mapping, key: str, operations: list[Node], outer: Rea
 
 
 def _change_field(fields: list[Node], operation: Node, key: str, outer: Reader) -> str:
-    reader = Reader(operation, f"a change of the {key}", outer.problems)
-    verbs = [verb for verb in _VERBS if reader.node(verb) is not None]
-    for key in (key for verb in verbs for key in _VERBS[verb]):
-        reader.node(key)
-    words = ""
-    if len(verbs) != 1:
-        reader.problem("bad-change", f"a change of a field is just one of {', '.join(_VERBS)}")
-    elif verbs == ["add"]:
-        words = _add(fields, reader)
-    else:
-        index = _index(fields, reader.text(verbs[0]), reader)
-        if index >= 0:
-            words = _change_one(fields, index, verbs[0], reader)
-    reader.done()
-    return words
+    choice = language.FIELD_CHANGES[key]
+    verb = chosen(operation, choice, f"a change of the {key}", outer.problems)
+    if verb is None:
+        return ""
+    reader = Reader(operation, choice, f"a change of the {key}", outer.problems)
+    if verb == "add":
+        return _add(fields, reader)
+    index = _index(fields, reader.get(reader.record.keys()[verb]), reader)
+    return _change_one(fields, index, verb, reader) if index >= 0 else ""
 
 
 def _add(fields: list[Node], reader: Reader) -> str:
-    field = reader.required("add")
-    after = reader.text("after", "")
+    field = reader.get(language.AddRequestField.add)
+    after = reader.get(language.AddRequestField.after)
     index = _index(fields, after, reader) + 1 if after else len(fields)
-    assert field is not None
+    assert field is not None, "the change was chosen by this key"
     fields.insert(index, field)
     return f"{_name(field)} added"
 
@@ -81,7 +69,7 @@ def _change_one(fields: list[Node], index: int, verb: str, reader: Reader) -> st
         fields[index], words = set_keys(field, reader, f"the field {name}")
         return f"{name} changed ({', '.join(words)})"
     renamed = Mapping(field.place, dict(field.entries), dict(field.keys))
-    renamed.entries["name"] = reader.required("to") or field.entries["name"]
+    renamed.entries["name"] = reader.node(language.RenameField.to) or field.entries["name"]
     fields[index] = renamed
     return f"{name} renamed to {_name(renamed)}"
 

@@ -1,9 +1,10 @@
-"""An edition file, and through it every other file of the edition and of its base."""
+"""Builds an edition from its file, and from every other file of it and of its base."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from cobotwire_codegen import language
 from cobotwire_codegen.build.commands import build_family
 from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.frame import build_frame_format
@@ -14,14 +15,12 @@ from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.reader import Reader
 
-_OWN = ("edition", "class", "title", "doc", "document", "firmware")
-
 
 def build_edition(path: Path, root: Path) -> Edition:
-    """Read an edition; file names in messages are relative to ``root``.
+    """Return an edition; file names in messages are relative to ``root``.
 
     Raises:
-        SpecError: with every problem that reading found.
+        SpecError: reading found problems; the error carries all of them.
     """
     problems: list[Problem] = []
     reader, parts = _collect(path, root, problems, ())
@@ -34,41 +33,40 @@ def build_edition(path: Path, root: Path) -> Edition:
 def _collect(
     path: Path, root: Path, problems: list[Problem], above: tuple[Path, ...]
 ) -> tuple[Reader, Parts]:
-    """The parts of an edition: the base's, changed by the delta, with the edition's own."""
+    """Return the parts of an edition: those of its base, changed by the delta, then its own."""
     files = Files(path.parent, root, problems)
-    reader = Reader(files.load(path), "the edition", problems)
-    base = reader.node("base")
+    reader = Reader(files.load(path), language.EDITION, "the edition", problems)
+    is_delta = reader.record is language.DeltaEdition
+    base = reader.node(language.DeltaEdition.base) if is_delta else None
     parts = Parts()
     if base is not None:
         above = (*above, path.resolve())
         base_path = files.path(base)
         if base_path.resolve() in above:
-            problem = Problem(base.place, "base-circle", "an edition cannot stand on itself")
+            problem = Problem(base.place, "base-circle", "an edition cannot be its own base")
             raise SpecError([*problems, problem])
-        base_reader, parts = _collect(base_path, root, problems, above)
-        for key in _OWN:
-            base_reader.node(key)
-        base_reader.done()
-        # The base's errata speak of the base's document; its changes are its own story.
+        _, parts = _collect(base_path, root, problems, above)
+        # The base's errata are about the base's document, its changes about its own base.
         parts.errata, parts.changes, parts.general_changes = [], {}, []
-        for node in files.listed(reader, "changes"):
+        for node in files.listed(reader, language.DeltaEdition.changes):
             apply_changes(parts, node, problems)
     add_own(parts, reader, files)
     return reader, parts
 
 
 def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
-    frame = build_frame_format(parts, reader, problems)
+    spec = language.WholeEdition
+    frame = build_frame_format(parts, reader.place, problems)
     types = Types(parts.types, problems)
-    edition = Edition(
+    return Edition(
         place=reader.place,
-        name=reader.text("edition"),
-        class_name=reader.text("class"),
-        title=reader.text("title"),
-        doc=reader.text("doc"),
-        document=reader.text("document", ""),
-        firmware=reader.text("firmware", ""),
-        base=reader.text("base", "").rpartition("/")[2].removesuffix(".yaml"),
+        name=reader.get(spec.edition),
+        class_name=reader.get(spec.class_),
+        title=reader.get(spec.title),
+        doc=reader.get(spec.doc),
+        document=reader.get(spec.document),
+        firmware=reader.get(spec.firmware),
+        base=_base_name(reader),
         joints=parts.joints or 0,
         frame=frame,
         wires=tuple(types.wires.values()),
@@ -82,5 +80,9 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         vectors=tuple(build_vector(node, problems) for node in parts.vectors),
         changes=tuple(parts.general_changes),
     )
-    reader.done()
-    return edition
+
+
+def _base_name(reader: Reader) -> str:
+    if reader.record is not language.DeltaEdition:
+        return ""
+    return reader.get(language.DeltaEdition.base).rpartition("/")[2].removesuffix(".yaml")

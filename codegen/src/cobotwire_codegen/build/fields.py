@@ -1,109 +1,116 @@
-"""The fields of a message, and the forms that it can have."""
+"""The fields of a message, and the variants that it can have."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Literal
 
+from cobotwire_codegen import language
 from cobotwire_codegen.build.types import Types, stand_in
 from cobotwire_codegen.errors import nearest
 from cobotwire_codegen.load import Node, Sequence
-from cobotwire_codegen.model import Enum, Field, Form, Member, Quantity, Type, Value
-from cobotwire_codegen.reader import Reader
+from cobotwire_codegen.model import Field, Member, Type, Variant
+from cobotwire_codegen.reader import Reader, label
 
-# A field that picks cases has so few values that they can be listed.
+Direction = Literal["request", "reply"]
+# A selector has so few values that a case for each can be listed.
 MOST_CASES = 64
+_KEYS = {
+    "request": (language.Command.request, language.Command.request_variants),
+    "reply": (language.Command.reply, language.Command.reply_variants),
+}
 
 
-def build_forms(reader: Reader, key: str, types: Types) -> tuple[Form, ...]:
-    """The forms of a message, the full one first; none where the command does not give it."""
-    listed = list(reader.items(f"{key}_forms"))
-    plain = reader.node(key)
-    if listed and plain is not None:
-        reader.problem("two-forms", f"{reader.what} gives both {key} and {key}_forms")
-    forms = []
-    for node in listed:
-        if isinstance(node, Sequence):
-            forms.append(_form(node.items, key, reader, types))
-        else:
-            reader.problem("wrong-kind", f"{key}_forms must list lists of fields", node.place)
-    if forms:
-        return tuple(forms)
-    nodes = tuple(reader.items(key))
-    if plain is not None and not nodes:
-        reader.problem("empty-list", f"{key} of {reader.what} is empty: leave the key out")
-    return _shorter(_form(nodes, key, reader, types), reader) if nodes else ()
+def build_variants(reader: Reader, direction: Direction, types: Types) -> tuple[Variant, ...]:
+    """Return the variants of a message, the full one first; none if the command has no message."""
+    plain, several = _KEYS[direction]
+    listed, fields = reader.get(several), reader.get(plain)
+    if listed and reader.node(plain) is not None:
+        message = f"{reader.what} gives both {plain.name} and {several.name}; keep one of them"
+        reader.problem("two-variants", message)
+    if listed:
+        inner = [node.items for node in listed if isinstance(node, Sequence)]
+        return tuple(_variant(nodes, direction, reader, types) for nodes in inner)
+    return _shorter(_variant(fields, direction, reader, types), reader) if fields else ()
 
 
-def _shorter(full: Form, reader: Reader) -> tuple[Form, ...]:
-    """The full form, and what is left when optional fields are left out."""
-    forms = [full]
-    while forms[-1] and forms[-1][-1].optional:
-        forms.append(forms[-1][:-1])
-    if any(field.optional for field in forms[-1]):
+def _shorter(full: Variant, reader: Reader) -> tuple[Variant, ...]:
+    """Return the full variant, and what remains when optional fields are left out."""
+    variants = [full]
+    while variants[-1] and variants[-1][-1].optional:
+        variants.append(variants[-1][:-1])
+    if any(field.optional for field in variants[-1]):
         reader.problem("bad-optional", f"{reader.what}: only the last fields can be optional")
     without = tuple(field for field in full if field.echo != "optional")
     if without != full:
-        forms.append(without)
-    return tuple(forms)
+        variants.append(without)
+    return tuple(variants)
 
 
-def _form(nodes: tuple[Node, ...], key: str, outer: Reader, types: Types) -> Form:
-    plain = [_read(node, key, outer, types) for node in nodes]
+def _variant(nodes: tuple[Node, ...], direction: Direction, outer: Reader, types: Types) -> Variant:
+    plain = [_read(node, direction, outer, types) for node in nodes]
     return tuple(_selected(field, inner, plain, types) for field, inner in plain)
 
 
-def build_field(node: Node, key: str, outer: Reader, types: Types) -> Field:
-    """One field that no other one decides."""
-    [field] = _form((node,), key, outer, types)
+def build_field(node: Node, direction: Direction, outer: Reader, types: Types) -> Field:
+    """Return one field whose type does not depend on another field."""
+    [field] = _variant((node,), direction, outer, types)
     return field
 
 
-def _read(node: Node, key: str, outer: Reader, types: Types) -> tuple[Field, Reader]:
-    reader = Reader(node, f"a field of {outer.what}", outer.problems)
-    name = reader.text("name")
-    reader.what = f"the field {name} of {outer.what}"
-    by = reader.text("by", "")
+def _read(node: Node, direction: Direction, outer: Reader, types: Types) -> tuple[Field, Reader]:
+    spec = language.RequestField
+    name = label(node, spec.name)
+    what = f"the field {name} of {outer.what}" if name else f"a field of {outer.what}"
+    reader = Reader(node, language.FIELDS[direction], what, outer.problems)
+    is_selected = "selector" in reader.record.keys()  # noqa: SIM118
     type: Type = stand_in(node.place)
-    if not by:
-        where = reader.required("is")
-        if where is not None:
-            type = types.find(reader.text("is"), where.place)
-    narrowed = reader.range("range")
-    if narrowed is not None and not by and isinstance(type, Quantity):
-        lowest, highest = (bound * type.scale for bound in type.bounds)
-        if narrowed[0] < lowest or narrowed[1] > highest or type.choices:
-            message = f"the range of {reader.what} is not inside that of its type {type.name}"
-            reader.problem("bad-range", message)
-        type = replace(type, range=narrowed)
-    if narrowed is not None and (by or not isinstance(type, Quantity)):
-        reader.problem("bad-range", f"{reader.what} is no quantity: it takes no range")
+    if not is_selected and reader.node(spec.type) is not None:
+        type = types.find(reader.get(spec.type), reader.place_of(spec.type))
+    type = _narrowed(type, reader, is_selected)
     field = Field(
         place=node.place,
-        name=name,
+        name=reader.get(spec.name),
         type=type,
-        doc=reader.text("doc", "") or type.doc,
-        echo=_echo(reader) if key == "reply" else "",
-        optional=reader.yes("optional"),
+        doc=reader.get(spec.doc) or type.doc,
+        echo=_echo(reader) if direction == "reply" else "",
+        optional=reader.get(spec.optional_),
         const=_const(reader, type),
-        by=by,
+        selector=reader.get(language.SelectedRequestField.selector) if is_selected else "",
         cases=(),
     )
     return field, reader
 
 
+def _narrowed(type: Type, reader: Reader, is_selected: bool) -> Type:
+    """Return the type with the range that the field gives it."""
+    narrowed = reader.get(language.RequestField.range)
+    if narrowed is None:
+        return type
+    inside = None if is_selected else type.narrowed(narrowed)
+    if inside is not None:
+        return inside
+    if is_selected or type.kind != "quantity":
+        message = f"{reader.what} is not a quantity; remove its range"
+    else:
+        message = f"the range of {reader.what} is not inside that of its type {type.name}"
+    reader.problem("bad-range", message)
+    return type
+
+
 def _echo(reader: Reader) -> Literal["", "required", "optional"]:
-    word = reader.one_of("echo", ("required", "optional"), "")
+    word = reader.get(language.ReplyField.echo)
     if word == "required":
         return "required"
     return "optional" if word == "optional" else ""
 
 
 def _const(reader: Reader, type: Type) -> int | None:
-    if reader.node("const") is None:
+    key = language.RequestField.const
+    if reader.node(key) is None:
         return None
-    value = reader.integer("const")
-    if isinstance(type, Value) or not type.wire.minimum <= value <= type.wire.maximum:
+    value = reader.get(key)
+    if not type.can_hold(value):
         reader.problem("bad-const", f"{reader.what} cannot always be {value}")
         return None
     return value
@@ -112,42 +119,32 @@ def _const(reader: Reader, type: Type) -> int | None:
 def _selected(
     field: Field, reader: Reader, plain: list[tuple[Field, Reader]], types: Types
 ) -> Field:
-    """Give a field that another one decides its cases, one for each value of that field."""
-    if not field.by:
-        reader.done()
+    """Give a field whose type depends on another one its cases, one for each value of that one."""
+    if not field.selector:
         return field
-    selector = next((other for other, _ in plain if other.name == field.by), None)
+    selector = next((other for other, _ in plain if other.name == field.selector), None)
     members = _values(selector)
     if not members:
-        message = f"by: {field.by} must name a field of the message with few values"
+        message = f"selector: {field.selector} must name a field of the message with few values"
         reader.problem("bad-selector", message)
     cases: list[tuple[Member, Type]] = []
-    for name, place, node in reader.entries("cases"):
-        inner = Reader(node, f"the case {name} of {reader.what}", reader.problems)
-        type = types.find(inner.text("is"), node.place)
-        inner.done()
+    for name, place, node in reader.get(language.SelectedRequestField.cases):
+        inner = Reader(node, language.Case, f"the case {name} of {reader.what}", reader.problems)
+        type = types.find(inner.get(language.Case.type), node.place)
         if name in members:
             cases.append((members.pop(name), type))
         elif selector is not None:
-            hint = nearest(name, members)
-            reader.problem("unknown-case", f"{name} is no open case{hint}", place)
+            message = f"{name} is not a value of {field.selector}"
+            reader.problem("unknown-case", f"{message}{nearest(name, members)}", place)
     for name in members:
         reader.problem("missing-case", f"{reader.what} has no case for {name}")
-    reader.done()
     first = cases[0][1] if cases else field.type
     return replace(field, type=first, doc=field.doc or first.doc, cases=tuple(cases))
 
 
 def _values(selector: Field | None) -> dict[str, Member]:
-    """The values of a field that picks cases, by the names that the cases use."""
-    if selector is None or selector.by:
+    """Return the values of a selector by the names that its cases use."""
+    if selector is None or selector.selector:
         return {}
-    if isinstance(selector.type, Enum):
-        return {member.name: member for member in selector.type.members}
-    if not isinstance(selector.type, Quantity) or selector.type.scale != 1:
-        return {}
-    lowest, highest = (int(bound) for bound in selector.type.bounds)
-    numbers = selector.type.choices or range(lowest, highest + 1)
-    if len(numbers) > MOST_CASES:
-        return {}
-    return {str(n): Member(selector.place, str(n), n, "") for n in numbers}
+    values = selector.type.values(MOST_CASES)
+    return {member.name: replace(member, place=selector.place) for member in values}

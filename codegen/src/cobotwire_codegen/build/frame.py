@@ -1,62 +1,67 @@
-"""The frame and the link."""
+"""The frame format and the transport."""
 
 from __future__ import annotations
 
+from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Parts
-from cobotwire_codegen.errors import Problem
-from cobotwire_codegen.model import CHECKS, Frame, Member
+from cobotwire_codegen.errors import Place, Problem
+from cobotwire_codegen.load import Node
+from cobotwire_codegen.model import Frame, Member
 from cobotwire_codegen.reader import Reader
 
 _FOOTED = ("command", "data", "footer")
 _CHECKED = ("command", "data", "check")
 
 
-def build_frame_format(parts: Parts, outer: Reader, problems: list[Problem]) -> Frame:
-    """The frame format of an edition."""
-    frame = Reader(parts.frame or outer.root, "the frame", problems)
-    link = Reader(parts.link or parts.frame or outer.root, "the link", problems)
-    word = frame.one_of("check", CHECKS, "footer")
-    wanted = _FOOTED if word == "footer" else _CHECKED
-    if frame.texts("length_counts") != wanted:
-        frame.problem("bad-frame", f"length_counts must be [{', '.join(wanted)}]")
-    frame.lines("source")
-    _read_link(link)
+def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> Frame:
+    """Return the frame format of an edition; a stand-in if the edition lacks it."""
+    if parts.frame is None or parts.transport is None:
+        return Frame(place, b"\xfe\xfe", "footer", b"\xfa", (), 0, "", 1, 1)
+    spec, port = language.Frame, language.Transport
+    frame = Reader(parts.frame, spec, "the frame", problems)
+    transport = Reader(parts.transport, port, "the transport", problems)
+    # For people who read the file: nothing is made of these.
+    for key in (port.data_bits, port.stop_bits):
+        transport.get(key)
+    transport.get(port.parity)
+    transport.get(port.source)
+    frame.get(spec.source)
+    word = frame.get(spec.check)
     built = Frame(
         place=frame.place,
-        header=frame.bytes("header") or b"",
+        header=frame.get(spec.header) or b"",
         check="sum" if word == "sum" else "footer" if word == "footer" else "crc16-modbus",
-        footer=frame.bytes("footer") or b"",
+        footer=frame.get(spec.footer) or b"",
         addresses=_addresses(frame),
-        maximum_data=frame.integer("maximum_data"),
-        doc=frame.text("doc"),
-        baudrate=link.positive("baudrate"),
-        deadline_ms=link.positive("deadline_ms"),
+        maximum_data=frame.get(spec.maximum_data),
+        doc=frame.get(spec.doc),
+        baudrate=transport.get(port.baudrate),
+        deadline_ms=transport.get(port.deadline_ms),
     )
-    if len(built.header) != 2 or len(built.footer) != (1 if word == "footer" else 0):
-        frame.problem(
-            "bad-frame", "the header has two bytes; the footer one, where it is the check"
-        )
-    if not 0 <= built.maximum_data <= 254 - built.check_size:
-        frame.problem("bad-frame", f"LEN is a byte: maximum_data cannot be {built.maximum_data}")
-    frame.done()
-    link.done()
+    _compare(frame, built)
     return built
 
 
-def _read_link(link: Reader) -> None:
-    for word in ("data_bits", "stop_bits"):
-        link.integer(word, 0)
-    link.one_of("parity", ("none", "even", "odd"), "none")
-    link.lines("source")
+def _compare(frame: Reader, built: Frame) -> None:
+    """Note what does not fit together."""
+    wanted = _FOOTED if built.check == "footer" else _CHECKED
+    if frame.get(language.Frame.length_counts) != wanted:
+        frame.problem("bad-frame", f"length_counts must be [{', '.join(wanted)}]")
+    if len(built.header) != 2 or len(built.footer) != (1 if built.check == "footer" else 0):
+        message = "the header must have two bytes; the footer one if `check` is footer, else none"
+        frame.problem("bad-frame", message)
+    most = 254 - built.check_size
+    if built.maximum_data > most:
+        message = f"maximum_data of the frame is {built.maximum_data}; allowed: 0..{most}"
+        frame.problem("bad-frame", message)
 
 
 def _addresses(frame: Reader) -> tuple[Member, ...]:
-    found = []
-    for name, place, node in frame.entries("addresses"):
-        inner = Reader(node, f"the address {name}", frame.problems)
-        member = Member(place, name, inner.integer("value"), inner.text("doc"))
-        inner.done()
-        if not 0 <= member.value <= 255:
-            inner.problem("bad-frame", f"the address {name} = {member.value} is no byte")
-        found.append(member)
-    return tuple(found)
+    entries = frame.get(language.Frame.addresses)
+    return tuple(_address(name, place, node, frame.problems) for name, place, node in entries)
+
+
+def _address(name: str, place: Place, node: Node, problems: list[Problem]) -> Member:
+    spec = language.Address
+    reader = Reader(node, spec, f"the address {name}", problems)
+    return Member(place, name, reader.get(spec.value), reader.get(spec.doc))

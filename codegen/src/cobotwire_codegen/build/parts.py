@@ -1,6 +1,6 @@
-"""The parts of an edition as nodes: its own files, laid over those of its base.
+"""The parts of an edition as nodes: its own files, added to those of its base.
 
-Whatever an edition names may stand in a file of its own or right there, so that a small protocol
+The content of every file that an edition names may also be part of it, so that a small protocol
 can be one file.
 """
 
@@ -10,18 +10,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from cobotwire_codegen import language
 from cobotwire_codegen.errors import Place, Problem, SpecError, nearest
+from cobotwire_codegen.language.records import Key
+from cobotwire_codegen.language.shapes import items_of
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 from cobotwire_codegen.model import Change
 from cobotwire_codegen.reader import Reader
 
 Named = dict[str, tuple[Place, Node]]
-SECTIONS = ("wire", "quantities", "flags", "enums", "values")
 
 
 @dataclass
 class FamilyParts:
-    """A family of commands, not yet built."""
+    """A family of commands as nodes."""
 
     place: Place
     name: str
@@ -32,13 +34,15 @@ class FamilyParts:
 
 @dataclass
 class Parts:
-    """An edition, not yet built. A delta changes these in place."""
+    """An edition as nodes. A delta changes them in place."""
 
     frame: Node | None = None
-    link: Node | None = None
+    transport: Node | None = None
     joints: int | None = None
     acks: Node | None = None
-    types: dict[str, Named] = field(default_factory=lambda: {name: {} for name in SECTIONS})
+    types: dict[str, Named] = field(
+        default_factory=lambda: {name: {} for name in language.SECTIONS}
+    )
     families: dict[str, FamilyParts] = field(default_factory=dict)
     vectors: list[Node] = field(default_factory=list)
     errata: list[Node] = field(default_factory=list)
@@ -46,18 +50,18 @@ class Parts:
     general_changes: list[Change] = field(default_factory=list)
 
     def family_of(self, command: str) -> FamilyParts | None:
-        """The family that holds a command."""
+        """Return the family that holds a command."""
         holders = (family for family in self.families.values() if command in family.commands)
         return next(holders, None)
 
     def commands(self) -> Iterator[str]:
-        """The names of all commands."""
+        """Return the names of all commands."""
         for family in self.families.values():
             yield from family.commands
 
 
 class Files:
-    """Loads what an edition names, relative to the edition's own file."""
+    """Loads the files that an edition names, relative to the edition's own file."""
 
     def __init__(self, folder: Path, root: Path, problems: list[Problem]) -> None:
         self._folder = folder
@@ -65,16 +69,16 @@ class Files:
         self._problems = problems
 
     def load(self, path: Path) -> Node:
-        """A file's content."""
+        """Return a file's content."""
         path, root = path.resolve(), self._root.resolve()
         shown = path.relative_to(root) if path.is_relative_to(root) else path
         return load(path, shown.as_posix())
 
     def path(self, node: Node) -> Path:
-        """The file that a node names.
+        """Return the path of the file that a node names.
 
         Raises:
-            SpecError: there is none, and nothing can be said of what it would hold.
+            SpecError: the file does not exist, so reading cannot continue.
         """
         name = node.value if isinstance(node, Scalar) else None
         if not isinstance(name, str) or not self._is_file(name):
@@ -90,72 +94,78 @@ class Files:
             return False
 
     def content(self, node: Node) -> Node:
-        """The content of the file that a node names, or the node itself if it names none."""
+        """Return the content of the file that a node names, or the node itself."""
         return self.load(self.path(node)) if isinstance(node, Scalar) else node
 
-    def listed(self, reader: Reader, key: str) -> list[Node]:
-        """The contents of a list of files."""
-        return [self.content(node) for node in reader.items(key)]
+    def listed(self, reader: Reader, key: Key[Node | None]) -> list[Node]:
+        """Return the contents of a list of files."""
+        node = reader.get(key)
+        subject = f"{key.name} of {reader.what}"
+        nodes = () if node is None else items_of(node, subject, reader.problem)
+        return [self.content(node) for node in nodes]
 
 
 def add_own(parts: Parts, reader: Reader, files: Files) -> None:
-    """Lay an edition's own files over the parts of its base."""
+    """Add an edition's own files to the parts of its base."""
     _add_frame(parts, reader, files)
-    if reader.node("joints") is not None or parts.joints is None:
-        parts.joints = reader.integer("joints")
-        if parts.joints < 0:
-            reader.problem("bad-number", f"an edition cannot have {parts.joints} joints")
-    parts.acks = reader.node("acks") or parts.acks
-    node = reader.node("types")
+    spec = language.WholeEdition
+    if reader.node(spec.joints) is not None or parts.joints is None:
+        parts.joints = reader.get(spec.joints)
+    parts.acks = reader.get(spec.acks) or parts.acks
+    node = reader.get(spec.types)
     if node is not None:
         _add_types(parts, files.content(node), reader.problems)
     _add_commands(parts, reader, files)
-    for key, found in (("vectors", parts.vectors), ("errata", parts.errata)):
-        node = reader.node(key)
-        for item in node.items if isinstance(node, Sequence) else (node,) if node else ():
-            found.extend(_listed(files.content(item), key, reader.problems))
+    for item in _one_or_many(reader.get(spec.vectors)):
+        parts.vectors += _listed(files.content(item), language.VectorsFile.vectors, reader.problems)
+    for item in _one_or_many(reader.get(spec.errata)):
+        parts.errata += _listed(files.content(item), language.ErrataFile.errata, reader.problems)
+
+
+def _one_or_many(node: Node | None) -> tuple[Node, ...]:
+    return node.items if isinstance(node, Sequence) else () if node is None else (node,)
 
 
 def _add_frame(parts: Parts, reader: Reader, files: Files) -> None:
-    node = reader.node("frame") if parts.frame is not None else reader.required("frame")
+    spec = language.FrameFile
+    node = reader.get(language.WholeEdition.frame)
     if node is None:
         return
-    inner = Reader(files.content(node), "the frame file", reader.problems)
-    parts.frame = inner.required("frame")
-    parts.link = inner.node("link") or parts.link
-    if parts.link is None:
-        inner.required("link")
-    inner.done()
+    inner = Reader(files.content(node), spec, "the frame file", reader.problems)
+    parts.frame = inner.get(spec.frame)
+    parts.transport = inner.get(spec.transport) or parts.transport
+    if parts.transport is None:
+        inner.problem("missing-key", f"the frame file lacks the key {spec.transport.name}")
 
 
 def _add_types(parts: Parts, root: Node, problems: list[Problem]) -> None:
-    """Add a types file; a name that is taken is a problem."""
-    reader = Reader(root, "the types file", problems)
+    """Add a types file; a name that is used already is a problem."""
+    spec = language.TypesFile
+    reader = Reader(root, spec, "the types file", problems)
     taken = {name: place for named in parts.types.values() for name, (place, _) in named.items()}
-    for section in SECTIONS:
-        for name, place, node in reader.entries(section):
+    for section, key in spec.keys().items():
+        for name, place, node in reader.get(key):
             if name in taken:
-                message = f"{name} is a type already, at {taken[name]}"
+                message = f"there is already a type {name} at {taken[name]}"
                 problems.append(Problem(place, "duplicate-type", message))
             taken[name] = place
             parts.types[section][name] = (place, node)
-    reader.done()
 
 
 def _add_commands(parts: Parts, reader: Reader, files: Files) -> None:
-    node = reader.node("commands")
+    spec = language.CommandsFile
+    node = reader.get(language.WholeEdition.commands)
     if isinstance(node, Mapping):
         # A protocol in one file: its commands are one family.
         new = FamilyParts(node.place, "commands", "Commands", "All commands.")
         _fill(parts, parts.families.get("commands") or new, node, reader.problems)
         return
-    for content in files.listed(reader, "commands"):
-        inner = Reader(content, "the commands file", reader.problems)
-        name, title, doc = inner.text("family"), inner.text("title"), inner.text("doc")
+    for content in files.listed(reader, language.WholeEdition.commands):
+        inner = Reader(content, spec, "the commands file", reader.problems)
+        name, title, doc = (inner.get(key) for key in (spec.family, spec.title, spec.doc))
         # A delta adds to a family of its base by using its name.
         new = FamilyParts(content.place, name, title, doc)
-        commands = inner.required("commands")
-        inner.done()
+        commands = inner.node(spec.commands)
         if commands is not None:
             _fill(parts, parts.families.get(name) or new, commands, reader.problems)
 
@@ -170,22 +180,21 @@ def _fill(parts: Parts, family: FamilyParts, node: Node, problems: list[Problem]
         if holder is None:
             family.commands[name] = (node.keys[name], content)
         else:
-            message = f"{name} is a command already, at {holder.commands[name][0]}"
+            message = f"there is already a command {name} at {holder.commands[name][0]}"
             problems.append(Problem(node.keys[name], "duplicate-command", message))
 
 
-def _listed(root: Node, key: str, problems: list[Problem]) -> list[Node]:
-    """The entries of a vectors or errata file, or one that stands right there."""
-    if not (isinstance(root, Mapping) and key in root.entries):
+def _listed(root: Node, key: Key[tuple[Node, ...]], problems: list[Problem]) -> list[Node]:
+    """Return the entries of a vectors or errata file, or a single entry."""
+    if not (isinstance(root, Mapping) and key.name in root.entries):
         return [root]
-    reader = Reader(root, f"the {key} file", problems)
-    found = list(reader.items(key))
-    reader.done()
-    return found
+    record = language.FILES[key.name]
+    reader = Reader(root, record, f"the {key.name} file", problems)
+    return [*reader.get(key)]
 
 
 def find(known: Iterator[str], name: str, what: str, place: Place, problems: list[Problem]) -> bool:
-    """Whether a name is known; if not, that is a problem."""
+    """Return whether a name is known; note a problem if it is not."""
     names = list(known)
     if name in names:
         return True

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 
+from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Named
 from cobotwire_codegen.errors import Place, Problem, nearest
+from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.load import Node, Scalar
 from cobotwire_codegen.model import (
-    CONFIDENCE,
-    UNITS,
     Dispute,
     Enum,
     Evidence,
@@ -25,13 +25,13 @@ from cobotwire_codegen.reader import Reader
 
 
 def stand_in(place: Place) -> Quantity:
-    """A harmless type in the place of one that is wrong, so that reading can go on."""
+    """Return a harmless type in place of one that is wrong, so that reading can continue."""
     wire = Wire(place, "byte", 1, "big", 255, "", (), ())
     return Quantity(place, "", wire, Fraction(1), "", None, (), False, "", (), ())
 
 
 class Types:
-    """Every type of an edition by name; looking one up that is not there is a problem."""
+    """Every type of an edition by name. Looking up a type that does not exist is a problem."""
 
     def __init__(self, sections: dict[str, Named], problems: list[Problem]) -> None:
         self._problems = problems
@@ -50,7 +50,7 @@ class Types:
                 self.types[name] = make(name, place, node)
 
     def find(self, name: str, place: Place) -> Type:
-        """The type called ``name``."""
+        """Return the type called ``name``."""
         if name in self.types:
             return self.types[name]
         hint = nearest(name, self.types)
@@ -58,140 +58,125 @@ class Types:
         return stand_in(place)
 
     def _wire(self, name: str, place: Place, node: Node) -> Wire:
-        reader = Reader(node, f"the wire type {name}", self._problems)
-        width = reader.integer("bytes")
-        if not 1 <= width <= 4:
-            reader.problem("bad-width", f"a wire type has 1 to 4 bytes, not {width}")
-            width = 1
+        spec = language.Wire
+        reader = Reader(node, spec, f"the wire type {name}", self._problems)
+        width = reader.get(spec.bytes)
         top = 256**width - 1
-        signed_at = reader.integer("signed_at", top)
-        if not 0 <= signed_at <= top:
-            reader.problem("bad-sign", f"signed_at must be in 0..{top}")
+        signed_at = top if reader.node(spec.signed_at) is None else reader.get(spec.signed_at)
+        if signed_at > top:
+            message = f"signed_at of the wire type {name} is {signed_at}; allowed: 0..{top}"
+            reader.problem("bad-sign", message, reader.place_of(spec.signed_at))
             signed_at = top
-        wire = Wire(
+        return Wire(
             place,
             name,
             width,
-            "little" if reader.one_of("order", ("big", "little"), "big") == "little" else "big",
+            "little" if reader.get(spec.order) == "little" else "big",
             signed_at,
-            reader.text("doc"),
-            reader.lines("source"),
-            disputes(reader),
+            reader.get(spec.doc),
+            reader.get(spec.source),
+            disputes(reader, spec.disputed),
         )
-        reader.done()
-        return wire
 
-    def _named_wire(self, reader: Reader) -> Wire:
-        node = reader.required("wire")
-        name = str(node.value) if isinstance(node, Scalar) else ""
+    def _named_wire(self, reader: Reader, key: Key[str]) -> Wire:
+        name = reader.get(key)
         if name in self.wires:
             return self.wires[name]
-        if node is not None:
-            hint = nearest(name, self.wires)
-            reader.problem("unknown-wire", f"there is no wire type {name}{hint}", node.place)
+        if name:
+            message = f"there is no wire type {name}{nearest(name, self.wires)}"
+            reader.problem("unknown-wire", message, reader.place_of(key))
         return stand_in(reader.place).wire
 
     def _quantity(self, name: str, place: Place, node: Node) -> Quantity:
-        reader = Reader(node, f"the quantity {name}", self._problems)
+        spec = language.Quantity
+        reader = Reader(node, spec, f"the quantity {name}", self._problems)
         quantity = Quantity(
             place,
             name,
-            self._named_wire(reader),
-            reader.fraction("scale", Fraction(1)),
-            reader.one_of("unit", UNITS, ""),
-            reader.range("range"),
-            self._choices(reader),
-            reader.one_of("shown_in", ("radian",), "") == "radian",
-            reader.text("doc"),
-            reader.lines("source"),
-            disputes(reader),
+            self._named_wire(reader, spec.wire),
+            reader.get(spec.scale),
+            reader.get(spec.unit),
+            reader.get(spec.range),
+            reader.get(spec.choices),
+            reader.get(spec.shown_in) == "radian",
+            reader.get(spec.doc),
+            reader.get(spec.source),
+            disputes(reader, spec.disputed),
         )
         if quantity.choices and (quantity.range is not None or quantity.scale != 1):
-            reader.problem("bad-choices", f"{name} has choices: it takes no range and no scale")
+            message = f"the quantity {name} has choices; remove its range and its scale"
+            reader.problem("bad-choices", message)
         if quantity.radians and quantity.unit != "degree":
-            reader.problem("bad-unit", f"{name} is shown in radians: its unit must be degree")
-        reader.done()
+            message = f"the quantity {name} is shown in radians, so its unit must be degree"
+            reader.problem("bad-unit", message)
         return quantity
 
-    def _choices(self, reader: Reader) -> tuple[int, ...]:
-        found = []
-        for node in reader.items("choices"):
-            value = node.value if isinstance(node, Scalar) else None
-            if isinstance(value, int) and not isinstance(value, bool):
-                found.append(value)
-            else:
-                message = f"choices of {reader.what} must be whole numbers"
-                reader.problem("wrong-kind", message, node.place)
-        return tuple(found)
-
     def _flag(self, name: str, place: Place, node: Node) -> Flag:
-        reader = Reader(node, f"the flag {name}", self._problems)
-        flag = Flag(place, name, self._named_wire(reader), reader.text("doc"))
-        reader.done()
-        return flag
+        spec = language.Flag
+        reader = Reader(node, spec, f"the flag {name}", self._problems)
+        return Flag(place, name, self._named_wire(reader, spec.wire), reader.get(spec.doc))
 
     def _enum(self, name: str, place: Place, node: Node) -> Enum:
-        reader = Reader(node, f"the enum {name}", self._problems)
-        members = []
-        for member, where, content in reader.entries("members"):
-            inner = Reader(content, f"the member {member} of {name}", self._problems)
-            members.append(Member(where, member, inner.integer("value"), inner.text("doc")))
-            inner.done()
-        enum = Enum(
+        spec = language.Enum
+        reader = Reader(node, spec, f"the enum {name}", self._problems)
+        return Enum(
             place,
             name,
-            reader.text("class"),
-            self._named_wire(reader),
-            tuple(members),
-            reader.text("doc"),
-            reader.lines("source"),
+            reader.get(spec.class_),
+            self._named_wire(reader, spec.wire),
+            tuple(self._member(name, *entry) for entry in reader.get(spec.members)),
+            reader.get(spec.doc),
+            reader.get(spec.source),
         )
-        reader.done()
-        if not members:
-            reader.problem("empty-enum", f"the enum {name} has no members")
-        return enum
+
+    def _member(self, enum: str, name: str, place: Place, node: Node) -> Member:
+        spec = language.Member
+        reader = Reader(node, spec, f"the member {name} of {enum}", self._problems)
+        return Member(place, name, reader.get(spec.value), reader.get(spec.doc))
 
     def _value(self, name: str, place: Place, node: Node) -> Value:
-        reader = Reader(node, f"the value {name}", self._problems)
+        spec = language.Value
+        reader = Reader(node, spec, f"the value type {name}", self._problems)
         items = []
-        for item, where, content in reader.entries("items"):
-            kind = str(content.value) if isinstance(content, Scalar) else ""
-            type = self.find(kind, where)
+        for item, where, content in reader.get(spec.items):
+            type = self.find(plain_name(content), where)
             if not isinstance(type, Quantity):
                 reader.problem("bad-item", f"{item} of {name} must be a quantity", where)
                 type = stand_in(where)
             items.append((item, type))
-        value = Value(place, name, reader.text("class"), tuple(items), reader.text("doc"))
-        reader.done()
-        if not items:
-            reader.problem("empty-value", f"the value {name} has no items")
-        return value
+        return Value(place, name, reader.get(spec.class_), tuple(items), reader.get(spec.doc))
 
 
-def disputes(reader: Reader) -> tuple[Dispute, ...]:
-    """The ``disputed`` list of a type or command."""
+def plain_name(node: Node) -> str:
+    """Return the name that a node holds; empty if it holds none."""
+    return str(node.value) if isinstance(node, Scalar) else ""
+
+
+def disputes(reader: Reader, key: Key[tuple[Node, ...]]) -> tuple[Dispute, ...]:
+    """Return the disputes that a type or command lists under a key."""
+    spec = language.Dispute
     found = []
-    for node in reader.items("disputed"):
-        inner = Reader(node, f"a dispute of {reader.what}", reader.problems)
-        dispute = Dispute(
-            node.place,
-            inner.text("claim"),
-            inner.text("reading"),
-            inner.one_of("confidence", CONFIDENCE),
-            evidence(inner),
+    for node in reader.get(key):
+        inner = Reader(node, spec, f"a dispute of {reader.what}", reader.problems)
+        found.append(
+            Dispute(
+                node.place,
+                inner.get(spec.claim),
+                inner.get(spec.reading),
+                inner.get(spec.confidence),
+                evidence(inner, spec.evidence),
+            )
         )
-        inner.done()
-        if not dispute.evidence:
-            inner.problem("no-evidence", "a disputed fact must carry its evidence")
-        found.append(dispute)
     return tuple(found)
 
 
-def evidence(reader: Reader) -> tuple[Evidence, ...]:
-    """The ``evidence`` list of a dispute or change."""
-    found = []
-    for node in reader.items("evidence"):
-        inner = Reader(node, "a piece of evidence", reader.problems)
-        found.append(Evidence(inner.text("source"), inner.lines("lines"), inner.text("says")))
-        inner.done()
-    return tuple(found)
+def evidence(reader: Reader, key: Key[tuple[Node, ...]]) -> tuple[Evidence, ...]:
+    """Return the evidence that a dispute or change lists under a key."""
+    spec = language.Evidence
+    inner = [
+        Reader(node, spec, f"a piece of evidence of {reader.what}", reader.problems)
+        for node in reader.get(key)
+    ]
+    return tuple(
+        Evidence(one.get(spec.source), one.get(spec.lines), one.get(spec.says)) for one in inner
+    )

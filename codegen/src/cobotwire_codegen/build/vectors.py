@@ -4,71 +4,73 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from cobotwire_codegen import language
 from cobotwire_codegen.errors import Problem
+from cobotwire_codegen.language.records import entries_of
 from cobotwire_codegen.load import Node, Scalar, Sequence
-from cobotwire_codegen.model import ERRATUM_KINDS, REASONS, VERDICTS, Erratum, Vector
-from cobotwire_codegen.reader import Reader
+from cobotwire_codegen.model import Erratum, Vector
+from cobotwire_codegen.reader import Reader, label
 
 
 def build_erratum(node: Node, problems: list[Problem]) -> Erratum:
-    """An entry of the errata file."""
-    reader = Reader(node, "an erratum", problems)
-    reader.required("line")
-    erratum = Erratum(
+    """Return an entry of the errata file."""
+    spec = language.Erratum
+    reader = Reader(node, spec, "an erratum", problems)
+    return Erratum(
         place=node.place,
-        lines=reader.lines("line"),
-        kind=reader.one_of("kind", ERRATUM_KINDS),
-        commands=reader.texts("commands"),
-        example=reader.integer("example", 0) or None,
-        says=reader.text("says"),
-        read=reader.text("read"),
-        why=reader.text("why"),
+        lines=reader.get(spec.line),
+        kind=reader.get(spec.kind),
+        commands=reader.get(spec.commands),
+        example=reader.get(spec.example) or None,
+        says=reader.get(spec.says),
+        read=reader.get(spec.read),
+        why=reader.get(spec.why),
     )
-    reader.done()
-    return erratum
 
 
 def build_vector(node: Node, problems: list[Problem]) -> Vector:
-    """An entry of a vectors file."""
-    reader = Reader(node, "a vector", problems)
-    example = reader.integer("example", 0) or None
-    name = f"example-{example}" if example else reader.text("name")
-    reader.what = f"the vector {name}"
-    reply = reader.one_of("direction", ("request", "reply")) == "reply"
-    vector = Vector(
+    """Return an entry of a vectors file."""
+    spec, printed = language.NamedVector, language.ExampleVector
+    number = label(node, printed.example)
+    name = f"example-{number}" if number else label(node, spec.name)
+    reader = Reader(node, language.VECTOR, f"the vector {name}".strip(), problems)
+    example = reader.get(printed.example) if number else None
+    # For people who read the file: where a vector comes from that the document does not have.
+    reader.get(spec.source)
+    reader.get(spec.why)
+    return Vector(
         place=node.place,
-        name=name,
+        name=name if example else reader.get(spec.name),
         example=example,
-        line=reader.integer("line", 0) or None,
-        command=reader.text("command"),
-        direction="reply" if reply else "request",
-        printed=reader.bytes("printed"),
-        verdict=reader.one_of("verdict", VERDICTS) if example else "consistent",
-        frame=reader.bytes("frame"),
-        text=reader.text("text", "") or None,
+        line=reader.get(spec.line) or None,
+        command=reader.get(spec.command),
+        direction="reply" if reader.get(spec.direction) == "reply" else "request",
+        printed=reader.get(spec.printed),
+        verdict=reader.get(printed.verdict) if example else "consistent",
+        frame=reader.get(spec.frame),
+        text=reader.get(spec.text) or None,
         values=_values(reader),
-        says=reader.text("says", ""),
-        refused=_refused(reader, problems),
+        says=reader.get(spec.says),
+        rejected=_rejected(reader),
     )
-    # Said for the reader of the file: where a vector that the document lacks comes from.
-    reader.lines("source")
-    reader.text("why", "")
-    reader.done()
-    return vector
 
 
-def _refused(outer: Reader, problems: list[Problem]) -> tuple[str, int] | None:
-    node = outer.node("refused")
+def _rejected(outer: Reader) -> tuple[str, int] | None:
+    spec = language.Rejection
+    node = outer.get(language.NamedVector.rejected)
     if node is None:
         return None
-    reader = Reader(node, f"the refusal of {outer.what}", problems)
-    refused = (reader.one_of("reason", REASONS), reader.integer("offset"))
-    reader.done()
-    return refused
+    reader = Reader(node, spec, f"the rejection of {outer.what}", outer.problems)
+    return reader.get(spec.reason), reader.get(spec.offset)
 
 
 def _values(reader: Reader) -> tuple[tuple[str, object], ...]:
-    return tuple((name, _plain(node)) for name, _, node in reader.entries("values"))
+    key = language.NamedVector.values
+    node = reader.get(key)
+    if node is None:
+        return ()
+    found = entries_of(node, f"{key.name} of {reader.what}", reader.problem)
+    return tuple((name, _plain(value)) for name, _, value in found)
 
 
 def _plain(node: Node) -> object:

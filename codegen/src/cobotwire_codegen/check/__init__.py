@@ -1,4 +1,4 @@
-"""The model against its rules: one small function a rule, all problems at once."""
+"""Checks the model: one small function for each rule, all problems at once."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def check(edition: Edition) -> None:
     """Apply every rule.
 
     Raises:
-        SpecError: with every problem found.
+        SpecError: the edition breaks rules; the error carries all problems.
     """
     problems = [problem for rule in RULES for problem in rule(edition)]
     if problems:

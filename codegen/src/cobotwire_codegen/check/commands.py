@@ -1,4 +1,4 @@
-"""A command must be sayable in the frame, and readable without doubt."""
+"""Rules for commands: their messages fit the frame and can be told apart."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ from typing import Literal
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.errors import Problem, nearest
-from cobotwire_codegen.model import Command, Edition, Field, Form
-from cobotwire_codegen.wire import size
+from cobotwire_codegen.model import Command, Edition, Field, Variant
 
 _DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
 
 
 def ids_fit(edition: Edition) -> Iterator[Problem]:
-    """An id is a byte."""
+    """Report ids that are not a byte."""
     for command in edition.commands:
         if not 0 <= command.id <= 0xFF:
             yield Problem(
@@ -23,11 +22,11 @@ def ids_fit(edition: Edition) -> Iterator[Problem]:
 
 
 def payload_fits(edition: Edition) -> Iterator[Problem]:
-    """No message is longer than the frame can carry."""
+    """Report messages that are longer than the frame can carry."""
     for command in edition.commands:
         for direction in _DIRECTIONS:
-            for form in command.forms(direction):
-                length = sum(size(field.type) for field in form)
+            for variant in command.variants(direction):
+                length = sum(field.type.size for field in variant)
                 if length > edition.frame.maximum_data:
                     message = (
                         f"the {direction} of {command.name} has {length} data bytes; the frame "
@@ -36,41 +35,43 @@ def payload_fits(edition: Edition) -> Iterator[Problem]:
                     yield Problem(command.place, "payload-too-long", message)
 
 
-def forms_apart(edition: Edition) -> Iterator[Problem]:
-    """Messages of one id, direction and length are told apart, or said to be the same."""
+def variants_apart(edition: Edition) -> Iterator[Problem]:
+    """Report messages of one id, direction and length that a decoder cannot tell apart."""
     for direction in _DIRECTIONS:
-        seen: dict[tuple[int, int], list[tuple[Command, Form]]] = {}
+        seen: dict[tuple[int, int], list[tuple[Command, Variant]]] = {}
         for command in edition.commands:
-            for form in command.forms(direction):
-                length = sum(size(field.type) for field in form)
+            for variant in command.variants(direction):
+                length = sum(field.type.size for field in variant)
                 others = seen.setdefault((command.id, length), [])
                 for other, known in others:
-                    if not _apart(command, form, other, known, direction):
+                    if not _apart(command, variant, other, known, direction):
                         message = (
                             f"the {direction} of {command.name} has the id {command.id:#04x} and "
-                            f"{length} data bytes, as {other.name} has at {other.place}"
+                            f"{length} data bytes, like {other.name} at {other.place}"
                         )
-                        yield Problem(command.place, "ambiguous-layout", message)
-                others.append((command, form))
+                        yield Problem(command.place, "ambiguous-variant", message)
+                others.append((command, variant))
 
 
-def _apart(command: Command, form: Form, other: Command, known: Form, direction: str) -> bool:
-    """Whether a reader can tell two messages apart, or need not."""
+def _apart(
+    command: Command, variant: Variant, other: Command, known: Variant, direction: str
+) -> bool:
+    """Return whether a decoder can tell two messages apart, or need not."""
     if command is other:
         return False
     if other.name == command.alias:
         return True
-    # The same numbers under the same rule: a reply is read alike, whichever call asked.
+    # The same numbers under the same rules: such a reply is read alike for both requests.
     if direction == "reply":
-        return [_rule(field) for field in form] == [_rule(field) for field in known]
-    constants = [(a.const, b) for a, b in zip(form, known)] + [
-        (b.const, a) for a, b in zip(form, known)
+        return [_rule(field) for field in variant] == [_rule(field) for field in known]
+    constants = [(a.const, b) for a, b in zip(variant, known)] + [
+        (b.const, a) for a, b in zip(variant, known)
     ]
     return any(const is not None and _excludes(field, const) for const, field in constants)
 
 
 def _rule(field: Field) -> object:
-    return lower.numbers(field.type), field.by
+    return lower.numbers(field.type), field.selector
 
 
 def _excludes(field: Field, value: int) -> bool:
@@ -82,21 +83,21 @@ def _excludes(field: Field, value: int) -> bool:
 
 
 def ids_apart(edition: Edition) -> Iterator[Problem]:
-    """An id stands for one call, unless the spec says that calls share it."""
+    """Report ids that several commands use without `shares_id` or `alias`."""
     seen: dict[int, Command] = {}
     for command in edition.commands:
         first = seen.setdefault(command.id, command)
         said = {first.alias, command.alias, *first.shares_id, *command.shares_id}
         if first is not command and not said & {first.name, command.name}:
             message = (
-                f"{command.name} has the id {command.id:#04x}, as {first.name} has at "
-                f"{first.place}; if they share it, say shares_id: {first.name}"
+                f"{command.name} has the id {command.id:#04x}, like {first.name} at "
+                f"{first.place}; if they share it, write shares_id: {first.name}"
             )
             yield Problem(command.place, "duplicate-id", message)
 
 
 def shared_ids_there(edition: Edition) -> Iterator[Problem]:
-    """What is said to share an id does."""
+    """Report `shares_id` entries that name an unknown command or one with another id."""
     commands = {command.name: command for command in edition.commands}
     for command in edition.commands:
         for name in command.shares_id:
@@ -105,12 +106,12 @@ def shared_ids_there(edition: Edition) -> Iterator[Problem]:
                 message = f"there is no command {name}{nearest(name, commands)}"
                 yield Problem(command.place, "unknown-command", message)
             elif other.id != command.id:
-                message = f"{name} has another id than {command.name}: they share none"
+                message = f"{name} and {command.name} have different ids; remove shares_id"
                 yield Problem(command.place, "bad-shared-id", message)
 
 
 def aliases_alike(edition: Edition) -> Iterator[Problem]:
-    """An alias is another command's message, byte for byte."""
+    """Report aliases whose message differs from the other command's."""
     commands = {command.name: command for command in edition.commands}
     for command in edition.commands:
         if not command.alias:
@@ -120,37 +121,39 @@ def aliases_alike(edition: Edition) -> Iterator[Problem]:
             message = f"there is no command {command.alias}{nearest(command.alias, commands)}"
             yield Problem(command.place, "unknown-command", message)
         elif _wire(command) != _wire(other):
-            message = f"{command.name} is not the same message as {other.name}"
+            message = (
+                f"the message of {command.name} differs from that of {other.name}; remove alias"
+            )
             yield Problem(command.place, "alias-differs", message)
 
 
 def _wire(command: Command) -> object:
-    forms = (command.requests, command.replies)
-    rules = [[[_rule(f) for f in form] for form in message] for message in forms]
+    variants = (command.requests, command.replies)
+    rules = [[[_rule(f) for f in variant] for variant in message] for message in variants]
     return command.id, rules, command.safety
 
 
 def cases_alike(edition: Edition) -> Iterator[Problem]:
-    """All cases of a field take the same number of bytes."""
+    """Report fields with cases of different sizes."""
     for command in edition.commands:
         for field in command.fields:
-            if len({size(type) for _, type in field.cases}) > 1:
-                message = f"the cases of {field.name} differ in length"
+            if len({type.size for _, type in field.cases}) > 1:
+                message = f"the cases of {field.name} differ in size"
                 yield Problem(field.place, "uneven-cases", message)
 
 
 def echoes_match(edition: Edition) -> Iterator[Problem]:
-    """An echoed field is in every form of the request, with the same type."""
+    """Report echoes that are not in every variant of the request with the same type."""
     for command in edition.commands:
-        asked = [{field.name: field.type for field in form} for form in command.requests]
+        asked = [{field.name: field.type for field in variant} for variant in command.requests]
         for field in command.fields:
-            if field.echo and any(form.get(field.name) != field.type for form in asked):
-                message = f"{field.name} echoes no field of the request of {command.name}"
+            if field.echo and any(variant.get(field.name) != field.type for variant in asked):
+                message = f"{field.name} does not echo a field of the request of {command.name}"
                 yield Problem(field.place, "bad-echo", message)
 
 
 def replies_decided(edition: Edition) -> Iterator[Problem]:
-    """A query has a reply; a reply is a frame or a text; it has more than its echo."""
+    """Report queries without a reply, commands with two replies, and replies that only echo."""
     for command in edition.commands:
         if command.safety == "query" and not command.replies and command.text is None:
             yield Problem(command.place, "mute-query", f"the query {command.name} has no reply")
@@ -163,17 +166,19 @@ def replies_decided(edition: Edition) -> Iterator[Problem]:
 
 
 def acks_not_asked(edition: Edition) -> Iterator[Problem]:
-    """Only what asks nothing is acknowledged."""
+    """Report queries that are declared as acknowledged."""
     for command in edition.commands:
         if command.ack and command.safety == "query":
-            message = f"the query {command.name} waits for its answer: it has no ack"
+            message = (
+                f"the query {command.name} cannot have an ack; clients always wait for its reply"
+            )
             yield Problem(command.place, "acked-query", message)
 
 
 RULES = (
     ids_fit,
     payload_fits,
-    forms_apart,
+    variants_apart,
     ids_apart,
     shared_ids_there,
     aliases_alike,

@@ -1,4 +1,4 @@
-"""The spec against what lies beside it: vectors and errata."""
+"""Rules for vectors and errata: they agree with the commands."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cobotwire_codegen.wire import build_frame
 
 
 def vectors_hold(edition: Edition) -> Iterator[Problem]:
-    """Every vector's frame is what its values build."""
+    """Report vectors whose values encode to another frame."""
     commands = {command.name: command for command in edition.commands}
     for vector in edition.vectors:
         command = commands.get(vector.command)
@@ -25,12 +25,12 @@ def vectors_hold(edition: Edition) -> Iterator[Problem]:
                 yield Problem(vector.place, "vector-unsayable", f"{vector.name}: {error}")
                 continue
             if built != vector.frame:
-                message = f"{vector.name}: the values build {built.hex(' ').upper()}"
+                message = f"{vector.name}: the values encode to {built.hex(' ').upper()}"
                 yield Problem(vector.place, "vector-differs", message)
 
 
 def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
-    """Every text vector is what its values spell."""
+    """Report text vectors whose values encode to another text."""
     texts = {command.name: command.text for command in edition.commands}
     for vector in edition.vectors:
         text = texts.get(vector.command)
@@ -38,7 +38,7 @@ def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
             continue
         values = dict(vector.values)
         if text is None or list(values) != [name for name, _ in text.fields]:
-            message = f"{vector.name}: {vector.command} has no such text reply"
+            message = f"{vector.name}: {vector.command} has no text reply with these fields"
             yield Problem(vector.place, "vector-unsayable", message)
             continue
         built = "".join(
@@ -46,12 +46,12 @@ def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
         )
         if built != vector.text:
             yield Problem(
-                vector.place, "vector-differs", f"{vector.name}: the values spell {built}"
+                vector.place, "vector-differs", f"{vector.name}: the values encode to {built}"
             )
 
 
-def every_form_shown(edition: Edition) -> Iterator[Problem]:
-    """Each form of each message has a vector."""
+def every_variant_shown(edition: Edition) -> Iterator[Problem]:
+    """Report variants of messages without a vector."""
     directions: tuple[Literal["request", "reply"], ...] = ("request", "reply")
     shown = {
         (vector.command, vector.direction, tuple(name for name, _ in vector.values))
@@ -60,8 +60,8 @@ def every_form_shown(edition: Edition) -> Iterator[Problem]:
     }
     for command in edition.commands:
         for direction in directions:
-            for form in command.forms(direction):
-                names = tuple(field.name for field in form)
+            for variant in command.variants(direction):
+                names = tuple(field.name for field in variant)
                 if (command.name, direction, names) not in shown:
                     fields = ", ".join(names) or "no fields"
                     message = f"no vector shows the {direction} of {command.name} with {fields}"
@@ -69,15 +69,15 @@ def every_form_shown(edition: Edition) -> Iterator[Problem]:
 
 
 def printed_explained(edition: Edition) -> Iterator[Problem]:
-    """A printed frame that is not read as it stands has an erratum, or is the same frame."""
+    """Report printed frames that are not read as printed and have no erratum."""
     if edition.base:
-        return  # the document's examples, and its errata, are the base's
+        return  # the document's examples and its errata belong to the base
     explained = {erratum.example for erratum in edition.errata}
     for vector in edition.vectors:
         if vector.example is None:
             continue
         if vector.verdict != "consistent" and vector.example not in explained:
-            message = f"{vector.name} is not consistent, but no erratum says why"
+            message = f"{vector.name} is not consistent, but no erratum explains why"
             yield Problem(vector.place, "unexplained-example", message)
         if vector.verdict == "consistent" and not _same(vector):
             message = f"{vector.name} is consistent, but its frame is not the printed one"
@@ -89,17 +89,17 @@ def _same(vector: Vector) -> bool:
 
 
 def vectors_apart(edition: Edition) -> Iterator[Problem]:
-    """No vector twice."""
+    """Report vectors with the same name."""
     seen: dict[str, Vector] = {}
     for vector in edition.vectors:
         first = seen.setdefault(vector.name, vector)
         if first is not vector:
-            message = f"{vector.name} is a vector already, at {first.place}"
+            message = f"there is already a vector {vector.name} at {first.place}"
             yield Problem(vector.place, "duplicate-vector", message)
 
 
 def errata_name_commands(edition: Edition) -> Iterator[Problem]:
-    """Errata speak of commands that exist."""
+    """Report errata that name unknown commands."""
     known = {command.name for command in edition.commands}
     for erratum in edition.errata:
         for name in erratum.commands:
@@ -112,7 +112,7 @@ RULES = (
     vectors_apart,
     vectors_hold,
     text_vectors_hold,
-    every_form_shown,
+    every_variant_shown,
     printed_explained,
     errata_name_commands,
 )

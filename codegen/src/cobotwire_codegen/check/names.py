@@ -1,4 +1,4 @@
-"""Names become Python: they must be names there, and stay apart."""
+"""Rules for names: Python accepts them, and they are unique."""
 
 from __future__ import annotations
 
@@ -7,81 +7,74 @@ import re
 from collections.abc import Iterator
 
 from cobotwire_codegen.errors import Place, Problem
-from cobotwire_codegen.model import Edition, Enum, Value
-
-_LOWER = re.compile(r"[a-z][a-z0-9_]*\Z")
-# A method may keep the maker's capitals: set_HTS_gripper_torque.
-_METHOD = re.compile(r"[a-z][A-Za-z0-9_]*\Z")
-_UPPER = re.compile(r"[A-Z][A-Z0-9_]*\Z")
-_CLASS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
+from cobotwire_codegen.language.names import CLASS, LOWER, METHOD, UPPER
+from cobotwire_codegen.model import Edition, Type
 
 
 def words(edition: Edition) -> Iterator[Problem]:
-    """Commands, fields, types, members and classes are spelt as Python wants them."""
+    """Report names of commands, fields, types, members and classes that Python rejects."""
     for name, place, pattern, example in _named(edition):
-        if not pattern.match(name) or keyword.iskeyword(name):
-            yield Problem(
-                place, "bad-name", f"{name} cannot be a name here; write it like {example}"
-            )
+        # "$" would also match before a line feed at the end.
+        if not re.fullmatch(pattern, name) or keyword.iskeyword(name):
+            yield Problem(place, "bad-name", f"{name} is not a valid name; write it like {example}")
 
 
-def _named(edition: Edition) -> Iterator[tuple[str, Place, re.Pattern[str], str]]:
-    yield edition.name, edition.place, _LOWER, "mycobot"
-    yield edition.class_name, edition.place, _CLASS, "MyCobot"
+def _named(edition: Edition) -> Iterator[tuple[str, Place, str, str]]:
+    yield edition.name, edition.place, LOWER, "mycobot"
+    yield edition.class_name, edition.place, CLASS, "MyCobot"
     for family in edition.families:
-        yield family.name, family.place, _LOWER, "motion"
+        yield family.name, family.place, LOWER, "motion"
     for command in edition.commands:
-        yield command.name, command.place, _METHOD, "get_angles"
+        yield command.name, command.place, METHOD, "get_angles"
         for field in command.fields:
-            yield field.name, field.place, _LOWER, "speed"
+            yield field.name, field.place, LOWER, "speed"
         if command.text is not None:
-            yield command.text.class_name, command.text.place, _CLASS, "WifiAccount"
+            yield command.text.class_name, command.text.place, CLASS, "WifiAccount"
         for text in (command.text, command.request_text):
             for name, _ in text.fields if text is not None else ():
-                yield name, command.place, _LOWER, "ssid"
+                yield name, command.place, LOWER, "ssid"
     for type in edition.types:
-        yield type.name, type.place, _LOWER, "angle"
-        if isinstance(type, Enum | Value):
-            yield type.class_name, type.place, _CLASS, "Angles"
-        if isinstance(type, Enum):
-            for member in type.members:
-                yield member.name, member.place, _UPPER, "CLOCKWISE"
-        if isinstance(type, Value):
-            for item, _ in type.items:
-                yield item, type.place, _LOWER, "x"
+        yield type.name, type.place, LOWER, "angle"
+        if type.class_name:
+            yield type.class_name, type.place, CLASS, "Angles"
+        for member in type.members:
+            yield member.name, member.place, UPPER, "CLOCKWISE"
+        for part, _ in type.parts:
+            if part:
+                yield part, type.place, LOWER, "x"
 
 
 def commands_apart(edition: Edition) -> Iterator[Problem]:
-    """No command twice, and no field of a message twice."""
+    """Report commands with the same name, and fields with the same name in one message."""
     seen: dict[str, Place] = {}
     for command in edition.commands:
         if command.name in seen:
-            message = f"{command.name} is a command already, at {seen[command.name]}"
+            message = f"there is already a command {command.name} at {seen[command.name]}"
             yield Problem(command.place, "duplicate-command", message)
         seen.setdefault(command.name, command.place)
-        for form in (*command.requests, *command.replies):
-            names = [field.name for field in form]
-            for index, field in enumerate(form):
+        for variant in (*command.requests, *command.replies):
+            names = [field.name for field in variant]
+            for index, field in enumerate(variant):
                 if field.name in names[:index]:
-                    yield Problem(field.place, "duplicate-field", f"{field.name} stands twice")
+                    yield Problem(field.place, "duplicate-field", f"{field.name} is given twice")
 
 
 def classes_agree(edition: Edition) -> Iterator[Problem]:
-    """Types that share a class have the same parts; an enum shares its class with nobody."""
-    seen: dict[str, Enum | Value] = {}
+    """Report types that share a class but not its parts; an enum never shares its class."""
+    seen: dict[str, Type] = {}
     for type in edition.types:
-        if not isinstance(type, Enum | Value):
+        if not type.class_name:
             continue
         first = seen.setdefault(type.class_name, type)
         if first is not type and _parts(first) != _parts(type):
-            message = f"{type.class_name} has other parts at {first.place}"
+            message = f"{type.class_name} has different parts at {first.place}"
             yield Problem(type.place, "class-differs", message)
 
 
-def _parts(type: Enum | Value) -> object:
-    if isinstance(type, Enum):
+def _parts(type: Type) -> object:
+    if type.members:
         return type.name
-    return [(name, item.unit, item.scale == 1) for name, item in type.items]
+    return [(name, part.unit, part.scale == 1) for name, part in type.parts]
 
 
 RULES = (words, commands_apart, classes_agree)

@@ -1,4 +1,4 @@
-"""What reads a setting back is a query of the edition that tells it."""
+"""Rules for `read_by`, `samples` and `agrees_with`: they name existing queries and fields."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cobotwire_codegen.model import Command, Edition, ReadBack
 
 
 def read_back_fits(edition: Edition) -> Iterator[Problem]:
-    """The query is there, its reply has the fields, and the command the arguments."""
+    """Report `read_by` entries whose query, reply fields or arguments do not exist."""
     known = {command.name: command for command in edition.commands}
     for command in edition.commands:
         back = command.read_by
@@ -18,16 +18,16 @@ def read_back_fits(edition: Edition) -> Iterator[Problem]:
         query = known.get(back.query)
         if query is None or query.safety != "query":
             hint = nearest(back.query, (c.name for c in edition.commands if c.safety == "query"))
-            message = f"{command.name} is read by {back.query}, which is no query here{hint}"
+            message = f"{command.name} is read by {back.query}, which is not a query{hint}"
             yield Problem(back.place, "bad-read-back", message)
         else:
             yield from _fields(command, back, query)
 
 
 def _fields(command: Command, back: ReadBack, query: Command) -> Iterator[Problem]:
-    told = {field.name for form in query.replies for field in form}
+    told = {field.name for variant in query.replies for field in variant}
     told |= {name for name, _ in query.text.fields} if query.text else set()
-    given = {field.name for form in command.requests for field in form}
+    given = {field.name for variant in command.requests for field in variant}
     given |= {name for name, _ in command.request_text.fields} if command.request_text else set()
     for name, said in back.fields or ((name, name) for name in sorted(told & given)):
         if name not in told:
@@ -42,27 +42,27 @@ def _fields(command: Command, back: ReadBack, query: Command) -> Iterator[Proble
 
 
 def tries_fit(edition: Edition) -> Iterator[Problem]:
-    """What may be tried are arguments of one form of the request."""
+    """Report samples for arguments that no variant of the request has."""
     for command in edition.commands:
-        forms = [{field.name for field in form} for form in command.requests]
-        for tried in command.tries:
+        variants = [{field.name for field in variant} for variant in command.requests]
+        for tried in command.samples:
             names = {name for name, _ in tried}
-            if not any(names <= form for form in forms):
+            if not any(names <= variant for variant in variants):
                 message = (
                     f"no request of {command.name} has the arguments {', '.join(sorted(names))}"
                 )
-                yield Problem(command.place, "bad-tries", message)
+                yield Problem(command.place, "bad-samples", message)
 
 
 def agreement_fits(edition: Edition) -> Iterator[Problem]:
-    """Only queries agree, and with queries."""
+    """Report `agrees_with` entries that are not between queries."""
     queries = {command.name for command in edition.commands if command.safety == "query"}
     for command in edition.commands:
         for name in command.agrees_with:
             if command.name not in queries or name not in queries:
                 wrong = command.name if command.name not in queries else name
                 hint = nearest(wrong, queries)
-                message = f"{command.name} agrees with {name}; {wrong} is no query here{hint}"
+                message = f"{command.name} agrees with {name}, but {wrong} is not a query{hint}"
                 yield Problem(command.place, "bad-agreement", message)
 
 

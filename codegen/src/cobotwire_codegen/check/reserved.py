@@ -1,63 +1,74 @@
-"""Names that the generated code needs for itself, and classes that would hide each other."""
+"""Rules for names that the generated code needs, and for classes of the same name."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from cobotwire_codegen.errors import Place, Problem
-from cobotwire_codegen.model import Edition, Enum, Value
+from cobotwire_codegen.lower import message_class
+from cobotwire_codegen.model import Edition
 
-# What the generated code itself calls by these names.
+# Names that the generated methods use themselves.
 RESERVED_FIELDS = frozenset(
     {
         "ack_within",
         "bool",
+        "command",
+        "fields",
         "float",
-        "given",
+        "from_fields",
         "int",
-        "reply",
+        "messages",
+        "reply_type",
+        "request_type",
+        "result",
         "self",
         "str",
-        "to_degrees",
-        "to_radians",
+        "text_values",
         "tuple",
+        "values",
     }
 )
-# What every client is and can beside its commands.
+# Attributes that every client has in addition to its commands.
 RESERVED_COMMANDS = frozenset(
     {
+        "add_traffic_listener",
         "close",
         "codec",
         "listen",
         "move_angles",
         "move_coords",
         "open",
+        "stream",
         "table",
         "wait_until_reached",
         "watch",
     }
 )
-# A named tuple's own methods, and the types that stand in its annotations.
+# The methods of a named tuple, and the types in its annotations.
 RESERVED_ITEMS = frozenset({"count", "index", "int", "float", "bool", "str", "tuple"})
 RESERVED_FAMILIES = frozenset({"types"})
 RESERVED_CLASSES = frozenset(
     {
         "ASYNC_CLIENT",
         "Any",
-        "AsyncDriver",
+        "AsyncClient",
         "CLIENT",
         "Case",
         "ClassVar",
         "Command",
-        "Driver",
+        "Client",
+        "Message",
         "Field",
         "FrameFormat",
         "IntEnum",
-        "AsyncMoving",
-        "Layout",
-        "Moving",
+        "AsyncMovingClient",
+        "Variant",
+        "MovingClient",
         "NamedTuple",
         "Number",
+        "Reply",
+        "Request",
         "Sequence",
         "TABLE",
         "TYPE_CHECKING",
@@ -69,7 +80,7 @@ RESERVED_CLASSES = frozenset(
 
 
 def reserved(edition: Edition) -> Iterator[Problem]:
-    """No name hides what the generated code needs."""
+    """Report names that would hide what the generated code needs."""
     for family in edition.families:
         if family.name in RESERVED_FAMILIES:
             yield _reserved(family.name, family.place)
@@ -82,12 +93,11 @@ def reserved(edition: Edition) -> Iterator[Problem]:
 
 
 def items_free(edition: Edition) -> Iterator[Problem]:
-    """Parts of a named tuple hide neither what tuples can do nor the types of other parts."""
+    """Report parts of named tuples that would hide methods of tuples or types."""
     for type in edition.types:
-        if isinstance(type, Value):
-            for name, _ in type.items:
-                if name in RESERVED_ITEMS:
-                    yield _reserved(name, type.place)
+        for name, _ in type.parts:
+            if name in RESERVED_ITEMS:
+                yield _reserved(name, type.place)
     for command in edition.commands:
         for field in command.reply:
             if len([f for f in command.reply if not f.echo]) > 1 and field.name in RESERVED_ITEMS:
@@ -95,24 +105,24 @@ def items_free(edition: Edition) -> Iterator[Problem]:
 
 
 def _reserved(name: str, place: Place) -> Problem:
-    message = f"{name} has a meaning of its own in the generated code; choose another name"
+    message = f"{name} is reserved in the generated code; choose another name"
     return Problem(place, "reserved-name", message)
 
 
 def classes_apart(edition: Edition) -> Iterator[Problem]:
-    """Each class of the generated package has a name of its own."""
+    """Report classes of the generated package that have the same name."""
     seen: dict[str, Place] = {}
     for name, place in (*_classes(edition), *_asyncio_classes(edition)):
         if name in RESERVED_CLASSES:
             yield _reserved(name, place)
         elif name in seen:
-            message = f"{name} is a class already, at {seen[name]}"
+            message = f"there is already a class {name} at {seen[name]}"
             yield Problem(place, "duplicate-class", message)
         seen.setdefault(name, place)
 
 
 def _asyncio_classes(edition: Edition) -> Iterator[tuple[str, Place]]:
-    """The asyncio client's; what is told of the blocking one's names is not told twice."""
+    """Return the asyncio client's classes; those of the blocking client are reported already."""
     for family in edition.families:
         yield f"Async{family.name.capitalize()}Commands", family.place
     if edition.class_name not in RESERVED_CLASSES:
@@ -126,12 +136,16 @@ def _classes(edition: Edition) -> Iterator[tuple[str, Place]]:
     for command in edition.commands:
         if command.text is not None:
             yield command.text.class_name, command.text.place
+        name = message_class(command.name)
+        yield name, command.place
+        if command.replies or command.text is not None:
+            yield f"{name}Reply", command.place
         if len([field for field in command.reply if not field.echo]) > 1:
-            yield "".join(map(str.capitalize, command.name.split("_"))) + "Reply", command.place
+            yield f"{name}Result", command.place
     shared: set[str] = set()
     for type in edition.types:
-        # Types may share a class; whether they may is another rule's question.
-        if isinstance(type, Enum | Value) and type.class_name not in shared:
+        # Types may share a class; another rule checks that their parts agree.
+        if type.class_name and type.class_name not in shared:
             shared.add(type.class_name)
             yield type.class_name, type.place
 

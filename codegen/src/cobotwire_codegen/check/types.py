@@ -1,11 +1,11 @@
-"""A type must be sayable on its wire type."""
+"""Rules for types: every legal value can be encoded."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from cobotwire_codegen.errors import Problem
-from cobotwire_codegen.model import Edition, Enum, Quantity, Type
+from cobotwire_codegen.model import Edition, Quantity, Type
 
 
 def _quantities(edition: Edition) -> Iterator[Quantity]:
@@ -15,11 +15,11 @@ def _quantities(edition: Edition) -> Iterator[Quantity]:
 
 
 def ranges_sayable(edition: Edition) -> Iterator[Problem]:
-    """A range falls on steps of the scale, inside the wire type."""
+    """Report ranges that are not multiples of the scale, or wider than the wire type."""
     for quantity in _quantities(edition):
         lowest, highest = quantity.bounds
         if lowest.denominator != 1 or highest.denominator != 1:
-            message = f"the range of {quantity.name} falls between two steps of {quantity.scale}"
+            message = f"the range of {quantity.name} does not fall on multiples of {quantity.scale}"
             yield Problem(quantity.place, "unsayable-range", message)
         elif lowest < quantity.wire.minimum or highest > quantity.wire.maximum:
             low = float(quantity.wire.minimum * quantity.scale)
@@ -29,14 +29,14 @@ def ranges_sayable(edition: Edition) -> Iterator[Problem]:
 
 
 def members_fit(edition: Edition) -> Iterator[Problem]:
-    """Enum values are apart and fit their wire type."""
+    """Report members with the same value, or with a value that the wire type cannot hold."""
     for type in edition.types:
-        if not isinstance(type, Enum):
-            continue
         seen: dict[int, str] = {}
         for member in type.members:
-            if not type.wire.minimum <= member.value <= type.wire.maximum:
-                message = f"{member.name} = {member.value} does not fit into {type.wire.name}"
+            if not type.can_hold(member.value):
+                message = (
+                    f"{member.name} = {member.value} does not fit into {type.parts[0][1].wire.name}"
+                )
                 yield Problem(member.place, "value-too-wide", message)
             if member.value in seen:
                 message = f"{member.name} and {seen[member.value]} are both {member.value}"
@@ -45,11 +45,11 @@ def members_fit(edition: Edition) -> Iterator[Problem]:
 
 
 def exact_in_a_double(edition: Edition) -> Iterator[Problem]:
-    """Both codecs compute with doubles: every step must be a whole number that one can hold."""
+    """Report scales that are too fine for the doubles that both codecs compute with."""
     for quantity in _quantities(edition):
         most = max(map(abs, quantity.bounds)) * quantity.scale.numerator
         if most > 2**53 or quantity.scale.denominator > 2**53:
-            message = f"the steps of {quantity.name} are too fine for an exact double"
+            message = f"the scale of {quantity.name} is too fine for a double"
             yield Problem(quantity.place, "inexact-scale", message)
 
 

@@ -1,4 +1,4 @@
-"""The command ``cobotwire-gen``: one file a verb."""
+"""The command ``cobotwire-gen``, with one module for each verb."""
 
 from cobotwire_codegen.cli.app import main
 

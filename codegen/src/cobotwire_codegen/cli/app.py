@@ -1,4 +1,4 @@
-"""The verbs together."""
+"""Assembles the verbs of the command."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from cobotwire_codegen.cli.schema import schema
 from cobotwire_codegen.cli.shared import root_option
 
 _EPILOG = (
-    "Exit codes: 0 done; 1 the answer is no (something is stale, or differs); 2 the spec or the "
-    "call is wrong."
+    "Exit codes: 0 success; 1 something is stale or differs; 2 the spec or the command line is "
+    "wrong."
 )
 
 
@@ -28,18 +28,21 @@ _EPILOG = (
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=_EPILOG,
 )
-@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if not fresh.")
+@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if files are stale.")
+@click.option(
+    "--products", "with_products", is_flag=True, help="Also files that are not committed."
+)
 @root_option
 @click.version_option(package_name="cobotwire-codegen")
 @click.pass_context
-def main(ctx: click.Context, check_only: bool, root: str) -> None:
+def main(ctx: click.Context, check_only: bool, with_products: bool, root: str) -> None:
     """Generate software from a protocol in YAML.
 
-    Without a verb: generate this project's own files (editions, reference, test data) from spec/.
-    With --check, show what on disk is stale, missing or left over instead.
+    Without a verb, generate this project's own files (editions, reference, test data) from spec/.
+    With --check, report files that are stale, missing or left over instead.
     """
     if ctx.invoked_subcommand is None:
-        ctx.invoke(generate, check_only=check_only, root=root)
+        ctx.invoke(generate, check_only=check_only, with_products=with_products, root=root)
 
 
 for verb in (build, render, check, model, explain, init, schema, diff, new_command, reconcile):

@@ -1,4 +1,4 @@
-"""``cobotwire-gen build``: a protocol of one's own becomes a Python package."""
+"""``cobotwire-gen build``: generate a Python package from a protocol of your own."""
 
 from __future__ import annotations
 
@@ -25,35 +25,37 @@ from cobotwire_codegen.render import render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
-# What is made in the folder of each option.
+# What is generated into the folder of each option.
 RENDERERS = {
     "--out": render_python,
     "--docs": render_reference,
     "--c": render_c,
     "--wireshark": lambda edition, own: render_wireshark([edition], own),
 }
-# Wireshark's folder for plugins has others beside ours.
+# Wireshark's folder for plugins may contain other files.
 SHARED = ("--wireshark",)
 
 
 @click.command()
 @click.argument("file")
 @click.option(
-    "--out", required=True, type=click.Path(file_okay=False), help="The package's folder."
+    "--out", required=True, type=click.Path(file_okay=False), help="The folder of the package."
 )
-@click.option("--docs", type=click.Path(file_okay=False), help="A folder for the reference, too.")
-@click.option("--c", type=click.Path(file_okay=False), help="A folder for C code, too.")
+@click.option(
+    "--docs", type=click.Path(file_okay=False), help="Also write the reference, to this folder."
+)
+@click.option("--c", type=click.Path(file_okay=False), help="Also write C code, to this folder.")
 @click.option(
     "--wireshark",
     type=click.Path(file_okay=False),
-    help="A folder for a Wireshark dissector, too; it may hold other files.",
+    help="Also write a Wireshark dissector, to this folder; it may contain other files.",
 )
 @click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
-    help="Templates of your own; each takes the place of the one of the same name.",
+    help="Templates of your own; each replaces the built-in one of the same name.",
 )
-@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if not fresh.")
+@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if files are stale.")
 @format_option
 def build(
     file: str,
@@ -63,18 +65,18 @@ def build(
     wireshark: str | None,
     templates: str | None,
     check_only: bool,
-    form: str,
+    variant: str,
 ) -> None:
     """Generate a typed Python package from the edition FILE.
 
-    The package works with the installed cobotwire: its codecs, driver, simulator and command line
-    (`cobotwire --edition PACKAGE`). The folders of package and reference must hold nothing else.
+    The package works with the installed cobotwire: its codecs, client, simulator and command line
+    (`cobotwire --edition PACKAGE`). The folders of package and reference must contain nothing else.
     """
     path = edition_path(file)
     given = {"--out": out, "--docs": docs, "--c": c, "--wireshark": wireshark}
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
-    with problems_told(form):
+    with problems_told(variant):
         edition = build_edition(path, Path.cwd())
         check_edition(edition)
     own = Path(templates) if templates else None
@@ -89,18 +91,20 @@ def build(
     strangers = [path for target in wanted for path in foreign(target)]
     if strangers:
         shown = ", ".join(str(path) for path in strangers[:3])
-        raise click.UsageError(f"not generated, and in the way: {shown}; choose another folder")
+        raise click.UsageError(
+            f"the folder contains files that were not generated: {shown}; choose another folder"
+        )
     with unwritable_told():
         written = write_all(wanted)
     click.echo(f"{edition.name} ({len(edition.commands)} commands): {written} file(s)")
 
 
 def _check_folders(folders: dict[str, Path]) -> None:
-    """The package's name must be importable, and no folder may hold another."""
+    """Raise an error if the package's name is not importable, or if folders are nested."""
     name = folders["--out"].resolve().name
     if not name.isidentifier() or keyword.iskeyword(name) or name == "cobotwire":
-        raise click.UsageError(f"{name} cannot be a package's name; choose another folder")
+        raise click.UsageError(f"{name} is not a valid package name; choose another folder")
     for first, second in combinations(folders, 2):
         one, other = folders[first].resolve(), folders[second].resolve()
         if one == other or one in other.parents or other in one.parents:
-            raise click.UsageError(f"{first} and {second} must be folders apart")
+            raise click.UsageError(f"{first} and {second} must be separate folders")

@@ -1,4 +1,4 @@
-"""``cobotwire-gen check``: what is wrong with a spec."""
+"""``cobotwire-gen check``: report the problems of a spec."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from cobotwire_codegen.project import edition_files
 @click.argument("files", nargs=-1)
 @root_option
 @format_option
-def check(files: tuple[str, ...], root: str, form: str) -> None:
-    """Check the edition FILES, or all of spec/editions; tell every problem at once.
+def check(files: tuple[str, ...], root: str, variant: str) -> None:
+    """Check the edition FILES, or all of spec/editions, and report every problem at once.
 
     A problem is `file:line:column: code: message`. Codes are stable; `cobotwire-gen explain CODE`
-    tells what one means.
+    explains a code.
     """
     problems: list[Problem] = []
-    with problems_told(form):
+    with problems_told(variant):
         paths = [edition_path(file) for file in files] or edition_files(Path(root))
         for path in paths:
             try:
@@ -33,7 +33,7 @@ def check(files: tuple[str, ...], root: str, form: str) -> None:
                 problems.extend(error.problems)
         if problems:
             raise SpecError(problems)
-    if form == "json":
+    if variant == "json":
         click.echo("[]")
-    elif form == "text":
-        click.echo(f"{len(paths)} edition(s), no problem")
+    elif variant == "text":
+        click.echo(f"{len(paths)} edition(s), no problems")

@@ -1,4 +1,4 @@
-"""``cobotwire-gen diff``: what changed between two specs, and the version bump that follows."""
+"""``cobotwire-gen diff``: report what changed between two specs, and the version bump."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ def _show_rules(ctx: click.Context, param: click.Parameter, wanted: bool) -> Non
 @click.option(
     "--waivers",
     type=click.Path(exists=True, dir_okay=False),
-    help="A YAML list of {rule, where, reason}: findings that are answered for.",
+    help="A YAML list of {rule, where, reason}: findings that are accepted.",
 )
 @click.option(
     "--format",
-    "form",
+    "variant",
     type=click.Choice(("text", "json", "markdown")),
     default="text",
     show_default=True,
-    help="How findings are told; markdown is for the changelog.",
+    help="How findings are printed; markdown is for the changelog.",
 )
 @click.option(
     "--rules",
@@ -61,44 +61,44 @@ def _show_rules(ctx: click.Context, param: click.Parameter, wanted: bool) -> Non
     callback=_show_rules,
     help="List every rule with its level, and exit.",
 )
-def diff(old: str, new: str, waivers: str | None, form: str) -> None:
-    """Tell what changed from OLD to NEW, how severe it is, and the version bump that follows.
+def diff(old: str, new: str, waivers: str | None, variant: str) -> None:
+    """Report what changed from OLD to NEW, how severe it is, and the version bump that follows.
 
-    OLD and NEW are each an edition file, a folder that holds spec/, or a git revision of the
-    repository in the current folder (a path wins over a revision of the same name). Of two
-    folders or revisions, editions of the same name are compared; beside a single file, the edition
-    of its name. A spec is read, not checked: `cobotwire-gen check` does that.
+    OLD and NEW are each an edition file, a folder that contains spec/, or a git revision of the
+    repository in the current folder (a path has precedence over a revision). Of two
+    folders or revisions, editions of the same name are compared; a single file is compared with
+    the edition of its name. The specs are not checked: `cobotwire-gen check` does that.
 
-    Wire- and API-breaking findings ask for a major version, behaviour and additions for a minor
-    one, docs for a patch. Before 1.0 SemVer promises nothing; here what breaks or behaves otherwise
-    raises the minor number, and all else the patch.
+    Wire- and API-breaking findings require a major version, behaviour and additions a minor
+    one, docs for a patch. Before 1.0, where SemVer promises nothing, breaking and behaviour
+    findings raise the minor number, and all others the patch number.
 
     Exit codes: 0 nothing breaks; 1 something breaks the wire or the API, and no waiver says why;
-    2 the call, the spec or the waivers are wrong.
+    2 the command line, the spec or the waivers are wrong.
     """
-    with problems_told("json" if form == "json" else "text"):
+    with problems_told("json" if variant == "json" else "text"):
         accepted = read_waivers(Path(waivers)) if waivers else ()
         try:
             findings = _compare(read(old), read(new))
         except SourceError as error:
             raise click.UsageError(str(error)) from error
     judged = judge(findings, accepted)
-    _tell(judged, old, new, form)
+    _tell(judged, old, new, variant)
     sys.exit(1 if breaking(judged.findings) else 0)
 
 
 def _compare(old: Source, new: Source) -> tuple[Finding, ...]:
     if old.one and new.one:
-        # Two files are compared, whatever their editions are called.
+        # Two files are compared even if their editions have different names.
         [before], [after] = old.editions.values(), new.editions.values()
         return diff_two(before, after)
     return diff_all(*paired(old, new))
 
 
-def _tell(judged: Judged, old: str, new: str, form: str) -> None:
-    if form == "json":
+def _tell(judged: Judged, old: str, new: str, variant: str) -> None:
+    if variant == "json":
         click.echo(reports.as_json(judged, old, new))
-    elif form == "markdown":
+    elif variant == "markdown":
         click.echo("\n".join(reports.markdown(judged)))
     else:
         for kind, line in reports.text(judged):

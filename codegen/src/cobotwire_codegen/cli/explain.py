@@ -1,4 +1,4 @@
-"""``cobotwire-gen explain``: what a problem code means, or what a command is."""
+"""``cobotwire-gen explain``: explain a problem code or a command."""
 
 from __future__ import annotations
 
@@ -34,16 +34,18 @@ def explain(word: str | None, file: str) -> None:
         click.echo(describe_code(CODES[word]))
         return
     with problems_told():
-        # Not checked: who asks what a command is may be in the middle of mending it.
+        # The edition is not checked, so that a command can be explained while it is being changed.
         edition = build_edition(edition_path(file), Path.cwd())
     commands = {command.name: command for command in edition.commands}
     if word not in commands:
         hint = _hint(word, [*CODES, *commands])
-        raise click.UsageError(f"{word} is no problem code and no command of {edition.name}{hint}")
+        raise click.UsageError(
+            f"{word} is neither a problem code nor a command of {edition.name}{hint}"
+        )
     click.echo(describe_command(edition, commands[word]))
 
 
 def _hint(word: str, known: list[str]) -> str:
     hint = nearest(word, known)
-    # Two hundred words help nobody.
+    # A list of two hundred words would not help.
     return hint if "did you mean" in hint else "; `cobotwire-gen explain` lists the codes"

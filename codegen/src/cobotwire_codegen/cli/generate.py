@@ -1,4 +1,4 @@
-"""``cobotwire-gen`` without a verb: this project's own files."""
+"""``cobotwire-gen`` without a verb: generate this project's own files."""
 
 from __future__ import annotations
 
@@ -9,17 +9,23 @@ import click
 
 from cobotwire_codegen.cli.shared import problems_told, root_option
 from cobotwire_codegen.emit import Target, compare, write
-from cobotwire_codegen.project import editions, targets
+from cobotwire_codegen.project import committed, editions, products
 
 
 @click.command()
 @click.option("--check", "check_only", is_flag=True)
+@click.option("--products", "with_products", is_flag=True)
 @root_option
-def generate(check_only: bool, root: str) -> None:
-    """Generate the editions, the command reference and the test data from spec/."""
+def generate(check_only: bool, with_products: bool, root: str) -> None:
+    """Generate what is committed: editions, reference, the decoder's tables, the spec's schema.
+
+    With products, also what is not: output targets, and data of the Rust tests.
+    """
     with problems_told():
         found = editions(Path(root))
-    wanted = targets(Path(root), found)
+    wanted = committed(Path(root), found)
+    if with_products:
+        wanted += products(Path(root), found)
     if check_only:
         sys.exit(show_stale(wanted))
     commands = ", ".join(f"{edition.name} ({len(edition.commands)} commands)" for edition in found)
@@ -27,7 +33,7 @@ def generate(check_only: bool, root: str) -> None:
 
 
 def write_all(wanted: list[Target]) -> int:
-    """Write what is not fresh, and say so; gives the number of files."""
+    """Write the files that are stale, print their names, and return their number."""
     changed = [path for target in wanted for path in write(target)]
     for path in changed:
         click.echo(f"{'wrote' if path.exists() else 'removed'} {path}")
@@ -35,11 +41,11 @@ def write_all(wanted: list[Target]) -> int:
 
 
 def show_stale(wanted: list[Target]) -> int:
-    """Show what is not fresh; gives the exit code."""
+    """Print the files that are stale, and return the exit code."""
     stale = [item for target in wanted for item in compare(target)]
     for item in stale:
         click.echo(f"{item.kind}: {item.path}")
         if item.diff:
             click.echo(item.diff, nl=False)
-    click.echo(f"{len(stale)} generated file(s) not fresh; run cobotwire-gen" if stale else "fresh")
+    click.echo(f"{len(stale)} generated file(s) are stale; run cobotwire-gen" if stale else "fresh")
     return 1 if stale else 0

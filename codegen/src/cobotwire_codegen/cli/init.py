@@ -1,4 +1,4 @@
-"""``cobotwire-gen init``: a protocol of one's own, to start from."""
+"""``cobotwire-gen init``: start a protocol of your own."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ _NAME = re.compile(r"[a-z][a-z0-9_]*\Z")
 
 @click.command()
 @click.argument("name")
-@click.option("--out", type=click.Path(dir_okay=False), help="The file; left out: NAME.yaml.")
+@click.option("--out", type=click.Path(dir_okay=False), help="The file. Default: NAME.yaml.")
 def init(name: str, out: str | None) -> None:
-    """Start a protocol called NAME: one commented YAML file, and its schema for editors beside it.
+    """Start a protocol called NAME: write one commented YAML file, and its schema for editors.
 
-    The file passes `check` and `build` as it is. Nothing is overwritten.
+    `check` and `build` accept the file as it is. Existing files are not overwritten.
     """
     if not _NAME.match(name):
-        raise click.UsageError(f"{name} cannot be a package's name; write it like my_device")
+        raise click.UsageError(f"{name} is not a valid package name; write it like my_device")
     path = Path(out or f"{name}.yaml")
     schema = path.with_suffix(".schema.json")
     there = [str(file) for file in (path, schema) if file.exists()]
     if there:
-        raise click.UsageError(f"{' and '.join(there)} stands there already; choose another --out")
+        raise click.UsageError(f"{' and '.join(there)} already exists; choose another --out")
     if not path.parent.is_dir():
         raise click.UsageError(f"there is no folder {path.parent}")
     with problems_told():

@@ -1,4 +1,4 @@
-"""``cobotwire-gen model``: the model as JSON, for generators in any language."""
+"""``cobotwire-gen model``: print the model as JSON, for generators in any language."""
 
 from __future__ import annotations
 
@@ -14,22 +14,24 @@ from cobotwire_codegen.cli.shared import (
     problems_told,
     unwritable_told,
 )
-from cobotwire_codegen.publish import model_json
+from cobotwire_codegen.publish import edition_json
 
 
 @click.command()
 @click.argument("file")
-@click.option("--out", type=click.Path(dir_okay=False), help="Write there instead of printing.")
+@click.option(
+    "--out", type=click.Path(dir_okay=False), help="Write to this file instead of printing."
+)
 @format_option
-def model(file: str, out: str | None, form: str) -> None:
+def model(file: str, out: str | None, variant: str) -> None:
     """Publish the checked model of the edition FILE as versioned JSON.
 
-    References are resolved, defaults filled in, deltas folded: nothing is left to interpret.
+    References are resolved, defaults filled in and deltas applied.
     """
-    with problems_told(form):
+    with problems_told(variant):
         edition = build_edition(edition_path(file), Path.cwd())
         check_edition(edition)
-    text = model_json(edition)
+    text = edition_json(edition, complete=True)
     if out is None:
         click.echo(text, nl=False)
     else:

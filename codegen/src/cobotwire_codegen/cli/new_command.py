@@ -1,4 +1,4 @@
-"""``cobotwire-gen new-command``: a command and its first vectors, added to the spec."""
+"""``cobotwire-gen new-command``: add a command and its first vectors to the spec."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from cobotwire_codegen.author.draft import (
     Draft,
     command_lines,
     read,
-    smallest,
     vector_lines,
 )
 from cobotwire_codegen.author.place import families, vectors_file
@@ -23,8 +22,9 @@ from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.explain import DEFAULT_EDITION
 from cobotwire_codegen.cli.shared import edition_path, problems_told
 from cobotwire_codegen.errors import nearest
+from cobotwire_codegen.language.words import SAFETY
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, parse
-from cobotwire_codegen.model import SAFETY, Command, Edition, Form
+from cobotwire_codegen.model import Command, Edition, Variant
 from cobotwire_codegen.wire import build_frame
 
 _NEEDED = {
@@ -38,26 +38,28 @@ _NEEDED = {
 
 @click.command("new-command")
 @click.option("--edition", "file", default=DEFAULT_EDITION, show_default=True)
-@click.option("--family", help="The family; needed where an edition has several files.")
+@click.option("--family", help="The family; needed if the edition has several.")
 @click.option("--name", help="The method's name.")
 @click.option("--id", help="The id, such as 0x7E.")
 @click.option("--title", help="A heading.")
 @click.option("--doc", help="What it does, in a sentence.")
 @click.option("--safety", help=f"One of: {', '.join(SAFETY)}.")
 @click.option("--request", help="Its fields, as NAME:TYPE,NAME:TYPE.")
-@click.option("--reply", help="The same of the reply; NAME:TYPE:echo repeats the request's field.")
-@click.option("--vector", help="A request that was seen, in hex.")
-@click.option("--reply-vector", help="A reply that was seen, in hex.")
+@click.option(
+    "--reply", help="The reply's fields, likewise; NAME:TYPE:echo repeats the request's field."
+)
+@click.option("--vector", help="A captured request, in hex.")
+@click.option("--reply-vector", help="A captured reply, in hex.")
 @click.option("--values", help="Values for the request's vector, as 'NAME: VALUE, NAME: VALUE'.")
-@click.option("--reply-values", help="The same for the reply's.")
+@click.option("--reply-values", help="Values for the reply's vector.")
 @click.option("--source", default="", help="Lines of the document, such as 20-39.")
 @click.option("--dry-run", is_flag=True, help="Print the YAML and write nothing.")
 def new_command(file: str, dry_run: bool, **given: str | None) -> None:
     """Add a command to an edition, with a vector for each of its messages.
 
-    What is missing is asked for on a terminal. The vectors hold the frames given, or those of the
-    values given, or those of the smallest legal values. The result is checked before anything is
-    written; if it is not right, the files stay as they are.
+    On a terminal, missing options are prompted for. The vectors contain the given frames, or
+    frames with the given values, or with the smallest legal values. The result is checked before
+    anything is written; if it has problems, the files stay unchanged.
     """
     path = edition_path(file)
     with problems_told():
@@ -88,7 +90,7 @@ def _show(path: Path, lines: list[str]) -> None:
 
 
 def _complete(given: dict[str, str | None], homes: dict[str, Path]) -> None:
-    """Ask for what is missing, or refuse."""
+    """Prompt for missing options, or raise an error if there is no terminal."""
     needed = dict(_NEEDED)
     if list(homes) == [""]:
         given["family"] = ""
@@ -137,24 +139,24 @@ def _fields(flag: str, text: str) -> tuple[tuple[str, str, bool], ...]:
         name, _, rest = part.partition(":")
         type, _, echo = rest.partition(":")
         if not name or not type or echo not in ("", "echo") or (echo and flag == "request"):
-            raise click.UsageError(f"--{flag} is NAME:TYPE,NAME:TYPE; {part} is not")
+            raise click.UsageError(f"--{flag} must be NAME:TYPE,NAME:TYPE; {part} is not NAME:TYPE")
         found.append((name, type, bool(echo)))
     return tuple(found)
 
 
 def _vectors(edition: Edition, draft: Draft, given: dict[str, str | None]) -> Iterator[list[str]]:
-    """The lines of a vector for each form of each message, acknowledgements among them."""
+    """Return the lines of a vector for each variant of each message, including acknowledgements."""
     command = next(command for command in edition.commands if command.name == draft.name)
     flags: tuple[tuple[Direction, str, str], ...] = (
         ("request", "vector", "values"),
         ("reply", "reply_vector", "reply_values"),
     )
     for direction, seen, said in flags:
-        for which, form in enumerate(command.forms(direction)):
+        for which, variant in enumerate(command.variants(direction)):
             try:
-                # What was given is the full form.
+                # A given frame is the full variant.
                 frame = bytes.fromhex(given[seen] or "") if not which else b""
-                values = _values_of(edition, command, direction, form, frame, given[said])
+                values = _values_of(edition, command, direction, variant, frame, given[said])
                 built = build_frame(edition.frame, command, direction, values)
             except ValueError as error:
                 raise click.UsageError(f"the {direction}'s vector: {error}") from None
@@ -165,15 +167,15 @@ def _values_of(
     edition: Edition,
     command: Command,
     direction: Direction,
-    form: Form,
+    variant: Variant,
     frame: bytes,
     said: str | None,
 ) -> dict[str, object]:
-    """What a vector shows: the frame that was seen, or the values that were said, or small ones."""
+    """Return a vector's values: of the captured frame, else the given ones, else the smallest."""
     if frame:
         return read(edition, command, direction, frame)
-    values = {field.name: smallest(field.type) for field in form}
-    values.update(_values(said) if said and form == command.forms(direction)[0] else {})
+    values = {field.name: field.type.smallest for field in variant}
+    values.update(_values(said) if said and variant == command.variants(direction)[0] else {})
     return values
 
 

@@ -1,4 +1,4 @@
-"""``cobotwire-gen reconcile``: what a line carries that the edition lacks."""
+"""``cobotwire-gen reconcile``: find messages in a capture that the edition lacks."""
 
 from __future__ import annotations
 
@@ -24,19 +24,21 @@ from cobotwire_codegen.cli.shared import edition_path, problems_told
     type=click.Choice(("request", "reply", "both")),
     default="both",
     show_default=True,
-    help="Who was heard: the client's requests, the arm's replies, or both on one line.",
+    help="What was captured: the client's requests, the arm's replies, or both.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def reconcile(capture: BinaryIO, file: str, direction: str, as_json: bool) -> None:
     """Find the ids and lengths in CAPTURE that the edition lacks, with a draft entry for each.
 
-    CAPTURE holds the raw bytes or hex text; - is standard input. The drafts are guesses from what
-    the bytes look like. Exit code 1 if there was anything unknown, 0 if not.
+    CAPTURE contains raw bytes or hex text; - is standard input. The drafts are guesses from what
+    the bytes look like. The exit code is 1 if anything was unknown, else 0.
     """
     try:
         line = capture_bytes(capture.read())
     except ValueError as error:
-        raise click.UsageError(f"the capture is hex text, but not of pairs: {error}") from None
+        raise click.UsageError(
+            f"the capture is hex text, but not pairs of digits: {error}"
+        ) from None
     with problems_told():
         edition = build_edition(edition_path(file), Path.cwd())
     count, found = reconciled(edition, line, direction)
@@ -47,5 +49,7 @@ def reconcile(capture: BinaryIO, file: str, direction: str, as_json: bool) -> No
     else:
         for draft in drafts:
             click.echo("\n".join(draft) + "\n")
-        click.echo(f"{len(line)} bytes, {count} frame(s), {len(found)} unknown layout(s)", err=True)
+        click.echo(
+            f"{len(line)} bytes, {count} frame(s), {len(found)} unknown variant(s)", err=True
+        )
     sys.exit(1 if found else 0)

@@ -1,4 +1,4 @@
-"""``cobotwire-gen render``: a template of one's own, filled from an edition."""
+"""``cobotwire-gen render``: fill a template of your own from an edition."""
 
 from __future__ import annotations
 
@@ -21,16 +21,18 @@ from cobotwire_codegen.render import environment
 @click.command()
 @click.argument("template", type=click.Path(exists=True, dir_okay=False))
 @click.argument("file")
-@click.option("--out", type=click.Path(dir_okay=False), help="Write there instead of printing.")
+@click.option(
+    "--out", type=click.Path(dir_okay=False), help="Write to this file instead of printing."
+)
 @format_option
-def render(template: str, file: str, out: str | None, form: str) -> None:
+def render(template: str, file: str, out: str | None, variant: str) -> None:
     """Fill the Jinja TEMPLATE from the edition FILE: a target of your own.
 
-    The template sees the checked model as `edition`, and what our own templates see; it may include
-    templates that stand beside it. docs/targets.md shows one.
+    The template has the checked model as `edition`, and what the built-in templates have. It may
+    include templates in its folder. docs/targets.md shows an example.
     """
     path = Path(template)
-    with problems_told(form):
+    with problems_told(variant):
         edition = build_edition(edition_path(file), Path.cwd())
         check_edition(edition)
     with template_errors_told(path.parent):

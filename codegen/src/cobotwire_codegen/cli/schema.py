@@ -1,4 +1,4 @@
-"""``cobotwire-gen schema``: completion and red lines in an editor."""
+"""``cobotwire-gen schema``: write the JSON Schema for editors."""
 
 from __future__ import annotations
 
@@ -7,28 +7,32 @@ from pathlib import Path, PurePosixPath
 
 import click
 
-from cobotwire_codegen.author.schema import schema_json
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.generate import show_stale, write_all
 from cobotwire_codegen.cli.shared import edition_path, problems_told, root_option
 from cobotwire_codegen.emit import Target
+from cobotwire_codegen.language.schema import schema_json
 from cobotwire_codegen.project import editions, schema_target
 
 
 @click.command()
 @click.argument("files", nargs=-1)
-@click.option("--out", type=click.Path(dir_okay=False), help="The schema's file, with FILES.")
-@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if not fresh.")
+@click.option(
+    "--out", type=click.Path(dir_okay=False), help="The file to write; required with FILES."
+)
+@click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if files are stale.")
 @root_option
 def schema(files: tuple[str, ...], out: str | None, check_only: bool, root: str) -> None:
-    """Write spec/schema.json, the JSON Schema of the spec's files; or that of the edition FILES.
+    """Write spec/schema.json, the JSON Schema of the spec's files, or the schema of FILES.
 
-    Editors with a YAML language server use it in every file that starts with the line
-    `# yaml-language-server: $schema=PATH/schema.json`. It knows the types of the editions.
+    Editors with a YAML language server apply it to every file that starts with the line
+    `# yaml-language-server: $schema=PATH/schema.json`. It completes the types of the editions.
     """
     if bool(files) != bool(out):
-        raise click.UsageError("FILES and --out go together; without both, spec/ is taken")
+        raise click.UsageError(
+            "FILES and --out need each other; without both, the schema of spec/ is written"
+        )
     with problems_told():
         target = _own(files, Path(out)) if out else schema_target(Path(root), editions(Path(root)))
     if check_only:

@@ -1,4 +1,4 @@
-"""What the verbs share: the root, reading editions, and telling problems."""
+"""What the verbs share: options, reading editions, and reporting problems."""
 
 from __future__ import annotations
 
@@ -21,41 +21,41 @@ root_option = click.option(
     "--root",
     type=click.Path(exists=True, file_okay=False),
     default=".",
-    help="The folder that file names in messages are relative to, and that holds spec/.",
+    help="The folder that contains spec/; file names in messages are relative to it.",
 )
 format_option = click.option(
     "--format",
-    "form",
+    "variant",
     type=click.Choice(FORMATS),
     default="text",
     show_default=True,
-    help="How problems are told.",
+    help="How problems are printed.",
 )
 
 
 @contextmanager
-def problems_told(form: str = "text") -> Iterator[None]:
-    """Turn a spec's problems into lines and exit code 2."""
+def problems_told(variant: str = "text") -> Iterator[None]:
+    """Print a spec's problems and exit with code 2."""
     try:
         yield
     except SpecError as error:
-        tell(error.problems, form)
-        if form == "text":
+        tell(error.problems, variant)
+        if variant == "text":
             click.echo(f"{len(error.problems)} problem(s) in the spec", err=True)
         sys.exit(2)
 
 
 @contextmanager
 def template_errors_told(folder: Path | None) -> Iterator[None]:
-    """Turn a mistake in somebody's own template into one line and exit code 2.
+    """Report a mistake in a user's template in one line and exit with code 2.
 
-    Without a ``folder`` all templates are ours, and a mistake in them is a fault of this program.
+    Without a ``folder``, all templates are built in, and a mistake in them is a bug.
     """
     try:
         yield
     except TemplateSyntaxError as error:
         raise click.UsageError(f"{error.filename}:{error.lineno}: {error.message}") from error
-    except Exception as error:  # whatever a template of somebody's own can do
+    except Exception as error:  # a user's template can raise anything
         if folder is None:
             raise
         frames = [
@@ -66,7 +66,7 @@ def template_errors_told(folder: Path | None) -> Iterator[None]:
 
 
 def check_names(folder: Path | None) -> None:
-    """A template takes the place of one of ours: a name that none of ours has is a mistake."""
+    """Raise an error if a user's template has a name that no built-in template has."""
     if folder is None:
         return
     known = template_names()
@@ -78,20 +78,20 @@ def check_names(folder: Path | None) -> None:
 
 @contextmanager
 def unwritable_told() -> Iterator[None]:
-    """Turn a file that cannot be written into one line and exit code 2."""
+    """Report a file that cannot be written in one line and exit with code 2."""
     try:
         yield
     except OSError as error:
         raise click.UsageError(f"cannot write {error.filename}: {error.strerror}") from error
 
 
-def tell(problems: Sequence[Problem], form: str) -> None:
-    """Print problems: as lines for people, as JSON, or as GitHub's annotations."""
-    if form == "json":
+def tell(problems: Sequence[Problem], variant: str) -> None:
+    """Print problems as lines, as JSON, or as GitHub annotations."""
+    if variant == "json":
         click.echo(json.dumps([_plain(problem) for problem in problems], indent=1))
         return
     for problem in problems:
-        click.echo(_github(problem) if form == "github" else str(problem), err=form == "text")
+        click.echo(_github(problem) if variant == "github" else str(problem), err=variant == "text")
 
 
 def _plain(problem: Problem) -> dict[str, str | int]:
@@ -107,14 +107,14 @@ def _plain(problem: Problem) -> dict[str, str | int]:
 
 def _github(problem: Problem) -> str:
     place = problem.place
-    # What GitHub asks for in the properties and the message of an annotation.
+    # GitHub requires these escapes in an annotation.
     message = problem.message.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
     where = f"file={place.file},line={place.line},col={place.column},title={problem.code}"
     return f"::error {where}::{message}"
 
 
 def edition_path(file: str) -> Path:
-    """The edition file that a person named."""
+    """Return the path of the edition file that the command line names."""
     path = Path(file)
     if not path.is_file():
         raise click.UsageError(f"there is no file {file}")

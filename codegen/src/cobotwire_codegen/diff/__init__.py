@@ -1,4 +1,4 @@
-"""What changed between two editions: models compared, not text.
+"""Compares editions: models, not text.
 
 Every difference is a finding of one rule; a rule has a level, and from the levels follows the
 version bump.

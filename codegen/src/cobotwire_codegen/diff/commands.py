@@ -1,4 +1,4 @@
-"""Commands: which came, went or got another name, and what changed in those that stayed."""
+"""Compares commands: added, removed, renamed and changed ones."""
 
 from __future__ import annotations
 
@@ -8,44 +8,47 @@ from typing import Any
 from cobotwire_codegen.diff import prose, words
 from cobotwire_codegen.diff.api import result_changes, signature_changes
 from cobotwire_codegen.diff.finding import Finding, finding
-from cobotwire_codegen.diff.forms import message_changes
 from cobotwire_codegen.diff.match import Matched, match
 from cobotwire_codegen.diff.texts import text_changes
-from cobotwire_codegen.diff.types import Known, layout
+from cobotwire_codegen.diff.types import Known, wire_shape
+from cobotwire_codegen.diff.variants import message_changes
 from cobotwire_codegen.model import Command, Edition
 
 
 def matched_commands(old: Edition, new: Edition) -> Matched[Command]:
-    """By name; what is left over by id and layout."""
+    """Match commands by name, the remaining ones by id and variants."""
     return match(old.commands, new.commands, lambda command: command.name).further(_message)
 
 
 def _message(command: Command) -> tuple[Any, ...]:
-    """What the line sees of a command."""
-    layouts = tuple(
-        tuple(tuple(word for field in form for word in layout(field.type)) for form in forms)
-        for forms in (command.requests, command.replies)
+    """Return what is visible of a command on the wire."""
+    variants = tuple(
+        tuple(
+            tuple(word for field in variant for word in wire_shape(field.type))
+            for variant in variants
+        )
+        for variants in (command.requests, command.replies)
     )
-    return command.id, layouts, words.template(command.text), words.template(command.request_text)
+    return command.id, variants, words.template(command.text), words.template(command.request_text)
 
 
 def command_changes(old: Edition, new: Edition, known: Known) -> Iterator[Finding]:
-    """All commands."""
+    """Compare all commands."""
     matched = matched_commands(old, new)
-    for command in matched.gone:
+    for command in matched.removed:
         same = [other.name for other in new.commands if _message(other) == _message(command)]
         rule = "alias-removed" if same else "command-removed"
         yield finding(rule, f"commands/{command.name}", command.name, same[0] if same else "")
-    for command in matched.came:
+    for command in matched.added:
         yield finding("command-added", f"commands/{command.name}", "", command.name)
-    # A deadline that is left out is the link's, which is told once.
-    links = old.frame.deadline_ms, new.frame.deadline_ms
+    # A command without its own deadline has the transport's; frame_changes reports that change.
+    transports = old.frame.deadline_ms, new.frame.deadline_ms
     for before, after in matched.pairs:
         where = f"commands/{after.name}"
         if before.name != after.name:
             yield finding("command-renamed", where, before.name, after.name)
         deadlines = before.deadline_ms, after.deadline_ms
-        if before.deadline_ms != after.deadline_ms and deadlines != links:
+        if before.deadline_ms != after.deadline_ms and deadlines != transports:
             yield finding("deadline-changed", where, *deadlines)
         yield from _command(where, before, after)
         yield from _messages(where, before, after, known)
@@ -53,7 +56,7 @@ def command_changes(old: Edition, new: Edition, known: Known) -> Iterator[Findin
 
 
 def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
-    """All but the messages."""
+    """Compare everything except the messages."""
     if old.id != new.id:
         yield finding("id-changed", where, f"{old.id:#04x}", f"{new.id:#04x}")
     if old.safety != new.safety:
@@ -65,8 +68,8 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
     if old.agrees_with != new.agrees_with:
         shown = [words.names(side.agrees_with) or "nothing" for side in (old, new)]
         yield finding("agreement-changed", where, *shown)
-    if old.tries != new.tries:
-        yield finding("tries-changed", where, words.tries(old), words.tries(new))
+    if old.samples != new.samples:
+        yield finding("samples-changed", where, words.samples(old), words.samples(new))
     if old.ack != new.ack:
         yield finding("ack-changed", where, words.yes(old.ack), words.yes(new.ack))
     if old.alias != new.alias:
@@ -86,14 +89,14 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
 def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[Finding]:
     found = list(message_changes(f"{where}/request", old, new, "request", known))
     yield from found
-    # Each is told once, as the more severe or the more exact of the two.
-    moved = any(one.rule == "request-layout-changed" for one in found)
+    # Report each difference once, by the more severe or more exact rule.
+    moved = any(one.rule == "request-variant-changed" for one in found)
     kinds = {one.where for one in found if one.rule == "type-kind-changed"}
     for one in signature_changes(where, old, new, known):
-        told = (one.rule == "argument-order-changed" and moved) or (
+        reported = (one.rule == "argument-order-changed" and moved) or (
             one.rule == "argument-type-changed" and one.where in kinds
         )
-        if not told:
+        if not reported:
             yield one
     yield from message_changes(f"{where}/reply", old, new, "reply", known)
     yield from result_changes(where, old, new, known)
@@ -103,7 +106,7 @@ def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[
 
 
 def _shared_ids(matched: Matched[Command]) -> Iterator[Finding]:
-    """Of the commands that share an id, the first one lends a frame its name."""
+    """Compare which of the commands that share an id comes first and so names a frame."""
     stayed = [j for _, j in matched.places]
     for id in dict.fromkeys(command.id for _, command in matched.pairs):
         before = [j for j in stayed if matched.new[j].id == id]

@@ -1,4 +1,4 @@
-"""Two editions, and two collections of them, compared."""
+"""Compares two editions, and two sets of editions."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _SEVERITY = {level: index for index, level in enumerate(LEVELS)}
 
 
 def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
-    """What changed from one edition to another, the most severe first; each said once.
+    """Return what changed from one edition to another, the most severe first, each once.
 
-    Places in files are no part of it. Nothing is found just where the two say the same.
+    Places in files are not compared. The result is empty exactly if the editions are equal.
     """
     known, named = named_types(old, new)
     found = [
@@ -37,7 +37,7 @@ def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
 
 
 def diff_all(old: Mapping[str, Edition], new: Mapping[str, Edition]) -> tuple[Finding, ...]:
-    """Editions of the same name compared; one that comes or goes is a finding itself."""
+    """Compare editions of the same name; report added and removed editions."""
     found = [finding("edition-removed", name, name) for name in old if name not in new]
     found += [finding("edition-added", name, "", name) for name in new if name not in old]
     for name in old:
@@ -47,12 +47,12 @@ def diff_all(old: Mapping[str, Edition], new: Mapping[str, Edition]) -> tuple[Fi
 
 
 def _sorted(found: Iterator[Finding]) -> tuple[Finding, ...]:
-    # Stable: inside a level, the order of the model.
+    # The sort is stable: findings of one level keep the order of the model.
     return tuple(sorted(found, key=lambda one: _SEVERITY[one.level]))
 
 
 def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
-    """What an edition says of itself."""
+    """Compare the edition's own names and descriptions."""
     facts = (
         ("edition-renamed", "edition", old.name, new.name),
         ("class-renamed", "edition", old.class_name, new.class_name),

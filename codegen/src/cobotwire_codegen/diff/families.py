@@ -1,4 +1,4 @@
-"""Families of commands: pages of the reference, and the order in them."""
+"""Compares families of commands: pages of the reference, and their order."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cobotwire_codegen.model import Edition, Family
 
 
 def family_changes(old: Edition, new: Edition) -> Iterator[Finding]:
-    """All families, and which command is in which."""
+    """Compare all families, and which commands they contain."""
     matched = match(old.families, new.families, lambda family: family.name).further(_commands)
-    for family in matched.gone:
+    for family in matched.removed:
         yield finding("family-removed", f"families/{family.name}", family.name)
-    for family in matched.came:
+    for family in matched.added:
         yield finding("family-added", f"families/{family.name}", "", family.name)
     for before, after in matched.pairs:
         where = f"families/{after.name}"
@@ -29,7 +29,7 @@ def family_changes(old: Edition, new: Edition) -> Iterator[Finding]:
     homes = {command.name: family.name for family in new.families for command in family.commands}
     for before, after in matched.pairs:
         yield from _moved(before, after, names, homes)
-    for family in matched.gone:
+    for family in matched.removed:
         yield from _moved(family, family, names, homes)
 
 
@@ -40,7 +40,7 @@ def _commands(family: Family) -> list[str]:
 def _moved(
     old: Family, new: Family, names: dict[str, str], homes: dict[str, str]
 ) -> Iterator[Finding]:
-    """Commands that are in another family now, or in another place of theirs."""
+    """Report commands that moved to another family or within their family."""
     for command in old.commands:
         name = names.get(command.name, "")
         if name and homes[name] != new.name:

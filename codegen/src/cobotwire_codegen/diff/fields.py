@@ -1,4 +1,4 @@
-"""Fields of messages, each compared with its former self."""
+"""Compares the fields of messages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cobotwire_codegen.model import Field, Member, Type
 
 
 def field_changes(where: str, part: str, old: Field, new: Field, known: Known) -> Iterator[Finding]:
-    """One field; ``part`` is argument or result."""
+    """Compare one field; ``part`` is argument or result."""
     if old.name != new.name:
         yield finding(f"{part}-renamed", where, old.name, new.name)
     if old.const != new.const:
@@ -25,22 +25,24 @@ def field_changes(where: str, part: str, old: Field, new: Field, known: Known) -
     if old.optional != new.optional:
         yield finding(f"{part}-now-{'optional' if new.optional else 'required'}", where)
     yield from _types(where, old, new, known)
-    # A description that the field takes from its type is the type's.
+    # A description that comes from the type is reported for the type.
     if (old.doc, new.doc) != (old.type.doc, new.type.doc):
         yield from prose.doc(where, old.doc, new.doc)
 
 
 def _type(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:
-    yield from known.unsaid(old, new, "types", where, lambda at: type_changes(at, old, new, known))
+    yield from known.unreported(
+        old, new, "types", where, lambda at: type_changes(at, old, new, known)
+    )
 
 
 def _types(where: str, old: Field, new: Field, known: Known) -> Iterator[Finding]:
-    """The type, or those among which another field decides."""
-    if bool(old.by) != bool(new.by):
-        rule = "selector-added" if new.by else "selector-removed"
-        yield finding(rule, where, old.by, new.by)
-    elif old.by != new.by:
-        yield finding("selector-changed", where, old.by, new.by)
+    """Compare the type, or the types of the cases."""
+    if bool(old.selector) != bool(new.selector):
+        rule = "selector-added" if new.selector else "selector-removed"
+        yield finding(rule, where, old.selector, new.selector)
+    elif old.selector != new.selector:
+        yield finding("selector-changed", where, old.selector, new.selector)
     if _by_cases(old) and _by_cases(new):
         # The field's own type is that of the first case.
         yield from _cases(where, old, new, known)
@@ -61,9 +63,9 @@ def _by_cases(field: Field) -> bool:
 
 def _cases(where: str, old: Field, new: Field, known: Known) -> Iterator[Finding]:
     before, after = ([member for member, _ in side.cases] for side in (old, new))
-    if not known.tells(before, after):
+    if not known.reports_members(before, after):
         yield from members(where, before, after)
-    # By name, and what is left over by number: as the members of an enum are.
+    # Match by name, then the remaining cases by number, as the members of an enum.
     matched = match(old.cases, new.cases, _case_name).further(lambda case: case[0].value)
     for (_, old_type), (member, new_type) in matched.pairs:
         yield from _type(f"{where}/{member.name}", old_type, new_type, known)

@@ -1,4 +1,4 @@
-"""One thing that differs between two editions, as data; and the version bump that follows."""
+"""A difference between two editions as data, and the version bump that follows."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _BUMPS: dict[Level, Bump] = {
     "docs": "patch",
 }
 _ORDER: tuple[Bump, ...] = ("none", "patch", "minor", "major")
-# SemVer 2.0.0, item 4, promises nothing for 0.x. By custom, which Cargo's resolver turned into a
-# rule, a breaking change raises the minor number there, and all else the patch. What means
-# something else than before counts as breaking: who takes patches unseen must not move otherwise.
+# SemVer 2.0.0, item 4, promises nothing for 0.x. By convention, which Cargo's resolver enforces, a
+# breaking change raises the minor number there, and any other change the patch number. A change
+# of behaviour counts as breaking: an unreviewed patch must not make an arm move differently.
 _BUMPS_BEFORE_1_0: dict[Level, Bump] = {
     "wire": "minor",
     "api": "minor",
@@ -33,7 +33,7 @@ _BUMPS_BEFORE_1_0: dict[Level, Bump] = {
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One difference. ``where`` is a path into the model; ``old`` and ``new`` are shown words."""
+    """One difference. ``where`` is a path into the model; ``old`` and ``new`` are texts."""
 
     rule: str
     level: Level
@@ -44,7 +44,7 @@ class Finding:
 
 
 def finding(rule: str, where: str, old: object = "", new: object = "") -> Finding:
-    """A finding of a rule; its level and its message come from the table of rules."""
+    """Return a finding of a rule; the table of rules gives its level and its message."""
     entry = RULES[rule]
     before, after = str(old), str(new)
     message = entry.message.format(old=before or "nothing", new=after or "nothing")
@@ -52,17 +52,17 @@ def finding(rule: str, where: str, old: object = "", new: object = "") -> Findin
 
 
 def breaking(findings: Iterable[Finding]) -> bool:
-    """Whether an old peer, or an old caller, is left behind."""
+    """Return whether a finding breaks an old peer or an old caller."""
     return any(found.level in BREAKING for found in findings)
 
 
 def bump(findings: Iterable[Finding]) -> Bump:
-    """The part of a version, from 1.0 on, that must go up."""
+    """Return the part of a version number, from 1.0 on, that must be raised."""
     return _highest(findings, _BUMPS)
 
 
 def bump_before_1_0(findings: Iterable[Finding]) -> Bump:
-    """The part of a version 0.x that goes up, by custom."""
+    """Return the part of a version number 0.x that is raised, by convention."""
     return _highest(findings, _BUMPS_BEFORE_1_0)
 
 

@@ -1,4 +1,4 @@
-"""The frame and the link."""
+"""Compares the frame formats and the transports."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cobotwire_codegen.model import Frame, Member
 
 
 def frame_changes(old: Frame, new: Frame) -> Iterator[Finding]:
-    """Everything that is said of the frame and the link."""
+    """Compare everything about the frame and the transport."""
     numbers = ("maximum-data", old.maximum_data, new.maximum_data)
     rates = ("baudrate", old.baudrate, new.baudrate)
     deadlines = ("deadline", old.deadline_ms, new.deadline_ms)
@@ -28,13 +28,13 @@ def frame_changes(old: Frame, new: Frame) -> Iterator[Finding]:
 def _addresses(old: tuple[Member, ...], new: tuple[Member, ...]) -> Iterator[Finding]:
     where = "frame/addresses"
     matched = match(old, new, lambda member: member.value)
-    # With none, frames have no address byte; a client sends the first.
+    # Without addresses, frames have no address byte; with addresses, a client sends the first.
     moved = [j for _, j in matched.places] != list(range(len(matched.places)))
-    if matched.gone or moved or (new and not old):
+    if matched.removed or moved or (new and not old):
         shown = [words.names(map(words.member, side)) or "none" for side in (old, new)]
         yield finding("addresses-changed", where, *shown)
         return
-    for member in matched.came:
+    for member in matched.added:
         yield finding("address-added", f"{where}/{member.name}", "", words.member(member))
     for before, after in matched.pairs:
         if before.name != after.name:

@@ -1,4 +1,4 @@
-"""Which old thing is which new thing: by a key, by what it says, by its place in a list."""
+"""Matches old items with new ones: by a key, by content, by position in a list."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Matched(Generic[T]):
-    """Two lists, and the pairs of indices (old, new) that are the same thing."""
+    """Two lists, and the pairs of indices (old, new) of matching items."""
 
     old: Sequence[T]
     new: Sequence[T]
@@ -23,23 +23,23 @@ class Matched(Generic[T]):
 
     @property
     def pairs(self) -> list[tuple[T, T]]:
-        """What stayed."""
+        """The matching items."""
         return [(self.old[i], self.new[j]) for i, j in self.places]
 
     @property
-    def gone(self) -> list[T]:
-        """What went."""
+    def removed(self) -> list[T]:
+        """The old items without a match."""
         stayed = {i for i, _ in self.places}
         return [item for i, item in enumerate(self.old) if i not in stayed]
 
     @property
-    def came(self) -> list[T]:
-        """What came."""
+    def added(self) -> list[T]:
+        """The new items without a match."""
         stayed = {j for _, j in self.places}
         return [item for j, item in enumerate(self.new) if j not in stayed]
 
     def further(self, key: Callable[[T], object]) -> Matched[T]:
-        """Match what is left over by a key; of several with one key, the first with the first."""
+        """Match the remaining items by a key; equal keys are paired in order."""
         old_open = [i for i in range(len(self.old)) if i not in {i for i, _ in self.places}]
         new_open = [j for j in range(len(self.new)) if j not in {j for _, j in self.places}]
         more = []
@@ -52,12 +52,12 @@ class Matched(Generic[T]):
 
 
 def match(old: Sequence[T], new: Sequence[T], key: Callable[[T], object]) -> Matched[T]:
-    """Match by a key."""
+    """Return the items of two lists matched by a key."""
     return Matched(old, new).further(key)
 
 
 def order(where: str, matched: Matched[T], label: Callable[[T], str]) -> Iterator[Finding]:
-    """Things that are on both sides, in another order."""
+    """Report matching items that changed their order."""
     stayed = [j for _, j in matched.places]
     moved = [j for j, straight in zip(stayed, sorted(stayed)) if j != straight]
     if moved:
@@ -68,14 +68,14 @@ def order(where: str, matched: Matched[T], label: Callable[[T], str]) -> Iterato
 
 
 def renamed(old: Sequence[str], new: Sequence[str]) -> dict[str, str] | None:
-    """Names that changed in place; None where the lists differ in more than that."""
+    """Return the names that changed in place; None if the lists differ in more than that."""
     changed = {a: b for a, b in zip(old, new) if a != b}
     same_places = len(old) == len(new) and not set(changed) & set(new)
     return changed if same_places and not set(changed.values()) & set(old) else None
 
 
 def bare(value: Any) -> Any:
-    """A part of the model without its places, to compare."""
+    """Return a part of the model without its places, for comparison."""
     if isinstance(value, tuple):
         return tuple(bare(item) for item in value)
     if is_dataclass(value) and not isinstance(value, type):

@@ -1,4 +1,4 @@
-"""The types of an edition by name: what came, went, got another name, or changed."""
+"""Compares the types of editions: added, removed, renamed and changed ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ T = TypeVar("T", Wire, Quantity | Enum | Flag | Value)
 
 
 def named_types(old: Edition, new: Edition) -> tuple[Known, list[Finding]]:
-    """What the named types say; and, for their users, that they said it."""
+    """Return what fields need not report again, and the findings of named types."""
     known = Known()
     wires = match(old.wires, new.wires, _name).further(_wire)
     types = match(old.types, new.types, _name).further(shape)
@@ -23,11 +23,11 @@ def named_types(old: Edition, new: Edition) -> tuple[Known, list[Finding]]:
     found: list[Finding] = []
     for wire, other_wire in wires.pairs:
         found.extend(wire_changes(f"wire/{other_wire.name}", wire, other_wire))
-    known.said.update(found)
-    # A named tuple stands behind the quantities that it is made of, and repeats nothing of theirs.
+    known.reported.update(found)
+    # A value type comes after its quantities, and does not repeat their findings.
     for type, other in types.pairs:
         found.extend(type_changes(f"types/{other.name}", type, other, known))
-        known.said.update(found)
+        known.reported.update(found)
         _note(type, other, known)
     found.extend(_listed("wire", wires))
     found.extend(_listed("types", types))
@@ -43,21 +43,21 @@ def _wire(found: Wire) -> tuple[int, str, int]:
 
 
 def _note(old: Type, new: Type, known: Known) -> None:
-    """Keep what users of the type compare themselves with."""
-    if isinstance(old, Enum) and isinstance(new, Enum):
+    """Record the members and class names that fields of this type would report again."""
+    if old.members and new.members:
         known.enums.add((frozenset(map(bare, old.members)), frozenset(map(bare, new.members))))
-    if isinstance(old, Enum | Value) and isinstance(new, Enum | Value):
+    if old.class_name and new.class_name:
         known.classes[old.class_name] = new.class_name
 
 
 def _listed(section: str, matched: Matched[T]) -> Iterator[Finding]:
-    """Names that came, went or changed, and the order."""
+    """Report names that were added, removed or changed, and the order."""
     classes = [{_class(found): found for found in side} for side in (matched.old, matched.new)]
-    for found in matched.gone:
+    for found in matched.removed:
         lost = _class(found) and _class(found) not in classes[1]
         rule, what = ("class", _class(found)) if lost else ("type", found.name)
         yield finding(f"{rule}-removed", f"{section}/{found.name}", what)
-    for found in matched.came:
+    for found in matched.added:
         fresh = _class(found) and _class(found) not in classes[0]
         rule, what = ("class", _class(found)) if fresh else ("type", found.name)
         yield finding(f"{rule}-added", f"{section}/{found.name}", "", what)
@@ -68,4 +68,4 @@ def _listed(section: str, matched: Matched[T]) -> Iterator[Finding]:
 
 
 def _class(found: Type | Wire) -> str:
-    return found.class_name if isinstance(found, Enum | Value) else ""
+    return "" if isinstance(found, Wire) else found.class_name

@@ -1,4 +1,4 @@
-"""Words and evidence: docs, sources, notes, disputes, errata, vectors, what a delta says."""
+"""Compares prose and evidence: docs, sources, notes, disputes, errata, vectors, changes."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from cobotwire_codegen.model import Change, Dispute, Edition, Lines, Vector
 
 
 def doc(where: str, old: str, new: str) -> Iterator[Finding]:
-    """A sentence for people."""
+    """Compare a description."""
     if old != new:
         yield finding("doc-changed", where, words.short(old), words.short(new))
 
 
 def source(where: str, old: Lines, new: Lines) -> Iterator[Finding]:
-    """The lines of the document that say it."""
+    """Compare the lines of the document."""
     if old != new:
         yield finding("source-changed", where, _lines(old), _lines(new))
 
 
 def notes(where: str, old: Sequence[str], new: Sequence[str]) -> Iterator[Finding]:
-    """Sentences beside the description."""
+    """Compare the notes."""
     if old != new:
         fresh = [note for note in new if note not in old]
         gone = [note for note in old if note not in new]
@@ -32,21 +32,21 @@ def notes(where: str, old: Sequence[str], new: Sequence[str]) -> Iterator[Findin
 
 
 def disputes(where: str, old: Sequence[Dispute], new: Sequence[Dispute]) -> Iterator[Finding]:
-    """What the sources do not agree on."""
+    """Compare the disputes."""
     place = f"{where}/disputed"
     yield from _listed("dispute", lambda _: place, old, new, lambda item: item.claim)
 
 
 def history(where: str, old: Sequence[Change], new: Sequence[Change]) -> Iterator[Finding]:
-    """What a delta edition says that it changes, and why."""
+    """Compare the changes that a delta states, and their reasons."""
     if bare(old) != bare(new):
         known = [bare(change) for change in old]
         fresh = [change.what for change in new if bare(change) not in known]
-        yield finding("history-changed", where, "", words.short(" ".join(fresh)) or "less is said")
+        yield finding("history-changed", where, "", words.short(" ".join(fresh)) or "fewer changes")
 
 
 def errata(old: Edition, new: Edition) -> Iterator[Finding]:
-    """Where the document is wrong."""
+    """Compare the errata."""
     yield from _listed(
         "erratum",
         lambda item: f"errata/{_numbers(item.lines)}",
@@ -57,7 +57,7 @@ def errata(old: Edition, new: Edition) -> Iterator[Finding]:
 
 
 def vectors(old: Edition, new: Edition) -> Iterator[Finding]:
-    """Frames with their values."""
+    """Compare the vectors."""
     yield from _listed(
         "vector", lambda item: f"vectors/{item.name}", old.vectors, new.vectors, _vector
     )
@@ -70,11 +70,11 @@ def _listed(
     new: Sequence[T],
     shown: Callable[[T], str],
 ) -> Iterator[Finding]:
-    # What says the same is the same; else what stands at the same place has changed.
+    # Equal items match first; after that, items at the same place have changed.
     matched = match(old, new, bare).further(where)
-    for item in matched.gone:
+    for item in matched.removed:
         yield finding(f"{what}-removed", where(item), words.short(shown(item)))
-    for item in matched.came:
+    for item in matched.added:
         yield finding(f"{what}-added", where(item), "", words.short(shown(item)))
     for before, after in matched.pairs:
         if bare(before) != bare(after):
@@ -92,5 +92,5 @@ def _numbers(found: Lines) -> str:
 
 
 def _vector(found: Vector) -> str:
-    said = words.hexed(found.frame) if found.frame is not None else found.text or "no frame"
-    return f"{found.command} {found.direction} {said}"
+    content = words.hexed(found.frame) if found.frame is not None else found.text or "no frame"
+    return f"{found.command} {found.direction} {content}"

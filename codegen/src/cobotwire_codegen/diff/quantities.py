@@ -1,4 +1,4 @@
-"""A quantity's numbers: scale, unit, range, choices, what the API speaks."""
+"""Compares quantities: scale, unit, range, choices, radians."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cobotwire_codegen.model import Quantity
 
 
 def changes(where: str, old: Quantity, new: Quantity) -> Iterator[Finding]:
-    """All but the wire type and the description."""
+    """Compare everything except the wire type and the description."""
     if old.scale != new.scale:
         yield finding("scale-changed", where, old.scale, new.scale)
     if old.unit != new.unit:
@@ -25,7 +25,7 @@ def changes(where: str, old: Quantity, new: Quantity) -> Iterator[Finding]:
 
 
 def _range(where: str, old: Quantity, new: Quantity) -> Iterator[Finding]:
-    # Where no range is said, what can be said follows from wire type and scale: they tell it.
+    # Without a range, the limits follow from wire type and scale, which are reported themselves.
     if old.range == new.range:
         return
     before, after = words.in_unit(old), words.in_unit(new)

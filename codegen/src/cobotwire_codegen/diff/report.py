@@ -1,4 +1,4 @@
-"""Findings as text for people, as JSON for machines, as Markdown for the changelog."""
+"""Format findings as text for people, as JSON for machines, as Markdown for the changelog."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ _TITLES: dict[Level, str] = {
     "addition": "Additions",
     "docs": "Docs",
 }
-# What Markdown would take for its own.
+# Characters that Markdown would interpret.
 _MARKS = {mark: f"\\{mark}" for mark in "\\`*_[]<>|#"}
 
 
 def text(judged: Judged) -> Iterator[tuple[str, str]]:
-    """Lines, each with what it is: a level's heading, or nothing special."""
+    """Return the lines, each with its kind: a level for a heading, else empty."""
     for level, findings in _grouped(judged):
         yield level, f"{level} ({len(findings)}): {LEVELS[level]}"
         for one in findings:
             yield "", f"  {one.rule}: {one.where}: {one.message}"
     if judged.waived:
-        yield "waived", f"waived ({len(judged.waived)}): answered for, and not counted"
+        yield "waived", f"waived ({len(judged.waived)}): accepted, and not counted"
     for one, waiver in judged.waived:
         yield "", f"  {one.rule}: {one.where}: {one.message}"
         yield "", f"    because: {waiver.reason}"
@@ -39,7 +39,7 @@ def text(judged: Judged) -> Iterator[tuple[str, str]]:
 
 
 def as_json(judged: Judged, old: str, new: str) -> str:
-    """One document; ``version`` counts up when a reader of the old form could misread it."""
+    """Return one document; ``version`` is raised when older readers could misread it."""
     data = {
         "format": "cobotwire-diff",
         "version": VERSION,
@@ -57,7 +57,7 @@ def as_json(judged: Judged, old: str, new: str) -> str:
 
 
 def markdown(judged: Judged) -> Iterator[str]:
-    """Lines for the changelog."""
+    """Return the lines for the changelog."""
     for level, findings in _grouped(judged):
         yield from (f"### {_TITLES[level]}", "")
         for one in findings:
@@ -83,12 +83,12 @@ def _grouped(judged: Judged) -> Iterator[tuple[Level, list[Finding]]]:
 
 
 def _unused(waiver: Waiver) -> str:
-    return f"{waiver.rule} at {waiver.where} matches nothing; take it out"
+    return f"{waiver.rule} at {waiver.where} matches nothing; remove it"
 
 
 def _summary(judged: Judged) -> str:
     if not judged.findings:
-        return "no difference" if not judged.waived else "no difference but what is waived"
+        return "no difference" if not judged.waived else "no difference except those waived"
     counts = ", ".join(f"{len(found)} {level}" for level, found in _grouped(judged))
     after, before = bump(judged.findings), bump_before_1_0(judged.findings)
     return f"{counts}; version bump: {after} (before 1.0: {before})"

@@ -1,4 +1,4 @@
-"""OLD and NEW: an edition file, a folder with spec/, or a revision of the repository here."""
+"""Reads OLD and NEW: an edition file, a folder with spec/, or a revision of the repository."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ SECONDS = 60
 
 
 class SourceError(ValueError):
-    """What was named is neither a file nor a folder with a spec nor a revision with one."""
+    """The argument is not an edition file, a folder with a spec, or a revision with one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Editions by name; ``one`` where a single file was named."""
+    """Editions by name; ``one`` if the argument was a single file."""
 
     shown: str
     editions: dict[str, Edition]
@@ -33,13 +33,13 @@ class Source:
 
 
 def read(given: str) -> Source:
-    """Read what a person named: a path where there is one, else a revision.
+    """Return the editions of a path if it exists, else of a revision.
 
-    The editions are built, not checked: what was once published can be compared even where the
-    rules became stricter since.
+    The editions are built, not checked: an old version can be compared even if the rules have
+    become stricter since.
 
     Raises:
-        SourceError: there is no such thing.
+        SourceError: no path and no revision has that name, or it has no spec.
         SpecError: it cannot be built.
     """
     path = Path(given)
@@ -48,17 +48,17 @@ def read(given: str) -> Source:
         return Source(given, {edition.name: edition}, one=True)
     if path.is_dir():
         if not (path / "spec" / "editions").is_dir():
-            raise SourceError(f"the folder {given} holds no spec/editions")
+            raise SourceError(f"the folder {given} contains no spec/editions")
         return Source(given, _editions(path, Path.cwd()), one=False)
     with _checked_out(given) as folder, _places_in(given):
         return Source(given, _editions(folder, folder), one=False)
 
 
 def paired(old: Source, new: Source) -> tuple[dict[str, Edition], dict[str, Edition]]:
-    """The editions to compare: beside a single file stands the edition of the same name.
+    """Return the editions to compare: a single file is compared with the edition of its name.
 
     Raises:
-        SourceError: there is none.
+        SourceError: the other source has no edition of that name.
     """
     if old.one == new.one:
         return old.editions, new.editions
@@ -77,15 +77,15 @@ def _editions(folder: Path, root: Path) -> dict[str, Edition]:
 
 @contextmanager
 def _checked_out(revision: str) -> Iterator[Path]:
-    """The spec of a revision, in a folder that lives as long as it is read."""
-    missing = f"{revision} is no file, no folder and no git revision"
-    # The commit's own number goes on: whatever the revision was called, it is no option now.
+    """Extract the spec of a revision into a temporary folder."""
+    missing = f"{revision} is not a file, a folder or a git revision"
+    # Only the commit's hash is passed on: a revision's name could look like an option.
     words = ("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
     commit = _git(*words, failed=missing).decode().strip()
     tar = _git("archive", commit, "spec", failed=f"the revision {revision} holds no spec/ here")
     with tempfile.TemporaryDirectory(prefix="cobotwire-diff-") as folder:
         with tarfile.open(fileobj=io.BytesIO(tar)) as archive:
-            # The filter came with 3.11.4; before that, git's own archive is trusted as it is.
+            # tarfile has the filter since 3.11.4; before that, git's own archive is trusted.
             if hasattr(tarfile, "data_filter"):
                 archive.extraction_filter = tarfile.data_filter
             archive.extractall(folder)  # noqa: S202  (made by git a moment ago)
@@ -95,21 +95,21 @@ def _checked_out(revision: str) -> Iterator[Path]:
 def _git(*words: str, failed: str) -> bytes:
     command = ["git", *words]
     try:
-        # No shell; the words are ours, but for a revision that cannot be an option.
+        # No shell; every word is fixed but the revision, which cannot be read as an option.
         done = subprocess.run(command, capture_output=True, check=False, timeout=SECONDS)  # noqa: S603
     except FileNotFoundError:
         raise SourceError(f"{failed}: git is not installed") from None
     except subprocess.TimeoutExpired:
         raise SourceError(f"{failed}: git took longer than {SECONDS} s") from None
     if done.returncode != 0:
-        said = done.stderr.decode(errors="replace").strip().partition("\n")[0]
-        raise SourceError(f"{failed} ({said})" if said else failed)
+        reason = done.stderr.decode(errors="replace").strip().partition("\n")[0]
+        raise SourceError(f"{failed} ({reason})" if reason else failed)
     return done.stdout
 
 
 @contextmanager
 def _places_in(revision: str) -> Iterator[None]:
-    """Say of every problem in which revision it stands, as git itself would."""
+    """Put the revision before the file name of every problem, as git does."""
     try:
         yield
     except SpecError as error:

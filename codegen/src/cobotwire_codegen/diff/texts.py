@@ -1,4 +1,4 @@
-"""Texts outside any frame: replies that end by silence, and what follows a request."""
+"""Compares texts outside any frame: replies that end with silence, and texts after requests."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cobotwire_codegen.model import Text
 
 
 def text_changes(where: str, part: str, old: Text | None, new: Text | None) -> Iterator[Finding]:
-    """One text of a command; its fields are arguments or results, as ``part`` says."""
+    """Compare one text of a command; ``part`` says whether its fields are arguments or results."""
     if old is None or new is None:
         if old is not new:
             yield finding("text-changed", where, words.template(old), words.template(new))

@@ -1,4 +1,4 @@
-"""Types of the wire and of values, each compared with its former self."""
+"""Compares wire types and the types of fields."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from cobotwire_codegen.model import Enum, Member, Quantity, Type, Value, Wire
 
 @dataclass
 class Known:
-    """What named types say of themselves; their users do not repeat it.
+    """The findings of named types, which the fields that use them do not repeat.
 
     ``pairs`` are the old and new names of one type; ``classes`` the classes that were renamed;
     ``enums`` the old and new members of one enum.
     """
 
-    said: set[Finding] = field(default_factory=set)
+    reported: set[Finding] = field(default_factory=set)
     pairs: set[tuple[str, str]] = field(default_factory=set)
     classes: dict[str, str] = field(default_factory=dict)
     enums: set[tuple[frozenset[Any], frozenset[Any]]] = field(default_factory=set)
 
-    def tells(self, old: Sequence[Member], new: Sequence[Member]) -> bool:
-        """Whether an enum has just these members, and tells how they changed."""
+    def reports_members(self, old: Sequence[Member], new: Sequence[Member]) -> bool:
+        """Return whether an enum with exactly these members reports how they changed."""
         return (frozenset(map(bare, old)), frozenset(map(bare, new))) in self.enums
 
-    def unsaid(
+    def unreported(
         self,
         old: Type | Wire,
         new: Type | Wire,
@@ -38,24 +38,24 @@ class Known:
         where: str,
         compare: Callable[[str], Iterable[Finding]],
     ) -> Iterator[Finding]:
-        """What a user of a type has to say: what the type's own entry does not."""
+        """Return the findings of a field that its type's own entry does not report."""
         same = (old.name, new.name) in self.pairs
         if not same:
             yield finding("type-replaced", where, old.name, new.name)
         for general, here in zip(compare(f"{section}/{new.name}"), compare(where)):
-            # The words of another type are no change of words.
-            if general not in self.said if same else here.level != "docs":
+            # The description of another type is not a changed description.
+            if general not in self.reported if same else here.level != "docs":
                 yield here
 
 
 def wire_changes(where: str, old: Wire, new: Wire) -> Iterator[Finding]:
-    """How a whole number stands on the wire."""
+    """Compare how raw values are encoded."""
     if old.width != new.width:
         yield finding("width-changed", where, old.width, new.width)
     if old.order != new.order and max(old.width, new.width) > 1:
         yield finding("byte-order-changed", where, old.order, new.order)
     elif old.order != new.order:
-        # A single byte has no order: what is said of it is read by people alone.
+        # A single byte has no order, so the difference is only one of documentation.
         yield from prose.doc(where, f"{old.order} end first", f"{new.order} end first")
     unsigned = old.signed_at == old.top and new.signed_at == new.top
     if old.signed_at != new.signed_at and not unsigned:
@@ -66,13 +66,13 @@ def wire_changes(where: str, old: Wire, new: Wire) -> Iterator[Finding]:
 
 
 def type_changes(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:
-    """A type, whatever its kind."""
+    """Compare two types of any kind."""
     if isinstance(old, Value) and isinstance(new, Value):
         yield from _value(where, old, new, known)
-    elif isinstance(old, Value) or isinstance(new, Value) or type(old) is not type(new):
+    elif isinstance(old, Value) or isinstance(new, Value) or old.kind != new.kind:
         yield from _kind(where, old, new)
     else:
-        yield from known.unsaid(
+        yield from known.unreported(
             old.wire, new.wire, "wire", where, lambda at: wire_changes(at, old.wire, new.wire)
         )
     if isinstance(old, Quantity) and isinstance(new, Quantity):
@@ -82,22 +82,21 @@ def type_changes(where: str, old: Type, new: Type, known: Known) -> Iterator[Fin
     yield from prose.doc(where, old.doc, new.doc)
 
 
-def layout(type: Type) -> list[tuple[int, str, int]]:
-    """The words of a type on the line."""
+def wire_shape(type: Type) -> list[tuple[int, str, int]]:
+    """Return how the raw values of a type are encoded."""
     return [(n["width"], n["order"], n["signed_at"]) for n in lower.numbers(type)]
 
 
 def shape(found: Type) -> tuple[Any, ...]:
-    """A type without names and words."""
-    return type(found), lower.numbers(found), lower.choices(found)
+    """Return a type without its names and descriptions."""
+    return found.kind, lower.numbers(found), lower.choices(found)
 
 
 def _kind(where: str, old: Type, new: Type) -> Iterator[Finding]:
-    kinds = [type(found).__name__.lower() for found in (old, new)]
-    yield finding("type-kind-changed", where, *kinds)
-    if layout(old) != layout(new):
-        sizes = ["+".join(str(word[0]) for word in layout(found)) for found in (old, new)]
-        yield finding("type-layout-changed", where, *(f"{size} byte(s)" for size in sizes))
+    yield finding("type-kind-changed", where, old.kind, new.kind)
+    if wire_shape(old) != wire_shape(new):
+        sizes = ["+".join(str(word[0]) for word in wire_shape(found)) for found in (old, new)]
+        yield finding("type-bytes-changed", where, *(f"{size} byte(s)" for size in sizes))
 
 
 def _enum(where: str, old: Enum, new: Enum) -> Iterator[Finding]:
@@ -112,11 +111,11 @@ def _class(where: str, old: str, new: str) -> Iterator[Finding]:
 
 
 def members(where: str, old: Sequence[Member], new: Sequence[Member]) -> Iterator[Finding]:
-    """The members of an enum: by name, and what is left over by number."""
+    """Compare the members of an enum: by name, the remaining ones by raw value."""
     matched = match(old, new, lambda member: member.name).further(lambda member: member.value)
-    for member in matched.gone:
+    for member in matched.removed:
         yield finding("enum-member-removed", f"{where}/{member.name}", words.member(member))
-    for member in matched.came:
+    for member in matched.added:
         yield finding("enum-member-added", f"{where}/{member.name}", "", words.member(member))
     for before, after in matched.pairs:
         at = f"{where}/{after.name}"
@@ -145,4 +144,6 @@ def _value(where: str, old: Value, new: Value, known: Known) -> Iterator[Finding
 
 
 def _item(where: str, old: Quantity, new: Quantity, known: Known) -> Iterator[Finding]:
-    yield from known.unsaid(old, new, "types", where, lambda at: type_changes(at, old, new, known))
+    yield from known.unreported(
+        old, new, "types", where, lambda at: type_changes(at, old, new, known)
+    )

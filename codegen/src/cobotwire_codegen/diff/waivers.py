@@ -1,4 +1,4 @@
-"""Findings that somebody answers for: a list of rule, place and reason."""
+"""Waivers: accepted findings, as a list of rule, place and reason."""
 
 from __future__ import annotations
 
@@ -9,14 +9,24 @@ from pathlib import Path
 from cobotwire_codegen.diff.finding import Finding
 from cobotwire_codegen.diff.rules import RULES
 from cobotwire_codegen.errors import Place, Problem, SpecError, nearest
+from cobotwire_codegen.language.records import Record, required
+from cobotwire_codegen.language.shapes import Text
 from cobotwire_codegen.load import Node, load
 from cobotwire_codegen.load import Sequence as Listed
 from cobotwire_codegen.reader import Reader
 
 
+class WaiverEntry(Record):
+    """An entry of a waivers file."""
+
+    rule = required(Text(), "The rule of the finding.")
+    where = required(Text(), "The place of the finding.")
+    reason = required(Text(), "Why the finding is accepted.")
+
+
 @dataclass(frozen=True, slots=True)
 class Waiver:
-    """One accepted finding. It has one place, so that it cannot swallow what comes later."""
+    """One accepted finding. It names one place, so that it cannot hide a later finding."""
 
     place: Place
     rule: str
@@ -25,10 +35,10 @@ class Waiver:
 
 
 def read_waivers(path: Path) -> tuple[Waiver, ...]:
-    """A file of waivers.
+    """Return the waivers of a file.
 
     Raises:
-        SpecError: it cannot be read, an entry lacks its reason, or names no rule.
+        SpecError: the file cannot be read, or an entry lacks its reason or names an unknown rule.
     """
     root = load(path)
     problems: list[Problem] = []
@@ -42,25 +52,24 @@ def read_waivers(path: Path) -> tuple[Waiver, ...]:
 
 
 def _waiver(node: Node, problems: list[Problem]) -> Waiver:
-    reader = Reader(node, "a waiver", problems)
-    rule, where, reason = (reader.text(key) for key in ("rule", "where", "reason"))
-    at = reader.node("rule")
-    if at is not None and rule and rule not in RULES:
-        problem = Problem(at.place, "unknown-rule", f"there is no rule {rule}{_near(rule)}")
-        problems.append(problem)
-    reader.done()
-    return Waiver(node.place, rule, where, reason)
+    spec = WaiverEntry
+    reader = Reader(node, spec, "a waiver", problems)
+    rule = reader.get(spec.rule)
+    if rule and rule not in RULES:
+        message = f"there is no rule {rule}{_near(rule)}"
+        reader.problem("unknown-rule", message, reader.place_of(spec.rule))
+    return Waiver(node.place, rule, reader.get(spec.where), reader.get(spec.reason))
 
 
 def _near(rule: str) -> str:
     hint = nearest(rule, RULES)
-    # The whole list would bury the problem.
+    # The whole list would hide the problem.
     return hint if "did you mean" in hint else "; `cobotwire-gen diff --rules` lists them"
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """Findings that count, findings that are waived and by what, and waivers that met nothing."""
+    """Findings that count, findings with their waivers, and waivers without a finding."""
 
     findings: tuple[Finding, ...]
     waived: tuple[tuple[Finding, Waiver], ...]
@@ -68,7 +77,7 @@ class Judged:
 
 
 def judge(findings: Sequence[Finding], waivers: Sequence[Waiver]) -> Judged:
-    """Set aside what is waived."""
+    """Separate findings that are waived from those that count."""
     known = {(waiver.rule, waiver.where): waiver for waiver in reversed(waivers)}
     keys = {(finding.rule, finding.where) for finding in findings}
     return Judged(

@@ -1,40 +1,22 @@
-"""The checked protocol: frozen records without behaviour beyond what follows from their fields.
+"""The protocol as frozen records, with only the behaviour that follows from their fields.
 
-Everything knows its place, so that a rule that fails can say where.
+Every record knows its place in the spec, so that problems can name it.
 """
 
 from cobotwire_codegen.model.commands import (
     Command,
     Family,
     Field,
-    Form,
     ReadBack,
+    Samples,
     Text,
-    Tries,
+    Variant,
 )
 from cobotwire_codegen.model.edition import Edition, Erratum, Frame, Vector
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Type, Value, Wire
-from cobotwire_codegen.model.words import (
-    CHECKS,
-    CONFIDENCE,
-    ERRATUM_KINDS,
-    REASONS,
-    ROLES,
-    SAFETY,
-    UNITS,
-    VERDICTS,
-)
 
 __all__ = [
-    "CHECKS",
-    "CONFIDENCE",
-    "ERRATUM_KINDS",
-    "REASONS",
-    "ROLES",
-    "SAFETY",
-    "UNITS",
-    "VERDICTS",
     "Change",
     "Command",
     "Dispute",
@@ -45,16 +27,16 @@ __all__ = [
     "Family",
     "Field",
     "Flag",
-    "Form",
     "Frame",
     "Lines",
     "Member",
     "Quantity",
     "ReadBack",
+    "Samples",
     "Text",
-    "Tries",
     "Type",
     "Value",
+    "Variant",
     "Vector",
     "Wire",
 ]

@@ -1,4 +1,4 @@
-"""Fields, messages, commands and their families."""
+"""Fields, commands and families of commands."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cobotwire_codegen.model.types import Member, Type
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """An argument of a request or a part of a reply.
+    """An argument of a request, or a part of a reply.
 
-    ``cases`` is empty but for a field whose type another field (``by``) decides: then it holds a
-    type for each value of that field, and ``type`` is the first of them. A field with ``const``
-    always holds that number; the caller does not give it.
+    When another field, the ``selector``, decides the type, ``cases`` holds a type for each value of
+    the selector, and ``type`` is the first of them. A field with ``const`` always holds that raw
+    value; the caller does not give it.
     """
 
     place: Place
@@ -26,13 +26,13 @@ class Field:
     echo: Literal["", "required", "optional"]
     optional: bool
     const: int | None
-    by: str
+    selector: str
     cases: tuple[tuple[Member, Type], ...]
 
 
-Form = tuple[Field, ...]
-# Numbers to send by argument, for the first form that has these arguments.
-Tries = tuple[tuple[str, tuple[int, ...]], ...]
+Variant = tuple[Field, ...]
+# Raw values to send by argument, for the first variant that has these arguments.
+Samples = tuple[tuple[str, tuple[int, ...]], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +49,10 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class ReadBack:
-    """How what a command has set is read: the query, and what its reply then says.
+    """How to read what a command has set: the query, and what its reply then contains.
 
-    ``fields`` pairs a field of the reply with the argument that it repeats, or with the whole
-    number that it then has; none: the fields of the same name.
+    ``fields`` pairs a field of the reply with the argument that it repeats, or with the raw
+    value that it then has. If it is empty, fields of the same name are compared.
     """
 
     place: Place
@@ -62,15 +62,15 @@ class ReadBack:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """One call.
+    """An entry of the protocol: an id, a request and its reply.
 
-    ``role`` is what hand-written code knows it by (one of ROLES, or nothing): which command stops
-    the arm, which tells whether a target is reached.
-    ``requests`` and ``replies`` hold the forms of the messages, the full one first. With ``alias``
-    the call is another one's message under a name of its own; ``shares_id`` names the calls that
-    have the same id with other data. ``tries`` are the numbers that a conformance run may
-    send, where not every legal one is harmless; ``agrees_with`` are queries that tell the same at
-    rest.
+    ``role`` (one of ROLES, or empty) is how hand-written code finds the command, for instance the
+    one that stops the arm.
+    ``requests`` and ``replies`` hold the variants of the messages, the full one first.
+    A command with ``alias`` is another command's message under a second name; ``shares_id`` lists
+    the commands that use the same id with other data.
+    ``samples`` are the raw values that a conformance run may send when not every legal value is
+    harmless; ``agrees_with`` lists queries that report the same values while the arm rests.
     """
 
     place: Place
@@ -82,44 +82,44 @@ class Command:
     role: str
     source: Lines
     deadline_ms: int
-    requests: tuple[Form, ...]
-    replies: tuple[Form, ...]
+    requests: tuple[Variant, ...]
+    replies: tuple[Variant, ...]
     ack: bool
     alias: str
     shares_id: tuple[str, ...]
     text: Text | None
     request_text: Text | None
     read_by: ReadBack | None
-    tries: tuple[Tries, ...]
+    samples: tuple[Samples, ...]
     agrees_with: tuple[str, ...]
     notes: tuple[str, ...]
     disputed: tuple[Dispute, ...]
     changes: tuple[Change, ...]
 
     @property
-    def reply(self) -> Form:
-        """The full form of the reply; no fields where nothing answers."""
+    def reply(self) -> Variant:
+        """The full variant of the reply; no fields if there is no reply."""
         return self.replies[0] if self.replies else ()
 
     @property
     def fields(self) -> tuple[Field, ...]:
-        """The fields of every form of every message."""
-        forms = (*self.requests, *self.replies)
-        return tuple(dict.fromkeys(field for form in forms for field in form))
+        """The fields of every variant of every message."""
+        variants = (*self.requests, *self.replies)
+        return tuple(dict.fromkeys(field for variant in variants for field in variant))
 
-    def forms(self, direction: Literal["request", "reply"]) -> tuple[Form, ...]:
-        """The forms of the message, the full one first; none where nothing answers."""
+    def variants(self, direction: Literal["request", "reply"]) -> tuple[Variant, ...]:
+        """Return the variants of a message, the full one first; none if there is no reply."""
         return self.requests if direction == "request" else self.replies
 
     @property
     def answers(self) -> bool:
-        """Whether an answer is due."""
+        """Whether a client waits for a reply."""
         return (bool(self.replies) and not self.ack) or self.text is not None
 
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """Commands that belong together: one file of the spec."""
+    """Commands that belong together; one file of the spec."""
 
     place: Place
     name: str

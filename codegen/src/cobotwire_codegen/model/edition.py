@@ -1,4 +1,4 @@
-"""An edition, whole: its frame, what is wrong in its document, its vectors."""
+"""An edition with its frame, its errata and its vectors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cobotwire_codegen.model.types import Member, Type, Wire
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """``header [address] LEN CMD DATA check``, and the link it travels on."""
+    """The frame format, ``header [address] LEN CMD DATA check``, and the transport."""
 
     place: Place
     header: bytes
@@ -61,12 +61,12 @@ class Vector:
     text: str | None
     values: tuple[tuple[str, object], ...]
     says: str
-    refused: tuple[str, int] | None
+    rejected: tuple[str, int] | None
 
 
 @dataclass(frozen=True, slots=True)
 class Edition:
-    """One edition of the protocol, whole."""
+    """One edition of a protocol."""
 
     place: Place
     name: str

@@ -1,4 +1,4 @@
-"""Where a fact comes from, what speaks against it, and what a delta did to it."""
+"""Sources of a fact, what contradicts it, and what a delta changed."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 from cobotwire_codegen.errors import Place
 
-# Spans of lines of the document, first and last.
+# Ranges of lines of the document, first and last.
 Lines = tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """One source's word on a disputed fact."""
+    """What one source states about a fact."""
 
     source: str
     lines: Lines
@@ -21,7 +21,7 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True)
 class Dispute:
-    """A fact that the sources do not agree on."""
+    """A fact on which the sources disagree."""
 
     place: Place
     claim: str
@@ -32,7 +32,7 @@ class Dispute:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What a delta edition does to its base, in words, and why."""
+    """What a delta changes in its base, in words, and the reason."""
 
     place: Place
     what: str

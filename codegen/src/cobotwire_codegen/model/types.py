@@ -1,10 +1,15 @@
-"""What a field can be: numbers on the wire, quantities, enums, flags, named tuples."""
+"""What a field can be: a quantity, an enum, a flag, or a value type of several quantities.
+
+All four offer the same attributes, so that the rest of the generator rarely asks which one it has:
+``kind``, ``name``, ``doc``, ``class_name``, ``members``, ``parts``, ``size``, ``choices``, and the
+conversions ``smallest`` and ``read``.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Literal
+from typing import ClassVar, Literal
 
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model.facts import Dispute, Lines
@@ -12,7 +17,7 @@ from cobotwire_codegen.model.facts import Dispute, Lines
 
 @dataclass(frozen=True, slots=True)
 class Wire:
-    """How a whole number stands on the wire."""
+    """How a raw value is encoded."""
 
     place: Place
     name: str
@@ -25,27 +30,79 @@ class Wire:
 
     @property
     def minimum(self) -> int:
-        """The lowest whole number that it can say."""
+        """The lowest raw value."""
         return self.signed_at + 1 - 256**self.width if self.signed_at < self.top else 0
 
     @property
     def maximum(self) -> int:
-        """The highest whole number that it can say."""
+        """The highest raw value."""
         return self.signed_at
 
     @property
     def top(self) -> int:
-        """The highest raw word."""
+        """The highest unsigned number of this width."""
         return int(256**self.width) - 1
 
 
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    """A wire type with a scale, a unit and a range (in that unit; None: all that can be said).
+class _Scalar:
+    """What quantities, enums and flags have in common: one raw value."""
 
-    ``choices`` closes the list of legal numbers on the wire. With ``radians`` the API speaks
-    radians where the wire carries degrees.
+    __slots__ = ()
+    name: str
+    wire: Wire
+
+    @property
+    def parts(self) -> tuple[tuple[str, Scalar], ...]:
+        """The scalars that make up the type, by name: just this one."""
+        assert isinstance(self, Quantity | Enum | Flag)
+        return (("", self),)
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return self.wire.width
+
+    @property
+    def smallest(self) -> object:
+        """The smallest legal value, as a vector writes it."""
+        assert isinstance(self, Quantity | Enum | Flag)
+        return self.from_raw(min(self.choices, default=0))
+
+    def read(self, data: bytes) -> object:
+        """Return the value that bytes encode, as a vector writes it."""
+        assert isinstance(self, Quantity | Enum | Flag)
+        number = int.from_bytes(data, self.wire.order)
+        wraps = 256**self.wire.width if number > self.wire.signed_at else 0
+        return self.from_raw(number - wraps)
+
+    def can_hold(self, raw: int) -> bool:
+        """Return whether the wire type can encode a raw value."""
+        return self.wire.minimum <= raw <= self.wire.maximum
+
+    def can_hold_any(self, width: int) -> bool:
+        """Return whether every raw value of a width is legal."""
+        return False
+
+    def narrowed(self, ends: tuple[Fraction, Fraction]) -> Type | None:
+        """Return the type with a narrower range; None if it has no range, or one inside this."""
+        return None
+
+    def values(self, most: int) -> tuple[Member, ...]:
+        """Return the legal values as members; nothing if there are more than ``most``."""
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity(_Scalar):
+    """A wire type with a scale, a unit and a range (in that unit; None: every raw value).
+
+    ``choices`` closes the list of legal raw values. With ``radians`` the API takes radians where
+    the wire has degrees.
     """
+
+    kind: ClassVar[str] = "quantity"
+    class_name: ClassVar[str] = ""
+    members: ClassVar[tuple[Member, ...]] = ()
 
     place: Place
     name: str
@@ -61,12 +118,41 @@ class Quantity:
 
     @property
     def bounds(self) -> tuple[Fraction, Fraction]:
-        """The range as whole numbers on the wire; with a denominator of 1 if it can be said."""
+        """The range as raw values; their denominators are 1 if the wire type can encode them."""
         if self.choices:
             return Fraction(min(self.choices)), Fraction(max(self.choices))
         if self.range is None:
             return Fraction(self.wire.minimum), Fraction(self.wire.maximum)
         return self.range[0] / self.scale, self.range[1] / self.scale
+
+    @property
+    def smallest(self) -> object:
+        """The lowest physical value."""
+        return _plain(self.bounds[0] * self.scale)
+
+    def from_raw(self, raw: int) -> object:
+        """Return the physical value of a raw value."""
+        return _plain(raw * self.scale)
+
+    def can_hold_any(self, width: int) -> bool:
+        """Return whether every raw value of a width is legal."""
+        return self.wire.width == width and not self.choices and self.range is None
+
+    def narrowed(self, ends: tuple[Fraction, Fraction]) -> Quantity | None:
+        """Return the quantity with a narrower range; None if the range is not inside this one."""
+        lowest, highest = (bound * self.scale for bound in self.bounds)
+        inside = lowest <= ends[0] and ends[1] <= highest and not self.choices
+        return replace(self, range=ends) if inside else None
+
+    def values(self, most: int) -> tuple[Member, ...]:
+        """Return the legal values as members named by their numbers; nothing if too many."""
+        if self.scale != 1:
+            return ()
+        lowest, highest = (int(bound) for bound in self.bounds)
+        numbers = self.choices or range(lowest, highest + 1)
+        if len(numbers) > most:
+            return ()
+        return tuple(Member(self.place, str(number), number, "") for number in numbers)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +166,12 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True)
-class Enum:
+class Enum(_Scalar):
     """A closed list of values."""
+
+    kind: ClassVar[str] = "enum"
+    scale: ClassVar[Fraction] = Fraction(1)
+    unit: ClassVar[str] = ""
 
     place: Place
     name: str
@@ -91,20 +181,49 @@ class Enum:
     doc: str
     source: Lines
 
+    @property
+    def choices(self) -> tuple[int, ...]:
+        """The legal raw values."""
+        return tuple(member.value for member in self.members)
+
+    def from_raw(self, raw: int) -> object:
+        """Return the name of the member with a raw value, or the raw value as text."""
+        names = {member.value: member.name for member in self.members}
+        return names.get(raw, str(raw))
+
+    def values(self, most: int) -> tuple[Member, ...]:
+        """Return the members."""
+        return self.members
+
 
 @dataclass(frozen=True, slots=True)
-class Flag:
-    """Yes or no, as 1 or 0."""
+class Flag(_Scalar):
+    """Yes or no, encoded as 1 or 0."""
+
+    kind: ClassVar[str] = "flag"
+    class_name: ClassVar[str] = ""
+    members: ClassVar[tuple[Member, ...]] = ()
+    scale: ClassVar[Fraction] = Fraction(1)
+    unit: ClassVar[str] = ""
+    choices: ClassVar[tuple[int, ...]] = (0, 1)
 
     place: Place
     name: str
     wire: Wire
     doc: str
 
+    def from_raw(self, raw: int) -> object:
+        """Return whether a raw value is 1."""
+        return raw == 1
+
 
 @dataclass(frozen=True, slots=True)
 class Value:
     """Several quantities that belong together: a named tuple."""
+
+    kind: ClassVar[str] = "value"
+    members: ClassVar[tuple[Member, ...]] = ()
+    choices: ClassVar[tuple[int, ...]] = ()
 
     place: Place
     name: str
@@ -112,5 +231,49 @@ class Value:
     items: tuple[tuple[str, Quantity], ...]
     doc: str
 
+    @property
+    def parts(self) -> tuple[tuple[str, Scalar], ...]:
+        """The scalars that make up the type, by name."""
+        return self.items
 
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return sum(item.wire.width for _, item in self.items)
+
+    @property
+    def smallest(self) -> object:
+        """The smallest value of each part."""
+        return tuple(item.smallest for _, item in self.items)
+
+    def read(self, data: bytes) -> object:
+        """Return the value of each part that bytes encode."""
+        values = []
+        for _, item in self.items:
+            values.append(item.read(data[: item.size]))
+            data = data[item.size :]
+        return tuple(values)
+
+    def can_hold(self, raw: int) -> bool:
+        """Return False: several raw values are not one."""
+        return False
+
+    def can_hold_any(self, width: int) -> bool:
+        """Return False: a value type has several raw values."""
+        return False
+
+    def narrowed(self, ends: tuple[Fraction, Fraction]) -> None:
+        """Return None: a value type has no range of its own."""
+
+    def values(self, most: int) -> tuple[Member, ...]:
+        """Return nothing: a value type cannot be a selector."""
+        return ()
+
+
+def _plain(exact: Fraction) -> int | Fraction:
+    """Return a whole number as an int, any other number as it is."""
+    return int(exact) if exact.denominator == 1 else exact
+
+
+Scalar = Quantity | Enum | Flag
 Type = Quantity | Enum | Flag | Value

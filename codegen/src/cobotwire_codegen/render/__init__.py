@@ -1,4 +1,4 @@
-"""The model to text: every generated file of an edition."""
+"""Render the model as text: every generated file of an edition."""
 
 from __future__ import annotations
 
@@ -17,9 +17,12 @@ from jinja2 import (
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
-from cobotwire_codegen.render import markdown, parameters, python_api, python_table, words
+from cobotwire_codegen.publish import edition_json
+from cobotwire_codegen.render import layout, markdown, parameters, python_api, words
 from cobotwire_codegen.render.diagram import byte_diagram
 from cobotwire_codegen.render.literal import literal, quoted
+from cobotwire_codegen.render.messages import message_classes
+from cobotwire_codegen.render.sharing import Sharing, local_imports
 from cobotwire_codegen.render.vectors_json import vectors_json
 from cobotwire_codegen.render.way import BLOCKING, WAYS, Way
 from cobotwire_codegen.wire import size
@@ -27,50 +30,81 @@ from cobotwire_codegen.wire import size
 Files = dict[PurePosixPath, str]
 
 
-def render_python(edition: Edition, templates: Path | None = None) -> Files:
-    """The edition's Python package: paths are relative to the package's folder.
+def render_python(
+    edition: Edition, templates: Path | None = None, base: Sharing | None = None
+) -> Files:
+    """Return the edition's Python package: paths are relative to the package's folder.
 
-    Templates in ``templates`` take the place of those of the same name.
+    Args:
+        edition: the checked edition.
+        templates: a folder of templates; each replaces the shipped template of the same name.
+        base: the edition that this one is a delta of, whose package it may import.
     """
     jinja = environment(templates)
-    edition = replace(edition, types=_used_types(edition))
-    common = {"edition": edition, "named": _named_types(edition)}
+    edition = with_used_types(edition)
+    sharing = Sharing(edition, base)
+    common = {"edition": edition, "sharing": sharing}
     files = {
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
-        for name in ("__init__", "enums", "values")
+        for name in ("__init__", "enums", "table", "values")
     }
-    # So that type checkers believe the package's annotations where it is installed.
+    # Type checkers use the annotations of an installed package only if it has this file.
     files[PurePosixPath("py.typed")] = ""
-    for part in ("__init__", "places", "types"):
-        template = jinja.get_template(f"python/table/{part}.py.j2")
-        files[PurePosixPath(f"table/{part}.py")] = template.render(common)
-    for family in edition.families:
-        template = jinja.get_template("python/table/family.py.j2")
-        path = PurePosixPath(f"table/{family.name}.py")
-        files[path] = template.render(common, family=family)
+    files[PurePosixPath("edition.json")] = edition_json(edition)
+    files |= _messages(jinja, common)
     for way in WAYS:
         files |= _client(jinja, common, way)
     return files
 
 
+def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
+    """Return the modules of typed requests and replies, one for each family that has its own."""
+    sharing: Sharing = common["sharing"]
+    template = jinja.get_template("python/messages/family.py.j2")
+    made: Files = {}
+    modules = []
+    for family in sharing.edition.families:
+        module = sharing.messages_module(family)
+        modules.append(sharing.relative(module).replace(".messages", "", 1))
+        if sharing.is_own(module):
+            own = (c for c in family.commands if c.name not in sharing.shared_commands)
+            classes = [found for command in own for found in message_classes(command)]
+            made[PurePosixPath(f"messages/{family.name}.py")] = template.render(
+                common, family=family, classes=classes
+            )
+    index = jinja.get_template("python/messages/__init__.py.j2")
+    made[PurePosixPath("messages/__init__.py")] = index.render(common, modules=sorted(modules))
+    return made
+
+
 def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
-    """A client for one way of calling: the same templates make all of them."""
-    edition: Edition = common["edition"]
-    name = "client.py" if way is BLOCKING else f"{way.folder}_client.py"
-    made = {
-        name: jinja.get_template("python/client.py.j2").render(common, way=way),
-        f"{way.folder}/__init__.py": jinja.get_template("python/commands/__init__.py.j2").render(
-            common, way=way
-        ),
-    }
+    """Return the client for one way of calling: the same templates make all of them."""
+    sharing: Sharing = common["sharing"]
+    imports = ["from cobotwire.protocol.table import Table"]
+    if python_api.moves(sharing.edition):
+        imports.append(f"from {way.moving_module} import {way.prefix}MovingClient")
+    made: Files = {}
     template = jinja.get_template("python/commands/family.py.j2")
-    for family in edition.families:
-        made[f"{way.folder}/{family.name}.py"] = template.render(common, family=family, way=way)
-    return {PurePosixPath(path): text for path, text in made.items()}
+    own = ["from .table import TABLE"]
+    for family in sharing.edition.families:
+        module = sharing.methods_module(family, way)
+        name = f"{way.prefix}{family.name.capitalize()}Commands"
+        line = f"from {sharing.relative(module)} import {name}"
+        (own if sharing.is_own(module) else imports).append(line)
+        if sharing.is_own(module):
+            path = PurePosixPath(f"{way.folder}/{family.name}.py")
+            made[path] = template.render(common, family=family, way=way)
+    if made:
+        index = jinja.get_template("python/commands/__init__.py.j2")
+        made[PurePosixPath(f"{way.folder}/__init__.py")] = index.render(common, way=way)
+    lines = [*sorted(imports), "", *sorted(own)]
+    client = jinja.get_template("python/client.py.j2").render(common, way=way, imports=lines)
+    made[PurePosixPath("client.py" if way is BLOCKING else f"{way.folder}_client.py")] = client
+    return made
 
 
 def render_reference(edition: Edition, templates: Path | None = None) -> Files:
-    """The edition's command reference in Markdown: a page a family, and an index."""
+    """Return the command reference in Markdown: an index, and a page for each family."""
     jinja = environment(templates)
     files = {
         PurePosixPath("README.md"): jinja.get_template("markdown/index.md.j2").render(
@@ -85,28 +119,24 @@ def render_reference(edition: Edition, templates: Path | None = None) -> Files:
 
 
 def render_vectors(edition: Edition) -> Files:
-    """The table and vectors as JSON."""
+    """Return the table and vectors as JSON."""
     return {PurePosixPath(f"{edition.name}.json"): vectors_json(edition)}
 
 
 def template_names() -> list[str]:
-    """The templates that can be replaced, by their names."""
+    """Return the names of the templates that can be replaced."""
     return PackageLoader("cobotwire_codegen").list_templates()
 
 
-def _used_types(edition: Edition) -> tuple[Type, ...]:
-    """The types that a message has: a delta may have left some of its base's without a use."""
-    fields = (field for command in edition.commands for field in command.fields)
+def with_used_types(edition: Edition) -> Edition:
+    """Return the edition without unused types: a delta may stop using types of its base."""
+    fields = [field for command in edition.commands for field in command.fields]
     used = {type.name for field in fields for _, type in lower.cases(field)}
-    return tuple(type for type in edition.types if type.name in used)
-
-
-def _named_types(edition: Edition) -> dict[Type, str]:
-    return {type: type.name.upper() for type in edition.types}
+    return replace(edition, types=tuple(type for type in edition.types if type.name in used))
 
 
 def environment(templates: Path | None = None) -> Environment:
-    """What every template may use; those in ``templates`` take the place of ours."""
+    """Return the environment of all templates; those in ``templates`` replace ours."""
     shipped = PackageLoader("cobotwire_codegen")
     own = [FileSystemLoader(templates)] if templates is not None else []
     jinja = Environment(
@@ -120,19 +150,19 @@ def environment(templates: Path | None = None) -> Environment:
     jinja.globals.update(
         api=python_api,
         params=parameters,
-        table=python_table,
         words=words,
         md=markdown,
         lower=lower,
+        local_imports=local_imports,
     )
     jinja.filters.update(
         literal=literal,
         quoted=quoted,
-        docstring=python_api.docstring,
-        escaped=python_api.escaped,
-        wrapped=python_api.wrapped,
-        capitalize_first=python_api.capitalize_first,
-        oneline=python_api.oneline,
+        docstring=layout.docstring,
+        escaped=layout.escaped,
+        wrapped=layout.wrapped,
+        capitalize_first=layout.capitalize_first,
+        oneline=layout.oneline,
         by_class=_by_class,
         byte_diagram=byte_diagram,
         size_on_wire=size,
@@ -147,7 +177,7 @@ def environment(templates: Path | None = None) -> Environment:
 
 
 def _by_class(types: tuple[Type, ...]) -> Iterator[Enum | Value]:
-    """Types that become a class, each class once."""
+    """Yield the types that become a class, each class once."""
     seen = set()
     for type in types:
         if isinstance(type, Enum | Value) and type.class_name not in seen:

@@ -1,19 +1,19 @@
-"""A message as a row of boxes, each with its bytes' numbers above it."""
+"""Draw a message as a row of boxes with the numbers of their bytes above."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-# What fits a page's code block, and a terminal.
+# This width fits a code block of the docs, and a terminal.
 WIDTH = 96
-# Said by their value, since that is what stands there; a field is said by its name.
+# These boxes show their value, which is fixed; a field's box shows its name.
 FIXED = ("header", "LEN", "CMD", "footer")
 
 Row = tuple[str, str, str]
 
 
 def byte_diagram(rows: Iterable[Row]) -> str:
-    """The rows of a byte table (position, content, value) as boxes, in as many lines as needed."""
+    """Return the rows of a byte table (position, content, value) as lines of boxes."""
     lines: list[list[tuple[str, str]]] = [[]]
     used = 0
     for position, content, value in rows:

@@ -1,4 +1,4 @@
-"""Python expressions as text, laid out as ruff does it, so that generated code is formatted."""
+"""Lay out Python expressions as ruff does, so that generated code is formatted."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ WIDTH = 100
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A name or any other text that stands as it is."""
+    """A name, or other text that is written unchanged."""
 
     text: str
 
@@ -25,10 +25,10 @@ class Call:
 
 
 def literal(value: Any, indent: int = 0, before: int = 0, after: int = 0) -> str:
-    """The text of an expression.
+    """Return the text of an expression.
 
-    ``indent`` is the column of the statement, ``before`` and ``after`` count the characters that
-    stand on the same line already and those that must still follow.
+    ``indent`` is the column of the statement; ``before`` and ``after`` count the other characters
+    on the same line.
     """
     flat = _flat(value)
     if indent + before + len(flat) + after <= WIDTH or not _parts(value):
@@ -36,7 +36,7 @@ def literal(value: Any, indent: int = 0, before: int = 0, after: int = 0) -> str
     opening, parts, closing = _brackets(value), _parts(value), ")"
     inner = " " * (indent + 4)
     joined = ", ".join(name + _flat(part) for name, part in parts)
-    # ruff tries the arguments of a call on one line of their own first; not so a tuple.
+    # ruff first tries to put the arguments of a call, but not of a tuple, on one separate line.
     if isinstance(value, Call) and len(parts) > 1 and indent + 4 + len(joined) <= WIDTH:
         return f"{opening}\n{inner}{joined}\n{' ' * indent}{closing}"
     lines = [f"{inner}{name}{literal(part, indent + 4, len(name), 1)}," for name, part in parts]
@@ -67,7 +67,7 @@ def _flat(value: Any) -> str:
 
 
 def quoted(text: str) -> str:
-    """A string literal in double quotes where that needs no more escapes."""
+    """Return a string literal, in double quotes unless that needs more escapes."""
     plain = repr(text)
     if plain.startswith("'") and '"' not in text:
         return '"' + plain[1:-1].replace("\\'", "'") + '"'

@@ -1,4 +1,4 @@
-"""What the Markdown reference needs: byte tables, worked frames, what is wrong in the document."""
+"""Prepare the Markdown reference: byte tables, worked frames, errors of the document."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ Direction = Literal["request", "reply"]
 
 
 def byte_rows(
-    edition: Edition, command: Command, form: tuple[Field, ...]
+    edition: Edition, command: Command, variant: tuple[Field, ...]
 ) -> Iterator[tuple[str, str, str]]:
-    """The rows of a message's byte table: position, content, value."""
+    """Yield the rows of a message's byte table: position, content, value."""
     frame = edition.frame
-    length = 1 + sum(size(field.type) for field in form) + frame.check_size
+    length = 1 + sum(size(field.type) for field in variant) + frame.check_size
     position = len(frame.header)
     yield f"0-{position - 1}", "header", frame.header.hex(" ").upper()
     if frame.addresses:
@@ -40,7 +40,7 @@ def byte_rows(
     yield str(position), "LEN", f"{length:02X}"
     yield str(position + 1), "CMD", f"{command.id:02X}"
     position += 2
-    for field in form:
+    for field in variant:
         for name, width, content in _parts(field):
             last = position + width - 1
             yield (str(position) if width == 1 else f"{position}-{last}"), name, content
@@ -64,20 +64,20 @@ def _parts(field: Field) -> Iterator[tuple[str, int, str]]:
     types = [type for _, type in lower.cases(field)]
     first = types[0]
     if not isinstance(first, Value):
-        yield f"`{field.name}`", size(first), " or ".join(wire_form(type) for type in types)
+        yield f"`{field.name}`", size(first), " or ".join(wire_variant(type) for type in types)
         return
     for index, (label, item) in enumerate(first.items):
         kinds = dict.fromkeys(
-            wire_form(type.items[index][1]) for type in types if isinstance(type, Value)
+            wire_variant(type.items[index][1]) for type in types if isinstance(type, Value)
         )
         names = dict.fromkeys(type.items[index][0] for type in types if isinstance(type, Value))
         yield f"`{field.name}` {'/'.join(names) or label}", item.wire.width, " or ".join(kinds)
 
 
-def wire_form(type: Type) -> str:
-    """How a type stands on the wire, in words."""
+def wire_variant(type: Type) -> str:
+    """Return how a type is encoded, in words."""
     if isinstance(type, Value):
-        return ", ".join(wire_form(item) for _, item in type.items)
+        return ", ".join(wire_variant(item) for _, item in type.items)
     if not isinstance(type, Quantity):
         return type.wire.name
     if type.choices:
@@ -89,7 +89,7 @@ def wire_form(type: Type) -> str:
 
 
 def worked(edition: Edition, command: Command, direction: Direction) -> Vector | None:
-    """The vector that shows a message best: the document's own, where it has one."""
+    """Return the best example of a message: the document's own if it has one."""
     fitting = [
         vector
         for vector in edition.vectors
@@ -99,13 +99,13 @@ def worked(edition: Edition, command: Command, direction: Direction) -> Vector |
 
 
 def text_vector(edition: Edition, command: Command) -> Vector | None:
-    """The vector of a reply outside any frame."""
+    """Return the vector of a text reply, if there is one."""
     fitting = (vector for vector in edition.vectors if vector.command == command.name)
     return next((vector for vector in fitting if vector.text is not None), None)
 
 
 def spoken(vector: Vector) -> str:
-    """A vector's values, in words."""
+    """Return a vector's values in words."""
     return ", ".join(f"{name} = {_value(value)}" for name, value in vector.values)
 
 
@@ -116,27 +116,27 @@ def _value(value: object) -> str:
 
 
 def hexed(data: bytes) -> str:
-    """Bytes as the document prints them."""
+    """Return bytes as the document prints them."""
     return data.hex(" ").upper()
 
 
 def errata(edition: Edition, command: Command) -> list[Erratum]:
-    """What the document gets wrong about a command."""
+    """Return the document's errors about a command."""
     return [erratum for erratum in edition.errata if command.name in erratum.commands]
 
 
 def general_errata(edition: Edition) -> list[Erratum]:
-    """What the document gets wrong about the link and the frame."""
+    """Return the document's errors about the transport and the frame."""
     return [erratum for erratum in edition.errata if not erratum.commands]
 
 
 def cell(text: str) -> str:
-    """Text that may stand in a table's cell."""
+    """Return text with the character escaped that would end a table cell."""
     return text.replace("|", "\\|")
 
 
 def disputed_types(edition: Edition, command: Command) -> list[Quantity]:
-    """The quantities of a command whose own reading is disputed."""
+    """Return the quantities of a command that are disputed themselves."""
     found: dict[str, Quantity] = {}
     for field in command.fields:
         for _, type in lower.cases(field):
@@ -148,9 +148,9 @@ def disputed_types(edition: Edition, command: Command) -> list[Quantity]:
 
 
 def field_rows(command: Command) -> list[tuple[str, Field]]:
-    """The fields of every form, each once."""
-    rows = [("request", field) for form in command.requests for field in form]
-    rows += [("reply", field) for form in command.replies for field in form]
+    """Return the fields of every variant, each once, with their direction."""
+    rows = [("request", field) for variant in command.requests for field in variant]
+    rows += [("reply", field) for variant in command.replies for field in variant]
     seen: dict[tuple[str, str, Type], tuple[str, Field]] = {}
     for direction, field in rows:
         seen.setdefault((direction, field.name, field.type), (direction, field))
@@ -158,7 +158,7 @@ def field_rows(command: Command) -> list[tuple[str, Field]]:
 
 
 def field_doc(field: Field) -> str:
-    """What a field is, and how it may be left out."""
+    """Return what a field is, and whether it can be left out."""
     words = [field.doc]
     if field.echo:
         older = "; older firmware leaves it out" if field.echo == "optional" else ""
@@ -171,12 +171,12 @@ def field_doc(field: Field) -> str:
 
 
 def pattern(text: Text) -> str:
-    """Text outside a frame, with its fields in angle brackets."""
+    """Return text outside a frame, with its fields in angle brackets."""
     pairs = zip(text.prefixes, text.fields)
     return "".join(f"{prefix}<{name}>" for prefix, (name, _) in pairs) + text.suffix
 
 
 def reply_note(command: Command) -> str:
-    """What a further form of a reply is."""
+    """Return the note on a further variant of a reply."""
     older = any(field.echo == "optional" for field in command.reply)
-    return "older firmware" if older else "another form"
+    return "older firmware" if older else "another variant"

@@ -1,17 +1,17 @@
-"""Arguments and results of a method: the fields of all forms of a message, by name."""
+"""Arguments and results of a method: the fields of all variants of a message, by name."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Enum, Field, Flag, Form, Quantity, Type, Value
+from cobotwire_codegen.model import Command, Enum, Field, Flag, Quantity, Type, Value, Variant
 from cobotwire_codegen.render.words import allowed
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """An argument or a result; ``fields`` is how it stands in each form that has it."""
+    """An argument or a result; ``fields`` are the fields of that name, one for each variant."""
 
     name: str
     fields: tuple[Field, ...]
@@ -25,42 +25,47 @@ class Parameter:
 
     @property
     def doc(self) -> str:
-        """What it is."""
+        """The description in the spec."""
         return self.fields[0].doc
 
     @property
     def allowed(self) -> str:
-        """What it may be, in words."""
+        """The allowed values, in words."""
         return " or ".join(dict.fromkeys(allowed(field) for field in self.fields))
 
     @property
     def radians(self) -> bool:
-        """Whether the API speaks radians where the wire carries degrees."""
+        """Whether the API uses radians where the wire carries degrees."""
         return any(_radians(type) for type in self.types)
 
 
 def parameters(command: Command) -> list[Parameter]:
-    """The arguments of a command: first those that every form of the request has."""
+    """Return the arguments of a command: first those that every variant of the request has."""
     found = _by_name(command.requests)
     given = [p for p in found if all(field.const is None for field in p.fields)]
     return sorted(given, key=lambda parameter: parameter.optional)
 
 
 def results(command: Command) -> list[Parameter]:
-    """What every form of the reply tells and the caller does not know already."""
+    """Return what every variant of the reply reports and the request did not contain."""
     if command.ack:
         return []
     found = _by_name(command.replies)
     return [p for p in found if not p.optional and not any(field.echo for field in p.fields)]
 
 
-def _by_name(forms: tuple[Form, ...]) -> list[Parameter]:
-    longest_first = sorted(forms, key=len, reverse=True)
-    names = dict.fromkeys(field.name for form in longest_first for field in form)
+def reply_parameters(command: Command) -> list[Parameter]:
+    """Return every field of the reply, by name."""
+    return _by_name(command.replies)
+
+
+def _by_name(variants: tuple[Variant, ...]) -> list[Parameter]:
+    longest_first = sorted(variants, key=len, reverse=True)
+    names = dict.fromkeys(field.name for variant in longest_first for field in variant)
     found = []
     for name in names:
-        fields = tuple(field for form in forms for field in form if field.name == name)
-        found.append(Parameter(name, fields, len(fields) < len(forms)))
+        fields = tuple(field for variant in variants for field in variant if field.name == name)
+        found.append(Parameter(name, fields, len(fields) < len(variants)))
     return found
 
 
@@ -71,7 +76,7 @@ def _radians(type: Type) -> bool:
 
 
 def argument_type(parameter: Parameter) -> str:
-    """The annotation of an argument."""
+    """Return the annotation of an argument."""
     words = dict.fromkeys(_argument(type) for type in parameter.types)
     if set(words) == {"int", "float"}:
         words = {"float": None}
@@ -87,7 +92,7 @@ def _argument(type: Type) -> str:
 
 
 def scaled(type: Value) -> bool:
-    """Whether a value has a part that is no whole number."""
+    """Return whether a part of the named tuple is a float."""
     return any(item.scale != 1 for _, item in type.items)
 
 
@@ -98,7 +103,7 @@ def _scalar(type: Type) -> str:
 
 
 def result_type(parameter: Parameter) -> str:
-    """The annotation of a result."""
+    """Return the annotation of a result."""
     first = parameter.types[0]
     same = len(parameter.types) == 1
     if isinstance(first, Value):
@@ -112,17 +117,16 @@ def result_type(parameter: Parameter) -> str:
     return words.pop() if len(words) == 1 else "float"
 
 
-def result_expression(parameter: Parameter) -> str:
-    """The expression that makes one result out of the reply."""
-    value = f'reply["{parameter.name}"]'
-    if parameter.radians:
-        value = f"to_radians({value})"
-    kind = result_type(parameter)
-    if not isinstance(parameter.types[0], Value):
-        return f"{kind}({value})"
-    return f"tuple({value})" if kind.startswith("tuple") else f"{kind}(*{value})"
+def returns(command: Command) -> str:
+    """Return the annotation of what the method returns."""
+    found = results(command)
+    if command.text is not None:
+        return command.text.class_name
+    if not found:
+        return "None"
+    return result_type(found[0]) if len(found) == 1 else result_class(command)
 
 
-def argument_expression(parameter: Parameter) -> str:
-    """The expression that gives an argument to the codec."""
-    return f"to_degrees({parameter.name})" if parameter.radians else parameter.name
+def result_class(command: Command) -> str:
+    """Return the name of the named tuple for a reply with several results."""
+    return f"{lower.message_class(command.name)}Result"

@@ -1,181 +1,149 @@
-"""What the Python client's templates need: signatures, bodies, docstrings, imports."""
+"""Prepare the Python package's templates: signatures, calls, docstrings, imports."""
 
 from __future__ import annotations
 
-import textwrap
+import re
 
-from cobotwire_codegen.model import Command, Edition, Enum, Family, Value
+from cobotwire_codegen.lower import message_class
+from cobotwire_codegen.model import Command, Edition, Enum, Family, Flag, Quantity, Value
+from cobotwire_codegen.render.layout import WIDTH, laid_out
+from cobotwire_codegen.render.messages import classes_in_method
 from cobotwire_codegen.render.parameters import (
     Parameter,
-    argument_expression,
     argument_type,
     parameters,
-    result_expression,
-    result_type,
     results,
+    returns,
 )
 from cobotwire_codegen.render.way import BLOCKING, Way
+from cobotwire_codegen.render.words import units
 
-WIDTH = 100
-ACK_DOC = (
-    "ack_within: Seconds to wait for the acknowledgement. Left out: the call returns when its "
-    "bytes are written."
-)
-
-
-def returns(command: Command) -> str:
-    """The type of the result."""
-    found = results(command)
-    if command.text is not None:
-        return command.text.class_name
-    if not found:
-        return "None"
-    return result_type(found[0]) if len(found) == 1 else result_class(command)
-
-
-def result_class(command: Command) -> str:
-    """The named tuple of a reply with several results."""
-    return "".join(word.capitalize() for word in command.name.split("_")) + "Reply"
-
-
-def answer(command: Command) -> str:
-    """The expression that makes the whole result out of the reply."""
-    if command.text is not None:
-        names = ", ".join(f'reply["{name}"]' for name, _ in command.text.fields)
-        return f"{command.text.class_name}({names})"
-    found = results(command)
-    if len(found) == 1:
-        return result_expression(found[0])
-    return f"{result_class(command)}({', '.join(map(result_expression, found))})"
+# Words that a description may use without adding anything to the title.
+_ARTICLES = ("a", "all", "an", "arm", "as", "at", "by", "for", "from", "in", "is", "it", "of", "on")
+_VERBS = ("check", "get", "read", "report", "return", "set", "the", "to", "whether")
+FILLING = frozenset((*_ARTICLES, *_VERBS))
+# The notes of commands of these safety classes are warnings, so the docstring keeps them.
+WARNED = ("motion", "power", "persistent write")
+_PARTS = re.compile(r"\A\d+ numbers \(([^()]*)\)\Z")
+_SENTENCE = re.compile(r"(?<=[.])\s+(?=[A-Z])")
 
 
 def signature(command: Command, way: Way = BLOCKING) -> str:
-    """The method's head, laid out as ruff lays it out."""
+    """Return the head of a command's method."""
     parts = ["self"]
-    for parameter in parameters(command):
-        default = " = None" if parameter.optional else ""
-        parts.append(f"{parameter.name}: {argument_type(parameter)}{default}")
-    if command.request_text is not None:
-        parts.extend(f"{name}: str" for name, _ in command.request_text.fields)
+    arguments = parameters(command)
+    parts += [f"{a.name}: {argument_type(a)}" for a in arguments if not a.optional]
+    parts += [f"{name}: str" for name in _text_arguments(command)]
+    parts += [f"{a.name}: {argument_type(a)} = None" for a in arguments if a.optional]
     if command.ack:
-        parts.extend(("*", "ack_within: float | None = None"))
-    head = f"{way.async_}def {command.name}("
-    return _laid_out(head, parts, f") -> {returns(command)}:", 4)
+        parts += ["*", "ack_within: float | None = None"]
+    return laid_out(f"{way.async_}def {command.name}(", parts, f") -> {returns(command)}:", 4)
 
 
-def _laid_out(head: str, parts: list[str], tail: str, indent: int) -> str:
-    """``head parts tail`` on one line, or on three, or a line each, as ruff lays it out."""
-    joined = ", ".join(parts)
-    margin = " " * indent
-    if indent + len(head) + len(joined) + len(tail) <= WIDTH:
-        return f"{head}{joined}{tail}"
-    if indent + 4 + len(joined) <= WIDTH:
-        return f"{head}\n{margin}    {joined}\n{margin}{tail}"
-    lines = "".join(f"{margin}    {part},\n" for part in parts)
-    return f"{head}\n{lines}{margin}{tail}"
+def call(command: Command, family: Family, way: Way) -> str:
+    """Return the body of a command's method."""
+    arguments = parameters(command)
+    given = [a.name for a in arguments if not a.optional]
+    given += [*_text_arguments(command), *(a.name for a in arguments if a.optional)]
+    head = f"return {way.await_}self._call(" if command.answers else f"{way.await_}self._send("
+    opening = f"messages.{family.name}.{message_class(command.name)}("
+    request = f"{opening}{', '.join(given)})"
+    if 12 + len(request) + len(",") > WIDTH:
+        request = laid_out(opening, given, ")", 12)
+    return laid_out(head, [request, "ack_within"] if command.ack else [request], ")", 8)
 
 
-def call(command: Command, way: Way = BLOCKING) -> str:
-    """The driver's own call, with its arguments."""
-    longest = max(command.requests, key=len)
-    known = {parameter.name: parameter for parameter in parameters(command)}
-    values = [
-        argument_expression(known[field.name]) if field.name in known else str(field.const)
-        for field in longest
-    ]
-    row = f"({values[0]},)" if len(values) == 1 else f"({', '.join(values)})"
-    if any(parameter.optional for parameter in known.values()):
-        row = f"given{row}" if len(values) > 1 else f"given({values[0]})"
-    arguments = [f'"{command.name}"', row]
+def _text_arguments(command: Command) -> list[str]:
+    return [name for name, _ in command.request_text.fields] if command.request_text else []
+
+
+def description(command: Command) -> str:
+    """Return the first sentence if it adds a word to the title, and the warnings.
+
+    The reference page has the whole description and every note.
+    """
+    sentence = _SENTENCE.split(command.doc, maxsplit=1)[0]
+    new = _stems(sentence) - _stems(command.title) - FILLING
+    warnings = command.notes if command.safety in WARNED else ()
+    return " ".join([*([sentence] if new else []), *warnings])
+
+
+def _stems(text: str) -> set[str]:
+    words = "".join(c if c.isalnum() else " " for c in text.lower()).split()
+    return {word.removesuffix("s").removesuffix("e") for word in words} | set(words) & FILLING
+
+
+def argument_lines(command: Command) -> list[str]:
+    """Return a line of the docstring for each argument, with its range and unit."""
+    arguments = parameters(command)
+    lines = [_argument_line(argument) for argument in arguments if not argument.optional]
     if command.request_text is not None:
-        pairs = ", ".join(f'"{name}": {name}' for name, _ in command.request_text.fields)
-        arguments.append(f"{{{pairs}}}")
-    if command.ack:
-        arguments.append("ack_within=ack_within")
-    head = "reply = " if command.answers else ""
-    method = "_ask" if command.answers else "_tell"
-    return _laid_out(f"{head}{way.await_}self.{method}(", arguments, ")", 8)
+        lines += [f"{name}: {_clause(doc)} (ASCII)." for name, doc in command.request_text.fields]
+    return lines + [_argument_line(argument) for argument in arguments if argument.optional]
 
 
-def escaped(text: str) -> str:
-    """Text that may stand in a docstring, also right before its end."""
-    text = text.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
-    return f'{text[:-1]}\\"' if text.endswith('"') else text
+def _argument_line(argument: Parameter) -> str:
+    allowed = (
+        f"in radians; on the wire {argument.allowed}" if argument.radians else argument.allowed
+    )
+    optional = "; optional" if argument.optional else ""
+    return f"{argument.name}: {_clause(argument.doc)} ({allowed}{optional})."
 
 
-def docstring(text: str, indent: int) -> str:
-    """A docstring of one paragraph, on one line if it fits."""
-    text = escaped(text)
-    flat = f'{" " * indent}"""{text}"""'
-    if len(flat) <= WIDTH:
-        return flat
-    opened = _filled(f'"""{text}', indent, 0)
-    return f'{opened}\n{" " * indent}"""'
-
-
-def wrapped(text: str, indent: int, hanging: int = 0) -> str:
-    """A paragraph of a docstring; further lines stand ``hanging`` deeper."""
-    return _filled(escaped(text), indent, hanging)
-
-
-def _filled(text: str, indent: int, hanging: int) -> str:
-    return textwrap.fill(
-        text,
-        WIDTH,
-        initial_indent=" " * indent,
-        subsequent_indent=" " * (indent + hanging),
-        break_long_words=False,
-        break_on_hyphens=False,
+def result_line(command: Command) -> str:
+    """Return the line of the docstring that describes the result."""
+    if command.text is not None:
+        return "; ".join(_clause(doc) for _, doc in command.text.fields) + "."
+    shown = [(result, _brief(result)) for result in results(command)]
+    return (
+        "; ".join(_clause(r.doc) + (f" ({allowed})" if allowed else "") for r, allowed in shown)
+        + "."
     )
 
 
-def argument_doc(parameter: Parameter) -> str:
-    """An argument's line in the docstring."""
-    shown = " Given in radians; on the wire:" if parameter.radians else " Allowed:"
-    left_out = " May be left out." if parameter.optional else ""
-    return f"{parameter.name}: {parameter.doc}{shown} {parameter.allowed}.{left_out}"
+def _brief(parameter: Parameter) -> str:
+    """Return the allowed values without what the annotation shows: flags, the number of parts."""
+    if all(isinstance(type, Flag) for type in parameter.types):
+        return ""
+    return _PARTS.sub(r"\1", parameter.allowed)
 
 
-def helpers(family: Family) -> list[str]:
-    """The functions of the package that a family's methods call."""
-    names = set()
-    for command in family.commands:
-        if any(parameter.optional for parameter in parameters(command)):
-            names.add("given")
-        if any(parameter.radians for parameter in parameters(command)):
-            names.add("to_degrees")
-        if any(parameter.radians for parameter in results(command)):
-            names.add("to_radians")
-    return sorted(names)
+def _clause(sentence: str) -> str:
+    return sentence.removesuffix(".")
 
 
-def imports(family: Family) -> tuple[list[str], list[str], bool]:
-    """What a family's methods need: enums, value classes, and whether Sequence."""
-    enums: set[str] = set()
-    values: set[str] = set()
-    sequence = False
-    for command in family.commands:
-        for parameter in parameters(command):
-            sequence = sequence or any(isinstance(type, Value) for type in parameter.types)
-            enums |= {type.class_name for type in parameter.types if isinstance(type, Enum)}
-        found = results(command)
-        if command.text is not None or len(found) > 1:
-            values.add(returns(command))
-        for parameter in found:
-            kind = result_type(parameter)
-            enums |= {t.class_name for t in parameter.types if isinstance(t, Enum)} & {kind}
-            values |= {t.class_name for t in parameter.types if isinstance(t, Value)} & {kind}
-    return sorted(enums), sorted(values), sequence
+def item_docs(value: Value) -> list[tuple[str, str]]:
+    """Return the parts of a named tuple with their docs; neighbours with equal docs are joined."""
+    found: list[tuple[str, str]] = []
+    for name, item in value.items:
+        doc = item_doc(item)
+        if found and found[-1][1] == doc:
+            found[-1] = (f"{found[-1][0]}, {name}", doc)
+        else:
+            found.append((name, doc))
+    return found
+
+
+def item_doc(item: Quantity) -> str:
+    """Return the description of a part of a named tuple, with its unit."""
+    return item.doc + (f" In {units(item.unit)}." if item.unit and not item.radians else "")
+
+
+def imports(family: Family) -> tuple[set[str], bool]:
+    """Return the enums and named tuples that a family's methods name, and whether Sequence is."""
+    used = set().union(*(classes_in_method(command) for command in family.commands))
+    rows = [p for c in family.commands for p in parameters(c) if isinstance(p.types[0], Value)]
+    return used, bool(rows)
 
 
 def moves(edition: Edition) -> bool:
-    """Whether the edition has every command that it takes to wait for the end of a motion."""
+    """Return whether the edition has every command that waiting for a motion's end needs."""
     needed = {"joint targets", "coordinate targets", "reached", "moving", "stop"}
     return needed <= {command.role for command in edition.commands}
 
 
 def value_classes(edition: Edition) -> list[str]:
-    """Every named tuple of an edition."""
+    """Return the name of every named tuple of an edition."""
     names = {type.class_name for type in edition.types if isinstance(type, Value)}
     for command in edition.commands:
         if command.text is not None or len(results(command)) > 1:
@@ -183,21 +151,13 @@ def value_classes(edition: Edition) -> list[str]:
     return sorted(names)
 
 
-def replies_need_enums(edition: Edition) -> list[str]:
-    """The enums that stand in replies with several results."""
+def enum_classes(edition: Edition) -> list[str]:
+    """Return the name of every enum of an edition."""
+    return sorted({type.class_name for type in edition.types if isinstance(type, Enum)})
+
+
+def enums_in_values(edition: Edition) -> list[str]:
+    """Return the enums that occur in replies with several results."""
     found = [p for c in edition.commands if len(results(c)) > 1 for p in results(c)]
     types = {type for parameter in found for type in parameter.types}
     return sorted(type.class_name for type in types if isinstance(type, Enum))
-
-
-def capitalize_first(text: str) -> str:
-    """A sentence's first letter, without touching the others."""
-    return text[:1].upper() + text[1:]
-
-
-def oneline(text: str) -> str:
-    """A signature on one line."""
-    flat = " ".join(text.split()).replace("( ", "(").replace(", )", ")").replace(" )", ")")
-    return (
-        flat.removeprefix("def ").removesuffix(":").replace("(self, ", "(").replace("(self)", "()")
-    )

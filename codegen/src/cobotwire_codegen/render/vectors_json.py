@@ -1,4 +1,4 @@
-"""The table and its vectors as JSON, for tests in other languages than Python."""
+"""Write the table and its vectors as JSON, for tests in other languages than Python."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cobotwire_codegen.model import Edition, Enum, Vector
 
 
 def vectors_json(edition: Edition) -> str:
-    """The file that the Rust tests read."""
+    """Return the file that the Rust tests read."""
     data = {
         "generated": "by cobotwire-gen from spec/; not to be edited",
         "table": table(edition),
@@ -29,18 +29,18 @@ def _vector(edition: Edition, vector: Vector) -> dict[str, Any]:
         "frame": _hex(vector.frame),
         "text": vector.text is not None,
         "values": [plain(edition, vector, name, value) for name, value in vector.values],
-        "refused": vector.refused and {"reason": vector.refused[0], "offset": vector.refused[1]},
+        "refused": vector.rejected and {"reason": vector.rejected[0], "offset": vector.rejected[1]},
     }
 
 
 def plain(edition: Edition, vector: Vector, name: str, value: object) -> Any:
-    """A vector's value as the codecs take it: enum members as numbers, fractions as floats."""
+    """Return a vector's value as the codecs take it: members as integers, fractions as floats."""
     if isinstance(value, tuple):
         return [plain(edition, vector, name, item) for item in value]
     if isinstance(value, Fraction):
         return float(value)
     command = next(command for command in edition.commands if command.name == vector.command)
-    fields = (f for form in command.forms(vector.direction) for f in form)
+    fields = (f for variant in command.variants(vector.direction) for f in variant)
     type = next((field.type for field in fields if field.name == name), None)
     if isinstance(type, Enum):
         return next(member.value for member in type.members if member.name == value)

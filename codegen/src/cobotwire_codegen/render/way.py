@@ -1,4 +1,4 @@
-"""The ways in which a client is called: each gets a client from the same templates."""
+"""The two kinds of clients, blocking and asyncio, which the same templates write."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """How a client is called: one description of the commands gives a client for each way."""
+    """What differs between a blocking and an asyncio client."""
 
     kind: str
     folder: str
     prefix: str
     module: str
-    driver: str
+    client: str
     async_: str
     await_: str
     block: str
@@ -24,22 +24,22 @@ BLOCKING = Way(
     "blocking",
     "commands",
     "",
-    "cobotwire.driver",
-    "Driver",
+    "cobotwire.client",
+    "Client",
     "",
     "",
     "a ``with``",
-    "cobotwire.driver.moving",
+    "cobotwire.client.moving",
 )
 ASYNCIO = Way(
     "asyncio",
     "aio",
     "Async",
-    "cobotwire.driver.aio",
-    "AsyncDriver",
+    "cobotwire.client.aio",
+    "AsyncClient",
     "async ",
     "await ",
     "an ``async with``",
-    "cobotwire.driver.aio_moving",
+    "cobotwire.client.aio_moving",
 )
 WAYS = (BLOCKING, ASYNCIO)

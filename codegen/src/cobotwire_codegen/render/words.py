@@ -1,4 +1,4 @@
-"""Types and sources in words, as docstrings and the reference say them."""
+"""Describe types and sources in words, for docstrings and the reference."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cobotwire_codegen.model import Enum, Field, Flag, Lines, Quantity, Type
 
 
 def allowed(field: Field) -> str:
-    """What an argument may be, in words: shape, unit, range."""
+    """Return the allowed values of an argument in words: shape, unit, range."""
     words = []
     for when, type in lower.cases(field):
         names = [member.name for member, _ in field.cases if member.value in when]
@@ -19,7 +19,7 @@ def allowed(field: Field) -> str:
 
 
 def span(type: Type) -> str:
-    """Shape, unit and range of a type, in words."""
+    """Return shape, unit and range of a type in words."""
     if isinstance(type, Flag):
         return "True or False"
     if isinstance(type, Enum):
@@ -39,12 +39,12 @@ def span(type: Type) -> str:
 
 
 def decimal(exact: Fraction) -> str:
-    """An exact number as people write it."""
+    """Return an exact number as people write it."""
     return str(exact.numerator) if exact.denominator == 1 else str(float(exact))
 
 
 def lines(spans: Lines) -> str:
-    """Lines of the document, in words."""
+    """Return line numbers of the document in words."""
     text = ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
     one = len(spans) == 1 and spans[0][0] == spans[0][1]
     return f"line {text}" if one else f"lines {text}"
@@ -62,5 +62,5 @@ UNITS = {
 
 
 def units(unit: str) -> str:
-    """A unit as it stands behind a number of any size."""
+    """Return a unit's plural, which follows a number."""
     return UNITS.get(unit, unit)

@@ -1,1 +1,1 @@
-"""Targets: what else the model becomes, for other people's tools. A folder each."""
+"""Output targets for other tools, a folder each."""

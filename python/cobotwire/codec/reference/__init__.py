@@ -1,4 +1,4 @@
-"""The reference codec: obvious before fast. The oracle of the tests, and the rules in Python."""
+"""The reference codec, in Python: obvious before fast, and the oracle of the tests."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from cobotwire.codec.columns import Columns, Scan
-from cobotwire.codec.interface import Data, Listening, Message
+from cobotwire.codec.interface import Data, DecodedMessage, Listening
 from cobotwire.codec.reference.columns import ReferenceColumnReader, scan
-from cobotwire.codec.reference.decode import decode
+from cobotwire.codec.reference.decode import decode, read
 from cobotwire.codec.reference.encode import encode
 from cobotwire.codec.reference.framer import ReferenceFramer
-from cobotwire.codec.reference.legal import Forms
-from cobotwire.codec.refusal import refuse_direction
-from cobotwire.table import Direction, Table
+from cobotwire.codec.reference.judge import Judge
+from cobotwire.protocol.frame_index import FrameIndex
+from cobotwire.protocol.rejection import reject_direction
+from cobotwire.protocol.table import Direction, Table
 
 
 class ReferenceCodec:
@@ -23,9 +24,11 @@ class ReferenceCodec:
 
     def __init__(self, table: Table) -> None:
         self.table = table
-        self._forms: dict[Direction, Forms] = {
-            "request": Forms(table, "request"),
-            "reply": Forms(table, "reply"),
+        request, reply = FrameIndex(table, "request"), FrameIndex(table, "reply")
+        self._judges: dict[str, Judge] = {
+            "request": Judge(table.frame, [request]),
+            "reply": Judge(table.frame, [reply]),
+            "both": Judge(table.frame, [request, reply]),
         }
 
     def encode(
@@ -34,26 +37,32 @@ class ReferenceCodec:
         direction: Direction,
         values: Sequence[Any],
         *,
-        form: int | None = None,
+        variant: int | None = None,
         address: int | None = None,
     ) -> bytes:
-        """Build one whole frame."""
+        """Build one frame."""
         found = self.table.command(command)
-        self._legal(direction)
-        return encode(self.table.frame, found, direction, values, form, address)
+        self._judge(direction)
+        return encode(self.table.frame, found, direction, values, variant, address)
 
-    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> Message:
-        """Read one whole frame."""
+    def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> DecodedMessage:
+        """Read one frame and nothing else."""
         command = None if of is None else self.table.command(of)
-        return decode(self._legal(direction), direction, data, command)
+        return decode(self._judge(direction), data, command)
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> ReferenceFramer:
-        """A new framer."""
-        directions: tuple[Direction, ...] = (
-            ("request", "reply") if listening == "both" else (listening,)
-        )
-        forms = [self._legal(direction) for direction in directions]
-        return ReferenceFramer(self.table.frame, forms, accept_unknown)
+        """Return a new framer."""
+        judge = self._judges["both"] if listening == "both" else self._judge(listening)
+        if accept_unknown:
+            judge = Judge(judge.frame, judge.indexes, accept_unknown=True)
+
+        def read_frame(
+            data: bytes, direction: Direction | None = None, of: str | None = None
+        ) -> DecodedMessage:
+            command = None if of is None else self.table.command(of)
+            return read(judge if direction is None else self._judge(direction), data, command)
+
+        return ReferenceFramer(judge, read_frame)
 
     def scan(
         self,
@@ -63,7 +72,7 @@ class ReferenceCodec:
         accept_unknown: bool = False,
         out: Scan | None = None,
     ) -> Scan:
-        """Where the frames of a whole stream are; ``out`` keeps its memory."""
+        """Return where the frames of a stream are; ``out`` keeps its memory."""
         framer = self.framer(listening, accept_unknown=accept_unknown)
         return scan([*framer.feed(data), *framer.flush()], framer)
 
@@ -75,17 +84,17 @@ class ReferenceCodec:
         raw: bool = False,
         out: Columns | None = None,
     ) -> Columns:
-        """The values of a whole stream, as columns; ``out`` keeps its memory."""
+        """Return the values of a stream as columns; ``out`` keeps its memory."""
         framer = self.framer(listening)
         return ReferenceColumnReader(self.table, framer, raw).all_of(data)
 
     def column_reader(
         self, listening: Listening = "both", *, raw: bool = False
     ) -> ReferenceColumnReader:
-        """A reader for a stream that comes in pieces."""
+        """Return a reader for a stream that comes in pieces."""
         return ReferenceColumnReader(self.table, self.framer(listening), raw)
 
-    def _legal(self, direction: Direction) -> Forms:
-        if direction not in self._forms:
-            raise refuse_direction(direction)
-        return self._forms[direction]
+    def _judge(self, direction: Direction) -> Judge:
+        if direction not in ("request", "reply"):
+            raise reject_direction(direction)
+        return self._judges[direction]

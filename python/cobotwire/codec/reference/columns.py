@@ -1,4 +1,4 @@
-"""Columns, one value after the other."""
+"""Columns of a stream, filled value by value."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ from typing import Any
 from cobotwire.codec.columns import Columns, Rows, Scan
 from cobotwire.codec.events import Event, Frame, Noise
 from cobotwire.codec.interface import Data
-from cobotwire.codec.reference.decode import whole_numbers
 from cobotwire.codec.reference.framer import ReferenceFramer
-from cobotwire.errors import ProtocolError
-from cobotwire.table import Direction, Field, Layout, Table
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Direction, Field, Table, Variant
 
-# The integer types a raw column can have, the smallest first, unsigned before signed.
+# The integer types of raw columns with their bounds: smaller before larger, unsigned before signed.
 INTEGERS = (
     ("B", 0, 2**8 - 1),
     ("b", -(2**7), 2**7 - 1),
@@ -37,24 +36,24 @@ class ReferenceColumnReader:
 
     @property
     def pending(self) -> int:
-        """Bytes fed that are not accounted for yet."""
+        """How many fed bytes are not accounted for yet."""
         return self._framer.pending
 
     def feed(self, data: Data) -> Columns:
-        """Take bytes; give what is certain by now."""
+        """Take bytes; return what has become certain since the last call."""
         return self._columns(self._framer.feed(data))
 
     def flush(self) -> Columns:
-        """Refute what still waits."""
+        """Refute what still waits; return the rest."""
         return self._columns(self._framer.flush(), at_end=True)
 
     def all_of(self, data: Data) -> Columns:
-        """The columns of a whole stream."""
+        """Return the columns of a stream."""
         return self._columns([*self._framer.feed(data), *self._framer.flush()], at_end=True)
 
     def _columns(self, events: list[Event], at_end: bool = False) -> Columns:
         rows: dict[tuple[int, Direction, int], tuple[Any, list[Any]]] = {}
-        refused = array("Q")
+        rejected = array("Q")
         for event in events:
             self._noise.take(event)
             if not isinstance(event, Frame):
@@ -62,52 +61,52 @@ class ReferenceColumnReader:
             try:
                 message = event.message
             except ProtocolError:
-                refused.append(event.offset)
+                rejected.append(event.offset)
                 continue
-            forms = message.command.layouts(message.direction)
-            # By identity: two forms of a command may be equal in all but their place.
-            form = next(i for i, layout in enumerate(forms) if layout is message.layout)
-            key = (self._table.commands.index(message.command), message.direction, form)
-            offset, columns = rows.setdefault(key, (array("Q"), self._empty(message.layout)))
+            variants = message.command.variants(message.direction)
+            # By identity, because two variants of a command may be equal.
+            index = next(i for i, each in enumerate(variants) if each is message.variant)
+            key = (self._table.commands.index(message.command), message.direction, index)
+            offset, columns = rows.setdefault(key, (array("Q"), self._empty(message.variant)))
             offset.append(event.offset)
-            values = self._values(event, message.layout, message.values)
+            values = self._values(event, message.variant, message.values)
             for column, value in zip(columns, values):
                 column.extend(value if isinstance(value, tuple) else (value,))
         return Columns(
             self._table,
             [self._rows(key, *found) for key, found in sorted(rows.items(), key=self._order)],
-            refused,
-            self._noise.given(at_end),
+            rejected,
+            self._noise.completed(at_end),
             self._framer.counters,
         )
 
-    def _values(self, frame: Frame, layout: Layout, values: Sequence[Any]) -> Sequence[Any]:
-        return whole_numbers(self._table.frame, layout, frame.data) if self._raw else values
+    def _values(self, frame: Frame, variant: Variant, values: Sequence[Any]) -> Sequence[Any]:
+        return variant.unpack(self._table.frame.data(frame.data)) if self._raw else values
 
-    def _empty(self, layout: Layout) -> list[Any]:
-        return [array(integer_type(field) if self._raw else "d") for field in layout.fields]
+    def _empty(self, variant: Variant) -> list[Any]:
+        return [array(integer_type(field) if self._raw else "d") for field in variant.fields]
 
     def _order(self, item: tuple[tuple[int, Direction, int], object]) -> tuple[int, bool, int]:
-        (command, direction, form), _ = item
-        return command, direction == "reply", form
+        (command, direction, variant), _ = item
+        return command, direction == "reply", variant
 
     def _rows(self, key: tuple[int, Direction, int], offset: Any, columns: list[Any]) -> Rows:
-        index, direction, form = key
+        index, direction, variant = key
         command = self._table.commands[index]
-        fields = command.layouts(direction)[form].fields
+        fields = command.variants(direction)[variant].fields
         shaped = [shape(field, column, len(offset)) for field, column in zip(fields, columns)]
-        return Rows(command, direction, form, offset, shaped)
+        return Rows(command, direction, variant, offset, shaped)
 
 
 class Noises:
-    """Joins noise over events and calls; a span is given once a frame has ended it."""
+    """Joins noise over events and calls; a span is complete once a frame has ended it."""
 
     def __init__(self) -> None:
         self._offset, self._size = array("Q"), array("Q")
         self._open = False
 
     def take(self, event: Event) -> None:
-        """Note what an event tells of noise."""
+        """Note the noise of an event, or that a frame ends it."""
         if isinstance(event, Noise) and self._open:
             self._size[-1] += len(event.data)
         elif isinstance(event, Noise):
@@ -115,36 +114,33 @@ class Noises:
             self._size.append(len(event.data))
         self._open = isinstance(event, Noise)
 
-    def given(self, at_end: bool) -> tuple[Any, Any]:
-        """The spans that are over, and were not given before."""
+    def completed(self, at_end: bool) -> tuple[Any, Any]:
+        """Return the spans completed since the last call."""
         end = len(self._offset) - (1 if self._open and not at_end else 0)
         self._open = self._open and not at_end
-        given = self._offset[:end], self._size[:end]
+        completed = self._offset[:end], self._size[:end]
         del self._offset[:end], self._size[:end]
-        return given
+        return completed
 
 
 def scan(events: Iterable[Event], framer: ReferenceFramer) -> Scan:
-    """Where the frames are."""
+    """Return where the frames and the noise are."""
     offset, noise = array("Q"), Noises()
     for event in events:
         noise.take(event)
         if isinstance(event, Frame):
             offset.append(event.offset)
-    return Scan(offset, noise.given(at_end=True), framer.counters)
+    return Scan(offset, noise.completed(at_end=True), framer.counters)
 
 
 def shape(field: Field, column: Any, rows: int) -> Any:
-    """A column of rows of numbers as two dimensions."""
+    """Return a column; one of rows of numbers gets two dimensions."""
     if not field.many:
         return column
     return memoryview(column).cast("B").cast(column.typecode, (rows, len(column) // rows))
 
 
 def integer_type(field: Field) -> str:
-    """The smallest integer type that holds all that the field allows, in any case."""
-    numbers = [number for case in field.cases for number in case.numbers]
-    bounds = field.choices or [n.minimum for n in numbers] + [n.maximum for n in numbers]
-    return next(
-        code for code, least, most in INTEGERS if least <= min(bounds) and max(bounds) <= most
-    )
+    """Return the smallest integer type that holds every raw value that the field allows."""
+    low, high = field.raw_range
+    return next(code for code, least, most in INTEGERS if least <= low and high <= most)

@@ -1,32 +1,23 @@
-"""Framing and resync, as the law says it.
+"""Framing and resync.
 
-At position i a frame stands if the header is there, LEN is legal for CMD, and the check is right. A
-candidate is refuted by the first byte that refutes it; then the scan goes on at i + 1 and never
+At position i a frame stands if the header is there, LEN is legal for CMD, and the check is right.
+The first byte that contradicts a candidate refutes it. The scan then continues at i + 1 and never
 skips what a false header claimed. A candidate that more bytes could complete waits.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from cobotwire.codec.events import Counters, Event, Frame, Message, Noise, NoiseReason
+from cobotwire.codec.events import Counters, Event, Frame, Noise, NoiseReason, Read
 from cobotwire.codec.interface import Data
-from cobotwire.codec.reference.check import check
-from cobotwire.codec.reference.decode import read
-from cobotwire.codec.reference.legal import Forms
-from cobotwire.table import FrameFormat
+from cobotwire.codec.reference.judge import Judge
 
 
 class ReferenceFramer:
     """Cuts frames out of a byte stream; see :class:`cobotwire.codec.interface.Framer`."""
 
-    def __init__(self, frame: FrameFormat, forms: Sequence[Forms], accept_unknown: bool) -> None:
-        self._frame = frame
-        self._forms = forms
-        self._accept_unknown = accept_unknown
-        self._lengths = set().union(*(form.lengths for form in forms))
-        if accept_unknown:
-            self._lengths |= set(range(frame.length(0), frame.maximum_length + 1))
+    def __init__(self, judge: Judge, read: Read) -> None:
+        self._judge = judge
+        self._read = read
         self._waiting = bytearray()
         self._offset = 0
         self._counters = Counters(0, {}, {}, 0)
@@ -39,12 +30,12 @@ class ReferenceFramer:
 
     @property
     def counters(self) -> Counters:
-        """What came so far, in numbers."""
+        """The counts since the framer was made."""
         counters = self._counters
         return counters._replace(frames=dict(counters.frames), noise=dict(counters.noise))
 
     def feed(self, data: Data) -> list[Event]:
-        """Take bytes; give what is certain by now."""
+        """Take bytes; return what is certain by now."""
         before = len(self._waiting)
         self._waiting += data
         fed = len(self._waiting) - before
@@ -52,31 +43,33 @@ class ReferenceFramer:
         return self._cut(at_end=False)
 
     def flush(self) -> list[Event]:
-        """Refute what still waits."""
+        """Refute what still waits; return the rest."""
         return self._cut(at_end=True)
 
     def _cut(self, at_end: bool) -> list[Event]:
         events: list[Event] = []
         data, start = bytes(self._waiting), 0
         while start < len(data):
-            verdict = self._judge(data, start)
+            verdict = self._judge.judge(data, start)
             if isinstance(verdict, int):
                 frame = data[start : start + verdict]
-                id = frame[self._frame.overhead]
+                id = frame[self._judge.frame.overhead]
                 events.append(Frame(self._offset + start, frame, id, self._read))
                 start += verdict
             elif verdict == "truncated" and not at_end:
                 break
             else:
-                self._add_noise(events, self._offset + start, data[start : start + 1], verdict)
-                start += 1
+                end = start + self._refuted_size(data, start, verdict)
+                self._add_noise(events, self._offset + start, data[start:end], verdict)
+                start = min(end, len(data))
         del self._waiting[:start]
         self._offset += start
         self._count(events)
         return events
 
-    def _read(self, data: bytes) -> Message:
-        return read(self._forms, data)
+    def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
+        """Return how many bytes a refuted candidate costs: one, whatever its header claimed."""
+        return 1
 
     def _count(self, events: list[Event]) -> None:
         _, frames, noise, resyncs = self._counters
@@ -88,38 +81,6 @@ class ReferenceFramer:
                 noise[event.reason] = noise.get(event.reason, 0) + len(event.data)
             self._in_noise = isinstance(event, Noise)
         self._counters = self._counters._replace(resyncs=resyncs)
-
-    def _judge(self, data: bytes, start: int) -> int | NoiseReason:
-        """The size of the frame at ``start``, or why there is none (``truncated``: not yet)."""
-        frame = self._frame
-        rest = data[start : start + frame.overhead + 256]
-        if not frame.header.startswith(rest[: len(frame.header)]):
-            return "no-header"
-        address = rest[len(frame.header) : frame.length_at]
-        if address and address[0] not in frame.addresses:
-            return "bad-address"
-        if len(rest) < frame.overhead:
-            return "truncated"
-        length = rest[frame.length_at]
-        if length not in self._lengths:
-            return "bad-length"
-        if len(rest) < frame.overhead + 1:
-            return "truncated"
-        fault = self._refute_id(rest[frame.overhead], length)
-        if fault is not None:
-            return fault
-        size = frame.overhead + length
-        if len(rest) < size:
-            return "truncated"
-        end = size - frame.check_size
-        return size if rest[end:size] == check(frame, rest[:end]) else "bad-check"
-
-    def _refute_id(self, id: int, length: int) -> NoiseReason | None:
-        if any(form.find(id, length) for form in self._forms):
-            return None
-        if any(id in form.by_id for form in self._forms):
-            return "bad-length"
-        return None if self._accept_unknown else "unknown-id"
 
     @staticmethod
     def _add_noise(events: list[Event], offset: int, data: bytes, reason: NoiseReason) -> None:

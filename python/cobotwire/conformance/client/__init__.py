@@ -1,7 +1,8 @@
-"""Does a client keep to the protocol? An arm that judges every byte which it is sent."""
+"""Test whether a client conforms to an edition: a simulated arm judges every byte."""
 
-from cobotwire.conformance.client.manners import MISDEEDS, Manners
+from cobotwire.conformance.client.delivery import FAULTS, faulty_replies
 from cobotwire.conformance.client.referee import Referee
-from cobotwire.conformance.client.script import Told
+from cobotwire.conformance.client.script import ScriptLine
+from cobotwire.conformance.client.suite import SUITE
 
-__all__ = ["MISDEEDS", "Manners", "Referee", "Told"]
+__all__ = ["FAULTS", "SUITE", "Referee", "ScriptLine", "faulty_replies"]

@@ -1,79 +1,74 @@
-"""An arm that judges who drives it: a peer to serve, and a report of all that it heard."""
+"""The referee: a simulated arm that judges the client that uses it, and writes a report."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from cobotwire import codec as codecs
-from cobotwire.conformance.client import script as scripts
-from cobotwire.conformance.client.manners import Manners
-from cobotwire.conformance.client.past import Heard, Past
-from cobotwire.conformance.client.rules import RULES
-from cobotwire.conformance.client.script import Script, Told
-from cobotwire.conformance.report import Exchange, Report, Result, Verdict
+from cobotwire.conformance.client.delivery import Delivery, faulty_replies
+from cobotwire.conformance.client.groups.frames import missing_text
+from cobotwire.conformance.client.history import History, Received
+from cobotwire.conformance.client.script import SCRIPT, Script, ScriptLine
+from cobotwire.conformance.client.suite import WITHOUT_SCRIPT
+from cobotwire.conformance.report import Cause, Report, Result, Verdict
+from cobotwire.conformance.tally import Observation, Tally
+from cobotwire.protocol.table import Table
 from cobotwire.session.device import DeviceEvent
-from cobotwire.sim.arm import SimulatedArm
-from cobotwire.table import Table
+from cobotwire.simulator.arm import SimulatedArm
+from cobotwire.simulator.faults import Scenario
 
-# As an arm on a USB line: 8.3 to 9 ms a round trip.
+# A round trip to an arm on USB takes 8.3 to 9 ms.
 DELAY_SECONDS = 0.008
 
 
-@dataclass(slots=True)
-class _Tally:
-    kept: int = 0
-    broken: int = 0
-    reason: str = ""
-    evidence: tuple[Exchange, ...] = ()
-
-
 class Referee:
-    """A peer (:mod:`cobotwire.sim.peer`) that answers as an arm and holds requests to the rules."""
+    """A peer that replies as an arm does and judges every request."""
 
     def __init__(
         self,
         table: Table,
         *,
         subject: str = "client",
-        manners: Manners | None = None,
-        script: Sequence[Told] | None = None,
+        scenario: Scenario | None = None,
+        script: Sequence[ScriptLine] | None = None,
         acks: bool = True,
         patience: float = 0.03,
-        places: Mapping[str, str] | None = None,
+        sources: Mapping[str, str] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Switch the arm on and wait for requests.
 
         Args:
-            table: the edition that the client must keep to.
+            table: the edition that the client must conform to.
             subject: what the report calls the client.
-            manners: how answers are delivered; left out: all of them after 8 ms.
-            script: what the client was told to send, if that is known.
-            acks: whether orders are acknowledged, where the edition says that they may be.
-            patience: seconds within which a reply comes or never.
-            places: where the spec says each command, for the report.
+            scenario: how replies are delivered; left out: all of them after 8 ms.
+            script: what the client is meant to send, if that is known.
+            acks: whether changes are acknowledged, where the edition allows it.
+            patience: seconds after which a reply never comes.
+            sources: where the spec defines each command, for the report.
             clock: gives the time in seconds.
 
         Raises:
-            UsageError: the script cannot be said in this edition.
+            UsageError: the edition cannot express a line of the script.
         """
         self._clock = clock
-        self._began = clock()
-        self._arm = SimulatedArm(table, clock=clock, watch=self._hear, acks=acks)
+        self._started = clock()
+        self._arm = SimulatedArm(table, clock=clock, on_event=self._receive, acks=acks)
         self._arm.state.powered = True
         codec = codecs.load(table)
-        self._past = Past(codec, patience)
-        self._manners = manners or Manners(DELAY_SECONDS)
+        self._history = History(codec, patience)
+        scenario = scenario or faulty_replies(DELAY_SECONDS)
+        self._delivery = Delivery(scenario, codec, self._now)
+        self._due = b""
         self._script = None if script is None else Script(codec, script)
-        self._places = places or {}
+        self._tally = Tally(sources)
         self._last_byte: float | None = None
-        self._tallies: dict[tuple[str, str], _Tally] = {}
+        self._arrival = 0.0
         self.requests = 0
-        began = datetime.now(UTC).isoformat(timespec="seconds")
-        self.report = Report("client", table.edition, subject, began)
+        started = datetime.now(UTC).isoformat(timespec="seconds")
+        self.report = Report("client", table.edition, subject, started)
 
     @property
     def silence(self) -> float | None:
@@ -82,97 +77,78 @@ class Referee:
 
     @property
     def wait(self) -> float | None:
-        """In how many seconds :meth:`flush` must be called if nothing is heard; None: never."""
-        now = self._now()
-        waits = [] if self._arm.wait is None else [self._arm.wait]
-        if self._manners.due is not None:
-            waits.append(max(0.0, self._manners.due - now))
-        return min(waits) if waits else None
+        """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
+        waits = [wait for wait in (self._arm.wait, self._delivery.wait) if wait is not None]
+        return min(waits, default=None)
 
     def receive(self, data: bytes) -> bytes:
-        """Hear ``data``; gives what is due by now."""
-        self._last_byte = self._now()
+        """Take bytes from the client; return what is due by now."""
+        self._last_byte = self._arrival = self._now()
         self._arm.receive(data)
-        return self._manners.give(self._now())
+        return self._take_due()
 
     def flush(self) -> bytes:
-        """Time has passed; gives what is due by now."""
-        now = self._now()
-        last = self._last_byte
-        if self._arm.wait is not None and last is not None and now >= last + self._arm.wait:
+        """Let time pass; return what is due by now."""
+        self._arrival = self._now()
+        silence = self.silence
+        if self._arm.wait is not None and silence is not None and silence >= self._arm.wait:
             self._arm.flush()
-        return self._manners.give(now)
+        return self._take_due()
 
     def finish(self) -> Report:
-        """The client has gone: judge what is left, and close the report."""
+        """Judge what is left after the client has disconnected, and close the report."""
+        self._arrival = self._now()
         self._arm.flush()
         if self._script is not None:
-            for finding in self._script.end():
-                self._broken(finding.rule, finding.command, finding.reason, ())
-        self._end_text()
+            for observation in self._script.end():
+                self._observe(observation)
+        due = self._history.missing_text()
+        if due is not None:
+            self._observe(missing_text(due), due)
         self.report.finished = self.requests > 0
-        self.report.results = self._results()
+        self.report.results = [*self._tally.results(), *self._script_results()]
         return self.report
 
     def _now(self) -> float:
-        return self._clock() - self._began
+        return self._clock() - self._started
 
-    def _hear(self, event: DeviceEvent, answer: bytes) -> None:
-        heard = Heard(self._now(), event, answer)
-        for rule in RULES:
-            judgement = rule.judge(self._past, heard)
-            name = heard.command.name if heard.command is not None else ""
-            if judgement:
-                self._broken(rule.id, name, judgement, self._past.evidence(heard))
-            elif judgement is not None and name:
-                self._tally(rule.id, name).kept += 1
+    def _take_due(self) -> bytes:
+        due, self._due = self._due + self._delivery.due(), b""
+        return due
+
+    def _receive(self, event: DeviceEvent, reply: bytes) -> None:
+        # Dated by arrival: the time that the arm takes to compute a reply must not count.
+        now = Received(self._arrival, event, reply)
+        for group in WITHOUT_SCRIPT:
+            for observation in group.body(self._history, now):
+                self._observe(observation, now)
         if self._script is not None:
-            for finding in self._script.hear(heard):
-                evidence = self._past.evidence(heard)
-                self._broken(finding.rule, finding.command, finding.reason, evidence)
-        self._remember(heard)
-
-    def _remember(self, heard: Heard) -> None:
-        self._past.heard.append(heard)
-        self._past.powered = self._arm.state.powered
-        if heard.command is not None:
+            for observation in self._script.judge(now):
+                self._observe(observation, now)
+        self._history.entries.append(now)
+        self._history.powered = self._arm.state.powered
+        if now.command is not None:
             self.requests += 1
-        self._manners.take(heard)
+        self._due += self._delivery.plan(now)
 
-    def _end_text(self) -> None:
-        due = self._past.text_due()
-        if due is not None and due.command is not None:
-            reason = f"{due.command.name} lacks the text behind it, or it cannot be read"
-            self._broken("text-follows", due.command.name, reason, self._past.evidence(due))
+    def _observe(self, observation: Observation, now: Received | None = None) -> None:
+        case, complaint, command = observation
+        name = (now.name if now else "") if command is None else command
+        if complaint:
+            evidence = self._history.evidence(now) if now else ()
+            self._tally.observe(case, name, complaint, evidence)
+        elif name:
+            # Only requests have a row in the report; a legal text has none.
+            self._tally.observe(case, name)
 
-    def _broken(self, rule: str, command: str, reason: str, evidence: tuple[Exchange, ...]) -> None:
-        tally = self._tally(rule, command)
-        tally.broken += 1
-        if tally.broken == 1:
-            tally.reason, tally.evidence = reason, evidence
-
-    def _tally(self, rule: str, command: str) -> _Tally:
-        return self._tallies.setdefault((rule, command), _Tally())
-
-    def _results(self) -> list[Result]:
-        known = {rule.id: (rule.what, rule.source) for rule in RULES}
-        known |= {rule: (what, "the script") for rule, what in scripts.RULES.items()}
+    def _script_results(self) -> list[Result]:
+        """Return the results for the script as a whole; its failures are by command."""
         results = []
-        for (rule, command), tally in self._tallies.items():
-            what, source = known[rule]
-            place = self._places.get(command, "")
-            results.append(_result(rule, command, tally, what, place or source))
-        told = self._script is not None
-        for rule, what in scripts.RULES.items():
-            if not any(broken == rule for broken, _ in self._tallies):
-                verdict = Verdict.PASS if told else Verdict.NOT_SUPPORTED
-                why = what if told else f"{what}: needs a script (--expect)"
-                results.append(Result(rule, "", verdict, why))
+        for case in SCRIPT.cases:
+            if self._script is None:
+                reason, cause = f"{case.purpose} It needs a script (--expect).", Cause.NOT_SUPPORTED
+                result = Result(case.id, "", Verdict.INCONCLUSIVE, reason, cause=cause)
+                results.append(result)
+            elif case not in self._tally.cases:
+                results.append(Result(case.id, "", Verdict.PASS, case.purpose))
         return results
-
-
-def _result(rule: str, command: str, tally: _Tally, what: str, source: str) -> Result:
-    if not tally.broken:
-        return Result(rule, command, Verdict.PASS, f"{tally.kept} times: {what}", (), source)
-    often = f"{tally.broken} times, first: " if tally.broken > 1 else ""
-    return Result(rule, command, Verdict.FAIL, f"{often}{tally.reason}", tally.evidence, source)

@@ -1,17 +1,19 @@
-"""Does a codec, in whatever language, keep to an edition? Asked over standard input and output."""
+"""Test whether a codec, in any language, conforms to an edition, over its standard input."""
 
 from cobotwire.conformance.codec.expected import Expectation, read_expectations
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer, Program
+from cobotwire.conformance.codec.questions.question import Question
 from cobotwire.conformance.codec.runner import Run
-from cobotwire.conformance.codec.trials import Trial, derive
+from cobotwire.conformance.codec.suite import SUITE, derive_questions
 
 __all__ = [
+    "SUITE",
     "Expectation",
     "Implementation",
     "NoAnswer",
     "Program",
+    "Question",
     "Run",
-    "Trial",
-    "derive",
+    "derive_questions",
     "read_expectations",
 ]

@@ -1,9 +1,9 @@
-"""Failures that are known and expected: a file with a name, or a pattern of names, a line.
+"""Read a file of known failures: each line has the name of a question, or a pattern of names.
 
-    decode-values/get_encoder/*   the library reads the word as signed
+    decode-values/get_encoder/*   the library reads the number as signed
 
-Everything behind the name is the reason, and there must be one. Empty lines, and lines that begin
-with ``#``, do not count.
+The reason follows the name and is required. Empty lines, and lines that begin with ``#``, do not
+count.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 
-from cobotwire.errors import UsageError
+from cobotwire.protocol.errors import UsageError
 
 
 @dataclass(slots=True)
 class Expectation:
-    """A line of the file; ``met`` counts the trials that failed as it says."""
+    """A line of the file; ``met`` counts the questions that failed as expected."""
 
     pattern: str
     reason: str
@@ -26,10 +26,10 @@ class Expectation:
 
 
 def read_expectations(text: str, name: str) -> list[Expectation]:
-    """The lines of a file called ``name``.
+    """Return the lines of a file called ``name``.
 
     Raises:
-        UsageError: a line has no reason, or a name stands there twice.
+        UsageError: a line has no reason, or repeats the name of another line.
     """
     found: dict[str, Expectation] = {}
     for number, line in enumerate(text.splitlines(), 1):
@@ -38,13 +38,17 @@ def read_expectations(text: str, name: str) -> list[Expectation]:
         pattern, _, reason = line.strip().partition(" ")
         place = f"{name}:{number}"
         if not reason.strip():
-            raise UsageError(place, line.strip(), "the name of a trial, a space, and the reason")
+            message = (
+                f"{place}: {line.strip()} has no reason; write the name, a space and the reason"
+            )
+            raise UsageError(place, message=message)
         if pattern in found:
-            raise UsageError(place, pattern, f"a name that is not in {found[pattern].place} too")
+            message = f"{place}: {pattern} is already in {found[pattern].place}"
+            raise UsageError(place, message=message)
         found[pattern] = Expectation(pattern, reason.strip(), place)
     return list(found.values())
 
 
 def expectation_of(expectations: list[Expectation], name: str) -> Expectation | None:
-    """The first line that speaks of a trial."""
+    """Return the first line that matches the name of a question."""
     return next((e for e in expectations if fnmatchcase(name, e.pattern)), None)

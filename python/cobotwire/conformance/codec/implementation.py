@@ -1,4 +1,4 @@
-"""The codec under test: something that answers questions, in this process or another one."""
+"""The codec under test, which answers questions in this process or another one."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import Any, Protocol, Self
 
-from cobotwire.conformance.codec.trials import Json
-from cobotwire.errors import CobotwireError, LinkError
+from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.protocol.errors import CobotwireError, LinkError
 
-# A line that is longer than this is no answer; nothing asked here needs a hundredth of it.
+# A longer line is not an answer: real answers need less than a hundredth of it.
 LONGEST_LINE = 1 << 20
-# The greeting may take so many times as long as an answer: the command has to start.
+# The greeting may take this many times as long as an answer, because the command has to start.
 STARTING = 3
 
 
@@ -35,33 +35,33 @@ class NoAnswer(CobotwireError):
 
 
 class Implementation(Protocol):
-    """A codec that is asked in the words of the line protocol."""
+    """A codec that answers the questions of the line protocol."""
 
     def ask(self, question: Json) -> Json:
-        """The answer to a question.
+        """Return the answer to a question.
 
         Raises:
-            NoAnswer: there is none. The next question finds it started anew.
+            NoAnswer: no valid answer came. The next question restarts the implementation.
         """
         ...
 
 
 class Program:
-    """A command that speaks the protocol on its standard input and output.
+    """A command that speaks the line protocol on its standard input and output.
 
-    It is started with the first question, and again after it has crashed or hung.
+    The first question starts it, and so does the next question after it has crashed or hung.
     """
 
     def __init__(self, command: Sequence[str], *, timeout: float = 10.0) -> None:
-        """Name the command; ``timeout`` is seconds for each answer; the greeting has more."""
+        """Name the command; ``timeout`` is in seconds for each answer, longer for the greeting."""
         self._command = list(command)
         self._timeout = timeout
         self._process: subprocess.Popen[bytes] | None = None
-        self._said = b""
+        self._output = b""
         self._count = 0
         self._greeting: Json | None = None
-        # Its complaints go to a file: a pipe that nobody reads would stop it when it is full.
-        self._complaints = tempfile.TemporaryFile()  # noqa: SIM115  (closed by __exit__)
+        # Diagnostics go to a file, because a pipe that nobody reads would block when it is full.
+        self._diagnostics = tempfile.TemporaryFile()  # noqa: SIM115  (closed by __exit__)
 
     def __enter__(self) -> Self:
         return self
@@ -73,19 +73,19 @@ class Program:
         traceback: TracebackType | None,
     ) -> None:
         self.stop()
-        self._complaints.close()
+        self._diagnostics.close()
 
     def ask(self, question: Json) -> Json:
-        """The answer to a question; see :meth:`Implementation.ask`.
+        """Return the answer to a question; see :meth:`Implementation.ask`.
 
         Raises:
             LinkError: the command cannot be started at all.
-            NoAnswer: as above.
+            NoAnswer: no valid answer came.
         """
         if question["do"] == "hello":
             self._greeting = question
         elif self._process is None and self._greeting is not None:
-            # A new process knows nothing: it is greeted as the first one was.
+            # A new process must be greeted like the first one.
             self.ask(self._greeting)
         process = self._process or self._start()
         self._count += 1
@@ -101,12 +101,12 @@ class Program:
 
     def stop(self) -> None:
         """End the command; the next question starts it again."""
-        process, self._process, self._said = self._process, None, b""
+        process, self._process, self._output = self._process, None, b""
         if process is None:
             return
         for stream in (process.stdin, process.stdout):
             if stream is not None:
-                # What it did not take any more need not reach it.
+                # An error is ignored: the command need not read the rest of its input.
                 stream.close() if stream is process.stdout else _close_quietly(stream)
         try:
             process.wait(0.5)
@@ -120,7 +120,7 @@ class Program:
                 self._command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=self._complaints,
+                stderr=self._diagnostics,
                 bufsize=0,
             )
         except OSError as error:
@@ -147,15 +147,15 @@ class Program:
     def _line(self, process: subprocess.Popen[bytes], seconds: float) -> bytes:
         assert process.stdout is not None
         deadline = time.monotonic() + seconds
-        while b"\n" not in self._said:
+        while b"\n" not in self._output:
             self._wait_for(process.stdout, selectors.EVENT_READ, deadline, seconds)
             chunk = process.stdout.read(65536)
             if chunk == b"":
                 raise NoAnswer("crashed", self._last_words(process))
-            self._said += chunk or b""
-            if len(self._said) > LONGEST_LINE:
+            self._output += chunk or b""
+            if len(self._output) > LONGEST_LINE:
                 raise NoAnswer("babbling", f"a line of more than {LONGEST_LINE} bytes")
-        line, _, self._said = self._said.partition(b"\n")
+        line, _, self._output = self._output.partition(b"\n")
         return line
 
     def _wait_for(self, stream: Any, event: int, deadline: float, given: float) -> None:
@@ -168,19 +168,19 @@ class Program:
         try:
             answer = json.loads(line)
         except ValueError:
-            raise NoAnswer("babbling", f"{line[:120]!r} is no JSON") from None
+            raise NoAnswer("babbling", f"{line[:120]!r} is not JSON") from None
         if not isinstance(answer, dict) or answer.get("id") != self._count:
-            raise NoAnswer("babbling", f"{line[:120]!r} is no answer to question {self._count}")
+            raise NoAnswer("babbling", f"{line[:120]!r} is not an answer to question {self._count}")
         return answer
 
     def _last_words(self, process: subprocess.Popen[bytes]) -> str:
         try:
             code = process.wait(1.0)
         except subprocess.TimeoutExpired:
-            return "it closed its output, and goes on running"
-        self._complaints.seek(0)
-        words = self._complaints.read().decode(errors="replace").strip().splitlines()
-        last = f"; its last words: {words[-1][:200]}" if words else ""
+            return "it closed its output but is still running"
+        self._diagnostics.seek(0)
+        words = self._diagnostics.read().decode(errors="replace").strip().splitlines()
+        last = f"; its last diagnostics: {words[-1][:200]}" if words else ""
         return f"it ended with code {code}{last}"
 
 

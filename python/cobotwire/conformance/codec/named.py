@@ -1,43 +1,45 @@
-"""Messages by the names of their fields, as the line protocol speaks of them."""
+"""Encode messages from fields by name, and return fields by name, for the line protocol."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from cobotwire.codec.interface import Codec, Message
-from cobotwire.errors import UsageError
-from cobotwire.table import Direction
+from cobotwire.codec.interface import Codec, DecodedMessage
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Direction
 
 
 def encode_named(
     codec: Codec, command: str, direction: Direction, fields: Mapping[str, Any]
 ) -> bytes:
-    """Build the frame of the first form that has just these fields and takes the values.
+    """Return the frame of the first variant with exactly these fields that allows the values.
 
     Raises:
-        UsageError: no form does.
+        UsageError: no variant has these fields, or none allows the values.
     """
-    refusal: UsageError | None = None
-    for index, form in enumerate(codec.table.command(command).layouts(direction)):
-        names = [field.name for field in form.fields]
+    rejection: UsageError | None = None
+    for index, variant in enumerate(codec.table.command(command).variants(direction)):
+        names = [field.name for field in variant.fields]
         if set(names) != set(fields):
             continue
         values = [
             bool(fields[field.name])
             if field.kind == "flag" and fields[field.name] in (0, 1)
             else fields[field.name]
-            for field in form.fields
+            for field in variant.fields
         ]
         try:
-            return codec.encode(command, direction, values, form=index)
+            return codec.encode(command, direction, values, variant=index)
         except UsageError as error:
-            refusal = refusal or error
-    raise refusal or UsageError(f"{command} {direction}: fields", sorted(fields), "those of a form")
+            rejection = rejection or error
+    raise rejection or UsageError(
+        f"{command} {direction}: fields", sorted(fields), "those of a variant"
+    )
 
 
-def plain_fields(message: Message) -> dict[str, Any]:
-    """The values of a message by name, as JSON has them: flags and enums as whole numbers."""
+def plain_fields(message: DecodedMessage) -> dict[str, Any]:
+    """Return the values of a message by name, as JSON values: flags and enums as integers."""
     return {name: _plain(value) for name, value in message.fields.items()}
 
 

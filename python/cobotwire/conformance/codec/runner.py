@@ -1,68 +1,60 @@
-"""Asks an implementation every trial and reports which rules it keeps, by command."""
+"""Ask an implementation every question, and report a verdict on each test case by command."""
 
 from __future__ import annotations
 
 import json
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from cobotwire.conformance.codec.expected import Expectation, expectation_of
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer
-from cobotwire.conformance.codec.judge import ABILITIES, RULES, Finding, judge
-from cobotwire.conformance.codec.trials import Trial
-from cobotwire.conformance.report import Exchange, Report, Result, Verdict
-from cobotwire.errors import UsageError
-from cobotwire.table import Table
+from cobotwire.conformance.codec.judge import ABILITIES, judge
+from cobotwire.conformance.codec.questions.question import Question
+from cobotwire.conformance.codec.suite import ANSWERS, EXPECTED_FAILURE
+from cobotwire.conformance.report import Cause, Exchange, Report, Result, Verdict
+from cobotwire.conformance.suite import TestCase
+from cobotwire.conformance.tally import Evidence, Observation, Tally
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Table
 
 PROTOCOL = 1
-# An implementation that ended or hung so often is not asked any more.
+# After this many crashes or hangs, no more questions are asked.
 MOST_CRASHES = 5
-SOURCE = "docs/codec-protocol.md"
-
-
-@dataclass(slots=True)
-class _Tally:
-    """What became of the trials of one rule and command."""
-
-    asked: int = 0
-    refused: str = ""
-    excused: str = ""
-    complaints: list[tuple[Trial, str, tuple[Exchange, ...]]] = field(default_factory=list)
-    unstable: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Greeting:
-    """What an implementation says of itself."""
+    """The name and the abilities that an implementation reports."""
 
     name: str
     can: frozenset[str]
 
 
 def greet(implementation: Implementation, table: Table) -> Greeting:
-    """Ask who it is.
+    """Ask an implementation for its name and abilities.
 
     Raises:
-        UsageError: it speaks another protocol or edition, or its greeting is none.
-        NoAnswer: it says nothing.
+        UsageError: it has another protocol or edition, or its greeting is malformed.
+        NoAnswer: it does not answer.
     """
     hello = implementation.ask({"do": "hello", "protocol": PROTOCOL, "edition": table.edition})
     if "error" in hello:
-        raise UsageError("implementation", hello["error"], "one that takes the greeting")
+        message = f"the implementation rejected the greeting: {hello['error']}"
+        raise UsageError("implementation", message=message)
     if hello.get("protocol") != PROTOCOL:
         raise UsageError("implementation: protocol", hello.get("protocol"), str(PROTOCOL))
     if hello.get("edition") != table.edition:
         raise UsageError("implementation: edition", hello.get("edition"), table.edition)
     can = hello.get("can")
     if not isinstance(can, list) or not all(isinstance(word, str) for word in can):
-        raise UsageError("implementation: can", can, "a list of words, as docs/codec-protocol.md")
+        raise UsageError("implementation: can", can, "a list of words (docs/codec-protocol.md)")
     return Greeting(str(hello.get("name", "unnamed")), frozenset(can))
 
 
 class Run:
-    """One run; ``report`` is readable at any time, and says when it is not finished."""
+    """One run; ``report`` is readable at any time; it is marked as unfinished until the end."""
 
     def __init__(
         self,
@@ -71,17 +63,17 @@ class Run:
         *,
         expected: Sequence[Expectation] = (),
         repeat: int = 1,
-        places: Mapping[str, str] | None = None,
+        sources: Mapping[str, str] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Greet the implementation.
 
         Args:
-            table: the edition that it must keep to.
-            implementation: who is asked.
+            table: the edition that it must conform to.
+            implementation: the codec under test.
             expected: failures that are known.
-            repeat: how often each trial is asked; answers that differ are unstable.
-            places: where the spec says each command, for the report.
+            repeat: how often each question is asked; answers that differ are unstable.
+            sources: where the spec defines each command, for the report.
             clock: gives the time in seconds, for the evidence.
 
         Raises:
@@ -91,24 +83,23 @@ class Run:
         self._implementation = implementation
         self._expected = list(expected)
         self._repeat = repeat
-        self._places = places or {}
         self._clock = clock
-        self._began = clock()
+        self._started = clock()
         self._crashes = 0
-        self._tallies: dict[tuple[str, str], _Tally] = {}
+        self._tally = Tally(sources)
         self.greeting = greet(implementation, table)
-        began = datetime.now(UTC).isoformat(timespec="seconds")
-        self.report = Report("codec", table.edition, self.greeting.name, began)
+        started = datetime.now(UTC).isoformat(timespec="seconds")
+        self.report = Report("codec", table.edition, self.greeting.name, started)
 
-    def ask_all(self, trials: Iterable[Trial], *, until_failure: bool = False) -> Report:
-        """Ask every trial; with ``until_failure`` no more once one has failed.
+    def ask_all(self, questions: Iterable[Question], *, until_failure: bool = False) -> Report:
+        """Ask every question; with ``until_failure`` stop after the first failure.
 
-        The report holds what is known so far, whatever ends this.
+        The report holds the results so far, even if an exception ends the run.
         """
         try:
-            for trial in trials:
-                self._try(trial)
-                if until_failure and any(t.complaints for t in self._tallies.values()):
+            for question in questions:
+                self._ask(question)
+                if until_failure and self._tally.failed:
                     break
             else:
                 self.report.finished = True
@@ -116,95 +107,87 @@ class Run:
             self.report.results = self._results()
         return self.report
 
-    def _try(self, trial: Trial) -> None:
-        if trial.needs not in self.greeting.can:
-            self._tally(trial.rule, trial).refused = f"it does not offer to {trial.needs}"
+    def _ask(self, question: Question) -> None:
+        if question.needs not in self.greeting.can:
+            self._unsupported(question, f"it does not offer to {question.needs}")
             return
         if self._crashes >= MOST_CRASHES:
-            wrong = f"not asked: it had ended or hung {MOST_CRASHES} times"
-            self._note(trial, [Finding("answers", wrong)], ())
+            complaint = f"not asked: it had ended or hung {MOST_CRASHES} times"
+            self._observe(question, [Observation(ANSWERS, complaint)], ())
             return
-        first: list[Finding] | None = None
+        first: list[Observation] | None = None
         for _ in range(self._repeat):
-            findings, evidence = self._once(trial)
+            found, evidence = self._ask_once(question)
             if first is None:
-                first = findings
-                self._note(trial, findings, evidence)
-            elif findings != first:
-                self._tally(trial.rule, trial).unstable = f"{trial.name}: {first} then {findings}"
+                first = found
+                self._observe(question, found, evidence)
+            elif found != first:
+                reason = f"{question.name}: {_in_words(first)}; then {_in_words(found)}"
+                self._tally.excuse(question.case, question.command, Cause.UNSTABLE, reason)
 
-    def _once(self, trial: Trial) -> tuple[list[Finding], tuple[Exchange, ...]]:
-        asked_at = self._clock() - self._began
-        question = Exchange(asked_at, "sent", json.dumps(trial.ask).encode())
+    def _ask_once(self, question: Question) -> tuple[list[Observation], Evidence]:
+        at = self._clock() - self._started
+        sent = Exchange(at, "sent", json.dumps(question.ask).encode())
         try:
-            answer = self._implementation.ask(trial.ask)
+            answer = self._implementation.ask(question.ask)
         except NoAnswer as error:
             self._crashes += 1
-            return [Finding("answers", str(error))], (question,)
-        heard_at = self._clock() - self._began
-        heard = Exchange(heard_at, "heard", json.dumps(answer).encode()[:2000])
+            return [Observation(ANSWERS, str(error))], (sent,)
+        at = self._clock() - self._started
+        evidence = (sent, Exchange(at, "received", json.dumps(answer).encode()[:2000]))
         if "unsupported" in answer:
-            self._tally(trial.rule, trial).refused = str(answer["unsupported"])
-            return [], (question, heard)
-        findings = list(judge(self._table, trial, answer, self.greeting.can))
-        return [Finding("answers", ""), *findings], (question, heard)
+            self._unsupported(question, str(answer["unsupported"]))
+            return [], evidence
+        found = judge(self._table, question, answer, self.greeting.can)
+        return [Observation(ANSWERS), *found], evidence
 
-    def _note(
-        self, trial: Trial, findings: Sequence[Finding], evidence: tuple[Exchange, ...]
+    def _unsupported(self, question: Question, reason: str) -> None:
+        self._tally.expect(question.case, question.command, reason)
+
+    def _observe(
+        self, question: Question, found: Sequence[Observation], evidence: Evidence
     ) -> None:
-        wrong = [finding for finding in findings if finding.complaint]
-        known = expectation_of(self._expected, trial.name) if self._expected else None
-        if known is not None and findings:
-            if wrong:
+        failed = any(observation.complaint for observation in found)
+        known = expectation_of(self._expected, question.name) if self._expected else None
+        if known is not None and found:
+            if failed:
                 known.met += 1
             else:
-                known.passed.append(trial.name)
-        for finding in findings:
-            tally = self._tally(finding.rule, trial)
-            tally.asked += 1
-            if finding.complaint and known is not None:
-                tally.excused = f"expected to fail ({known.place}): {known.reason}"
-            elif finding.complaint:
-                tally.complaints.append((trial, finding.complaint, evidence))
-
-    def _tally(self, rule: str, trial: Trial) -> _Tally:
-        command = "" if rule == "answers" else trial.command
-        return self._tallies.setdefault((rule, command), _Tally())
+                known.passed.append(question.name)
+        for case, complaint, _ in found:
+            command = "" if case is ANSWERS else question.command
+            if complaint and known is not None:
+                reason = f"expected to fail ({known.place}): {known.reason}"
+                self._tally.excuse(case, command, Cause.NOT_SUPPORTED, reason)
+            else:
+                text = f"{question.name}: {complaint}" if complaint else ""
+                self._tally.observe(case, command, text, evidence)
 
     def _results(self) -> list[Result]:
-        results = [
-            _result(rule, command, tally, self._places.get(command, SOURCE))
-            for (rule, command), tally in self._tallies.items()
-        ]
-        for rule, ability in ABILITIES.items():
+        results = self._tally.results()
+        for case, ability in ABILITIES.items():
             if ability not in self.greeting.can:
-                why = f"it does not offer to tell {ability}"
-                results.append(Result(rule, "", Verdict.NOT_SUPPORTED, why, (), SOURCE))
-        return results + [_unexpected(known) for known in self._expected if _wrong(known)]
+                results.append(_lacking(case, f"it does not offer to report {ability}"))
+        return results + [_outdated(known) for known in self._expected if _wrong(known)]
 
 
-def _result(rule: str, command: str, tally: _Tally, source: str) -> Result:
-    if tally.complaints:
-        trial, complaint, evidence = tally.complaints[0]
-        failed = f"{len(tally.complaints)} of {tally.asked} failed; {trial.name}: {complaint}"
-        return Result(rule, command, Verdict.FAIL, failed, evidence, source)
-    if tally.unstable:
-        return Result(rule, command, Verdict.UNSTABLE, tally.unstable, (), source)
-    if tally.excused or (tally.refused and not tally.asked):
-        why = tally.excused or tally.refused
-        return Result(rule, command, Verdict.NOT_SUPPORTED, why, (), source)
-    kept = f"{tally.asked} trials: {RULES[rule]}"
-    return Result(rule, command, Verdict.PASS, kept, (), source)
+def _lacking(case: TestCase, reason: str) -> Result:
+    verdict, cause = Verdict.INCONCLUSIVE, Cause.NOT_SUPPORTED
+    return Result(case.id, "", verdict, reason, (), case.source, cause)
+
+
+def _in_words(found: Sequence[Observation]) -> str:
+    return ", ".join(o.complaint for o in found if o.complaint) or "no complaint"
 
 
 def _wrong(known: Expectation) -> bool:
     return bool(known.passed) or not known.met
 
 
-def _unexpected(known: Expectation) -> Result:
-    """A line that says more than is true would hide the next failure."""
+def _outdated(known: Expectation) -> Result:
+    """Return a failure, because an outdated line would hide the next failure."""
     if known.passed:
-        why = f"{known.place}: {len(known.passed)} passed, among them {known.passed[0]}"
+        reason = f"{known.place}: {len(known.passed)} passed, among them {known.passed[0]}"
     else:
-        why = f"{known.place}: no trial is called {known.pattern}, or none was asked"
-    return Result("expected-failure", "", Verdict.FAIL, why, (), known.place)
+        reason = f"{known.place}: no question that was asked matches {known.pattern}"
+    return Result(EXPECTED_FAILURE.id, "", Verdict.FAIL, reason, (), known.place)

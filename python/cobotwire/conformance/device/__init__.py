@@ -1,21 +1,26 @@
-"""The device tester: tests derived from an edition's table, run over a line."""
+"""Test whether a device conforms to an edition: test cases for its commands, over a transport."""
 
-from cobotwire.conformance.device.asking import Waits
-from cobotwire.conformance.device.catalogue import RULES, Rule
-from cobotwire.conformance.device.leave import CLASSES, EVERYTHING, Leave, words, workspace_of
-from cobotwire.conformance.device.line import Line
+from cobotwire.conformance.device.connection import DeviceConnection
+from cobotwire.conformance.device.permissions import (
+    ALL_PERMISSIONS,
+    PERMISSIONS,
+    Permissions,
+    parse_workspace,
+    words,
+)
+from cobotwire.conformance.device.requester import Timing
+from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.device.tester import Step, Tester
 
 __all__ = [
-    "CLASSES",
-    "EVERYTHING",
-    "RULES",
-    "Leave",
-    "Line",
-    "Rule",
+    "ALL_PERMISSIONS",
+    "PERMISSIONS",
+    "SUITE",
+    "DeviceConnection",
+    "Permissions",
     "Step",
     "Tester",
-    "Waits",
+    "Timing",
+    "parse_workspace",
     "words",
-    "workspace_of",
 ]

@@ -1,4 +1,4 @@
-"""A whole run: every trial of every command that is allowed, and a report."""
+"""A whole run: every group for every command that the permissions allow, and a report."""
 
 from __future__ import annotations
 
@@ -8,48 +8,47 @@ from datetime import UTC, datetime
 from typing import NamedTuple
 
 from cobotwire import codec as codecs
-from cobotwire.conformance.device import trials
-from cobotwire.conformance.device.asking import Waits
-from cobotwire.conformance.device.bench import Bench
-from cobotwire.conformance.device.ending import Hopeless, Unsupported
-from cobotwire.conformance.device.leave import Leave
-from cobotwire.conformance.device.line import Line
-from cobotwire.conformance.device.trial import TRIALS, Case, Trial
-from cobotwire.conformance.report import Report, Result, Verdict
-from cobotwire.errors import UsageError
-from cobotwire.table import Command, Table
-
-assert trials
+from cobotwire.conformance.device.connection import DeviceConnection
+from cobotwire.conformance.device.device import Device, EnoughFailures, NotSupported
+from cobotwire.conformance.device.permissions import Permissions
+from cobotwire.conformance.device.probe import Body, Probe, needed
+from cobotwire.conformance.device.requester import Timing
+from cobotwire.conformance.device.suite import SUITE
+from cobotwire.conformance.report import Cause, Report, Result, Verdict
+from cobotwire.conformance.suite import Group
+from cobotwire.conformance.tally import Tally, merged
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command, Table
 
 Progress = Callable[["Step", int, int], None]
 
 
 class Step(NamedTuple):
-    """A trial of a command; of the line as a whole where there is none."""
+    """A group and the command that it runs for; None: the line as a whole."""
 
-    trial: Trial
+    group: Group[Body]
     command: Command | None
 
     @property
     def name(self) -> str:
-        """For people: the command, and what is tried."""
-        return f"{self.command.name if self.command else 'the line'}: {self.trial.name}"
+        """The command and the group, for people."""
+        return f"{self.command.name if self.command else 'the line'}: {self.group.name}"
 
 
 class Tester:
-    """Tests the device at the other end of a line against an edition."""
+    """Tests the device at the other end of a connection against an edition."""
 
-    # So that pytest does not take it for a class of tests where it is imported.
+    # pytest would take the class for a class of tests.
     __test__ = False
 
     def __init__(
         self,
-        line: Line,
+        connection: DeviceConnection,
         table: Table,
         *,
-        leave: Leave | None = None,
-        places: Mapping[str, str] | None = None,
-        waits: Waits | None = None,
+        permissions: Permissions | None = None,
+        sources: Mapping[str, str] | None = None,
+        timing: Timing | None = None,
         repeat: int = 1,
         retries: int = 0,
         optional: frozenset[str] = frozenset(),
@@ -57,51 +56,51 @@ class Tester:
         """Prepare a run; nothing is sent.
 
         Args:
-            line: the line to the device.
-            table: the edition that it shall keep to.
-            leave: what may be sent beside queries; left out: nothing.
-            places: where the spec says each command, by name.
-            waits: how long is listened.
-            repeat: how often each trial is run; where the runs differ, the verdict is unstable.
-            retries: how often a query is asked again where nothing comes.
-            optional: commands that the device may lack: silence on them is not supported.
+            connection: the connection to the device.
+            table: the edition that the device must conform to.
+            permissions: what may be sent in addition to queries; left out: nothing.
+            sources: where the spec defines each command, by name.
+            timing: how long the tester listens.
+            repeat: how often each body is run; if the runs differ, the verdict is unstable.
+            retries: how often a query is repeated if nothing comes.
+            optional: commands that the device may lack: if it is silent, they are not supported.
         """
-        self.line = line
+        self.connection = connection
         self.table = table
-        self.repeat = repeat
-        self.optional = optional
-        self.bench = Bench(
-            line,
+        self._repeat = repeat
+        self._optional = optional
+        self._sources = sources
+        self.device = Device(
+            connection,
             codecs.load(table),
-            leave=leave or Leave(),
-            places=places or {},
-            waits=waits or Waits(),
+            permissions=permissions or Permissions(),
+            timing=timing or Timing(),
             retries=retries,
         )
-        began = datetime.now(UTC).isoformat(timespec="seconds")
-        self.report = Report("device", table.edition, line.name, began)
-        self.report.reply_seconds = self.bench.reply_seconds
+        started = datetime.now(UTC).isoformat(timespec="seconds")
+        self.report = Report("device", table.edition, connection.name, started)
+        self.report.reply_seconds = self.device.reply_seconds
         self.report.deadline_seconds = {c.name: c.deadline_ms / 1000 for c in table.commands}
 
     def steps(self) -> Iterator[Step]:
-        """The trials in the order of a run."""
-        for trial in TRIALS:
-            if trial.applies is None:
-                yield Step(trial, None)
+        """Yield the steps in the order of a run."""
+        for group in SUITE.groups:
+            if group.selects is None:
+                yield Step(group, None)
                 continue
             for command in self.table.commands:
-                if trial.applies(self.table, command):
-                    yield Step(trial, command)
+                if group.selects(self.table, command):
+                    yield Step(group, command)
 
     def run(self, progress: Progress | None = None) -> Report:
-        """Run everything that is allowed; whatever ends it, what was changed is set back.
+        """Run everything that is permitted; restore all changes, however the run ends.
 
         Raises:
-            LinkError: the link is gone; the report holds what was found until then.
+            LinkError: the connection is lost; the report holds what was found until then.
         """
         steps = list(self.steps())
         try:
-            self._ask_version()
+            self._read_version()
             for index, step in enumerate(steps):
                 if progress is not None:
                     progress(step, index, len(steps))
@@ -114,75 +113,68 @@ class Tester:
         self.report.finished = True
         return self.report
 
-    def _halt(self) -> None:
-        """Stop the arm; where it is not at rest, it is not sent anywhere."""
-        self.bench.undo_last.clear()
-        stop = self.bench.command("stop")
-        if stop is not None and self.bench.leave.workspace:
-            self.bench.ask(stop)
-
     def end(self) -> None:
-        """Set back what is still to be; then what was changed for the whole run: power and pose.
+        """Restore what is still changed; then what was changed for the whole run: power and pose.
 
-        The arm may be on its way back: an interrupt stops it too.
+        An interrupt also stops an arm that is on its way back.
         """
         try:
-            self.bench.set_back(self.bench.undo)
-            self.bench.set_back(self.bench.undo_last)
+            self.device.restore(self.device.restore_after_body)
+            self.device.restore(self.device.restore_at_end)
         except KeyboardInterrupt:
             self._halt()
-            self.bench.set_back(self.bench.undo)
+            self.device.restore(self.device.restore_after_body)
             raise
 
-    def _ask_version(self) -> None:
-        query = self.bench.command("version")
-        fields = None if query is None else self.bench.read(query)
-        if fields is not None:
-            self.report.firmware = str(next(iter(fields.values())))
+    def missing(self, step: Step) -> str:
+        """Return the permissions that a step needs and the run lacks; empty: none."""
+        return self.device.permissions.missing(needed(step.group, step.command))
 
     def results(self, step: Step) -> list[Result]:
-        """Run one step as often as is asked for."""
-        missing = self.bench.leave.lacks(step.trial.needs(step.command))
+        """Run one step as often as the run repeats steps."""
+        missing = self.missing(step)
         if missing:
-            return Case(self.bench, step.command, step.trial.rules).not_allowed(missing)
-        return merged([self._once(step) for _ in range(self.repeat)])
+            return self._probe(step).not_permitted(missing)
+        return merged([self._run_once(step) for _ in range(self._repeat)])
 
-    def _once(self, step: Step) -> list[Result]:
-        case = Case(self.bench, step.command, step.trial.rules)
+    def _probe(self, step: Step) -> Probe:
+        return Probe(self.device, step.group, step.command, Tally(self._sources))
+
+    def _run_once(self, step: Step) -> list[Result]:
+        probe = self._probe(step)
         unsupported = ""
         try:
-            step.trial.run(case)
-        except Hopeless:
+            step.group.body(probe)
+        except EnoughFailures:
             pass
-        except Unsupported as reason:
+        except NotSupported as reason:
             unsupported = str(reason)
         except UsageError as error:
-            unsupported = f"what the device told cannot be sent to it: {error}"
+            unsupported = f"the device reported a value that cannot be sent to it: {error}"
         except KeyboardInterrupt:
             self._halt()
             raise
         finally:
-            self.bench.set_back(self.bench.undo)
-        return [self._excused(result) for result in case.results(unsupported)]
+            self.device.restore(self.device.restore_after_body)
+        return [self._excused(result) for result in probe.results(unsupported)]
+
+    def _halt(self) -> None:
+        """Stop the arm. An arm that has not come to rest is not sent back."""
+        self.device.restore_at_end.clear()
+        stop = self.device.command("stop")
+        if stop is not None and self.device.permissions.workspace:
+            self.device.request(stop)
+
+    def _read_version(self) -> None:
+        query = self.device.command("version")
+        fields = None if query is None else self.device.read(query)
+        if fields is not None:
+            self.report.firmware = str(next(iter(fields.values())))
 
     def _excused(self, result: Result) -> Result:
-        """A command that the device may lack does not fail by silence."""
-        if result.command not in self.optional or result.verdict is not Verdict.FAIL:
+        """Turn a failure into not supported if the device may lack the command and was silent."""
+        if result.command not in self._optional or result.verdict is not Verdict.FAIL:
             return result
-        if self.bench.reply_seconds.get(result.command):
+        if self.device.reply_seconds.get(result.command):
             return result
-        return replace(result, verdict=Verdict.NOT_SUPPORTED)
-
-
-def merged(runs: list[list[Result]]) -> list[Result]:
-    """One result a rule; where the runs differ, it is unstable and tells of the worst."""
-    found = []
-    for same in zip(*runs):
-        verdicts = {result.verdict for result in same}
-        worst = next((r for r in same if r.verdict is Verdict.FAIL), same[0])
-        if len(verdicts) > 1:
-            times = sum(result.verdict is worst.verdict for result in same)
-            reason = f"{times} of {len(same)} runs: {worst.verdict}. {worst.reason}"
-            worst = replace(worst, verdict=Verdict.UNSTABLE, reason=reason)
-        found.append(worst)
-    return found
+        return replace(result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_SUPPORTED)

@@ -1,4 +1,4 @@
-"""A report in the forms that people and programs read, and two reports side by side."""
+"""Write a report as JSON, JUnit XML or HTML, read it back, and compare two reports."""
 
 from cobotwire.conformance.reports.as_html import to_html
 from cobotwire.conformance.reports.as_json import from_json, to_json

@@ -1,4 +1,4 @@
-"""Reports as one HTML page that needs nothing else: the matrix, and what stands behind it."""
+"""Write reports as one self-contained HTML page: the matrix, and the evidence for each cell."""
 
 from __future__ import annotations
 
@@ -7,25 +7,31 @@ from collections.abc import Iterator
 from importlib.resources import files
 from xml.etree.ElementTree import Element
 
-from cobotwire.conformance.report import Report, Result, Verdict
+from cobotwire.conformance.report import Cause, Report, Result, Verdict
 from cobotwire.conformance.reports.element import element, page
-from cobotwire.conformance.reports.evidence import said
-from cobotwire.conformance.reports.matrix import LINE, Cell, Place, commands, matrix, rules
+from cobotwire.conformance.reports.evidence import shown
+from cobotwire.conformance.reports.matrix import (
+    LINE,
+    Cell,
+    Place,
+    case_ids,
+    commands,
+    matrix,
+)
 from cobotwire.conformance.reports.times import times_plot
 
 SIGNS = {
-    Verdict.PASS: "✓",
-    Verdict.FAIL: "✗",
-    Verdict.UNSTABLE: "≈",
-    Verdict.NOT_ALLOWED: "·",
-    Verdict.NOT_SUPPORTED: "○",
+    (Verdict.PASS, Cause.NONE): "✓",
+    (Verdict.FAIL, Cause.NONE): "✗",
+    (Verdict.FAIL, Cause.UNSTABLE): "≈",
+    (Verdict.INCONCLUSIVE, Cause.NOT_PERMITTED): "·",
+    (Verdict.INCONCLUSIVE, Cause.NOT_SUPPORTED): "○",
 }
 HERE = files("cobotwire.conformance.reports")
-BAD = (Verdict.FAIL, Verdict.UNSTABLE)
 
 
 def to_html(report: Report) -> str:
-    """A report as a page. It loads nothing, so that it can be kept, mailed and archived."""
+    """Return a report as a page. It loads nothing, so that it can be mailed and archived."""
     cells = matrix(report)
     title = f"{report.kind} conformance: {report.subject}"
     viewport = element("meta", name="viewport", content="width=device-width, initial-scale=1")
@@ -42,7 +48,6 @@ def to_html(report: Report) -> str:
 
 
 def _file(name: str) -> str:
-    """What the page carries in itself."""
     return (HERE / name).read_text(encoding="utf-8")
 
 
@@ -50,25 +55,23 @@ def _head(report: Report, title: str) -> Iterator[Element]:
     yield element("h1", title)
     facts = {
         "edition": report.edition,
-        "firmware": report.firmware or "not told",
-        "began": report.began,
+        "firmware": report.firmware or "unknown",
+        "started": report.started,
         "results": _counts(report),
     }
     terms = (part for name, text in facts.items() for part in (("dt", name), ("dd", text)))
     yield element("dl", *(element(tag, text) for tag, text in terms))
     if not report.finished:
-        yield _banner(
-            "unstable", "The run did not come to its end: what is not here was not tested."
-        )
+        yield _banner("unstable", "The run was interrupted: anything not listed was not tested.")
     elif report.conforms:
-        yield _banner("pass", "It conforms, as far as it was tested.")
+        yield _banner("pass", "It conforms as far as it was tested.")
     else:
         yield _banner("fail", "It does not conform.")
 
 
 def _counts(report: Report) -> str:
-    counts = Counter(result.verdict for result in report.results)
-    return ", ".join(f"{counts[v]} {v.value}" for v in Verdict if counts[v]) or "none"
+    counts = Counter(result.outcome for result in report.results)
+    return ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "none"
 
 
 def _banner(kind: str, text: str) -> Element:
@@ -76,25 +79,22 @@ def _banner(kind: str, text: str) -> Element:
 
 
 def _failures(report: Report, cells: dict[Place, Cell]) -> Iterator[Element]:
-    bad = [cell for cell in cells.values() if cell.verdict in BAD]
-    if bad:
-        yield element("h2", f"What is wrong ({len(bad)})")
-    for cell in bad:
-        result = next(result for result in cell.results if result.verdict is cell.verdict)
-        link = element("a", f"{_name(cell)}, {cell.rule}", href=f"#{_anchor(cell)}")
-        verdict = element(
-            "span", f"{cell.verdict.value} ", class_=f"verdict {_class(cell.verdict)}"
-        )
-        yield element("p", verdict, link, element("br"), result.reason, class_="reason")
+    failed = [cell for cell in cells.values() if cell.verdict is Verdict.FAIL]
+    if failed:
+        yield element("h2", f"Failures ({len(failed)})")
+    for cell in failed:
+        link = element("a", f"{_name(cell)}, {cell.case}", href=f"#{_anchor(cell)}")
+        verdict = element("span", f"{cell.outcome} ", class_=f"verdict {_class(cell)}")
+        yield element("p", verdict, link, element("br"), cell.gravest.reason, class_="reason")
 
 
 def _matrix(cells: dict[Place, Cell]) -> Iterator[Element]:
-    columns = rules(cells)
-    heads = (element("th", element("span", rule), scope="col") for rule in columns)
+    columns = case_ids(cells)
+    heads = (element("th", element("span", case), scope="col") for case in columns)
     rows = []
     for command in commands(cells):
         name = element("th", element("code", command or "the line"), scope="row")
-        found = (cells.get((command, rule)) for rule in columns)
+        found = (cells.get((command, case)) for case in columns)
         rows.append(element("tr", name, *map(_cell, found)))
     table = element(
         "table",
@@ -102,8 +102,8 @@ def _matrix(cells: dict[Place, Cell]) -> Iterator[Element]:
         element("tbody", *rows),
         class_="matrix",
     )
-    yield element("h2", "Commands and rules")
-    legend = ", ".join(f"{sign} {verdict.value}" for verdict, sign in SIGNS.items())
+    yield element("h2", "Commands and test cases")
+    legend = ", ".join(f"{sign} {cause or verdict}" for (verdict, cause), sign in SIGNS.items())
     yield element("p", legend, class_="faint")
     yield element("div", table, class_="scroll")
 
@@ -113,11 +113,11 @@ def _cell(cell: Cell | None) -> Element:
         return element("td")
     link = element(
         "a",
-        SIGNS[cell.verdict],
+        SIGNS[cell.verdict, cell.gravest.cause],
         href=f"#{_anchor(cell)}",
-        title=f"{_name(cell)}, {cell.rule}: {cell.verdict.value}",
+        title=f"{_name(cell)}, {cell.case}: {cell.outcome}",
     )
-    return element("td", link, class_=_class(cell.verdict))
+    return element("td", link, class_=_class(cell))
 
 
 def _times(report: Report) -> Iterator[Element]:
@@ -131,12 +131,12 @@ def _times(report: Report) -> Iterator[Element]:
 
 
 def _details(report: Report, cell: Cell) -> Element:
-    """A cell's results; what is wrong is unfolded."""
-    verdict = element("span", cell.verdict.value, class_=f"verdict {_class(cell.verdict)}")
-    summary = element("summary", verdict, f" {_name(cell)}, {cell.rule}")
+    """Return the results of a cell; failures are unfolded."""
+    verdict = element("span", cell.outcome, class_=f"verdict {_class(cell)}")
+    summary = element("summary", verdict, f" {_name(cell)}, {cell.case}")
     parts = [part for result in cell.results for part in _result(report, result)]
     found = element("details", summary, *parts, id=_anchor(cell))
-    if cell.verdict in BAD:
+    if cell.verdict is Verdict.FAIL:
         found.set("open", "open")
     return found
 
@@ -144,13 +144,13 @@ def _details(report: Report, cell: Cell) -> Element:
 def _result(report: Report, result: Result) -> Iterator[Element]:
     yield element("p", result.reason, class_="reason")
     if result.source:
-        yield element("p", "the spec: ", element("code", result.source), class_="faint")
+        yield element("p", "required by ", element("code", result.source), class_="faint")
     rows = [
         element(
             "tr",
             element("td", f"{exchange.at:.4f} s"),
             element("td", exchange.direction, class_=exchange.direction),
-            element("td", said(report, exchange), class_="bytes"),
+            element("td", shown(report, exchange), class_="bytes"),
             element("td", exchange.note, class_="faint"),
         )
         for exchange in result.evidence
@@ -163,9 +163,9 @@ def _name(cell: Cell) -> str:
     return "the line" if cell.command == LINE else cell.command
 
 
-def _class(verdict: Verdict) -> str:
-    return verdict.value.replace(" ", "-")
+def _class(cell: Cell) -> str:
+    return (cell.gravest.cause or cell.verdict).replace(" ", "-")
 
 
 def _anchor(cell: Cell) -> str:
-    return f"{cell.rule}-{cell.command}"
+    return f"{cell.case}-{cell.command}"

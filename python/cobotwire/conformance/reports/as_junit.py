@@ -1,4 +1,4 @@
-"""Reports as JUnit XML, which build servers show: a suite a rule, a case a command."""
+"""Write reports as JUnit XML for build servers: one suite per test case, one entry per command."""
 
 from __future__ import annotations
 
@@ -6,21 +6,20 @@ import re
 from xml.etree import ElementTree
 
 from cobotwire.conformance.report import Report, Result, Verdict
-from cobotwire.conformance.reports.evidence import lines_of
-from cobotwire.conformance.reports.matrix import Cell, matrix, rules
+from cobotwire.conformance.reports.evidence import evidence_lines
+from cobotwire.conformance.reports.matrix import Cell, case_ids, matrix
 
-# XML 1.0 has no way to write these.
-UNSAYABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-COMPLAINTS = {Verdict.FAIL: "failure", Verdict.UNSTABLE: "failure"}
+# XML 1.0 cannot express these characters.
+NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def to_junit(report: Report) -> str:
-    """A report as JUnit XML. What was not allowed or is not supported counts as skipped."""
+    """Return a report as JUnit XML. Inconclusive verdicts count as skipped."""
     cells = matrix(report)
     root = ElementTree.Element("testsuites", name=f"cobotwire conform {report.kind}")
-    for rule in rules(cells):
-        suite = [cell for (_, other), cell in cells.items() if other == rule]
-        root.append(_suite(report, rule, suite))
+    for case in case_ids(cells):
+        suite = [cell for (_, other), cell in cells.items() if other == case]
+        root.append(_suite(report, case, suite))
     if not report.finished:
         root.append(_unfinished(report))
     ElementTree.indent(root)
@@ -28,55 +27,53 @@ def to_junit(report: Report) -> str:
     return f'<?xml version="1.0" encoding="utf-8"?>\n{text}\n'
 
 
-def _suite(report: Report, rule: str, cells: list[Cell]) -> ElementTree.Element:
+def _suite(report: Report, case: str, cells: list[Cell]) -> ElementTree.Element:
     verdicts = [cell.verdict for cell in cells]
-    failed = sum(verdict in COMPLAINTS for verdict in verdicts)
     suite = ElementTree.Element(
         "testsuite",
-        name=f"{report.edition}.{rule}",
+        name=f"{report.edition}.{case}",
         tests=str(len(cells)),
-        failures=str(failed),
+        failures=str(verdicts.count(Verdict.FAIL)),
         errors="0",
-        skipped=str(len(cells) - failed - verdicts.count(Verdict.PASS)),
-        timestamp=report.began,
+        skipped=str(verdicts.count(Verdict.INCONCLUSIVE)),
+        timestamp=report.started,
     )
     properties = ElementTree.SubElement(suite, "properties")
     for name in ("kind", "subject", "edition", "firmware"):
-        value = _sayable(getattr(report, name))
+        value = _in_xml(getattr(report, name))
         ElementTree.SubElement(properties, "property", name=name, value=value)
     for cell in cells:
-        suite.append(_case(report, cell))
+        suite.append(_entry(report, cell))
     return suite
 
 
-def _case(report: Report, cell: Cell) -> ElementTree.Element:
+def _entry(report: Report, cell: Cell) -> ElementTree.Element:
     name = cell.command or "the line"
-    case = ElementTree.Element("testcase", classname=f"{report.edition}.{cell.rule}", name=name)
-    shown = next(result for result in cell.results if result.verdict is cell.verdict)
-    if shown.verdict is Verdict.PASS:
-        return case
-    kind = COMPLAINTS.get(shown.verdict, "skipped")
-    complaint = ElementTree.SubElement(case, kind, message=_sayable(shown.reason))
-    if kind == "failure":
-        complaint.set("type", shown.verdict.value)
-        complaint.text = _sayable(_told(report, shown))
-    return case
+    entry = ElementTree.Element("testcase", classname=f"{report.edition}.{cell.case}", name=name)
+    shown = cell.gravest
+    if shown.verdict is Verdict.FAIL:
+        failure = ElementTree.SubElement(entry, "failure", message=_in_xml(shown.reason))
+        failure.set("type", shown.outcome)
+        failure.text = _in_xml(_in_full(report, shown))
+    elif shown.verdict is Verdict.INCONCLUSIVE:
+        ElementTree.SubElement(entry, "skipped", message=_in_xml(shown.reason))
+    return entry
 
 
-def _told(report: Report, result: Result) -> str:
-    source = [f"the spec says so at {result.source}"] if result.source else []
-    return "\n".join([result.reason, *source, *lines_of(report, result)])
+def _in_full(report: Report, result: Result) -> str:
+    source = [f"required by {result.source}"] if result.source else []
+    return "\n".join([result.reason, *source, *evidence_lines(report, result)])
 
 
 def _unfinished(report: Report) -> ElementTree.Element:
     suite = ElementTree.Element(
         "testsuite", name=f"{report.edition}.run", tests="1", failures="0", errors="1", skipped="0"
     )
-    case = ElementTree.SubElement(suite, "testcase", classname=f"{report.edition}.run", name="run")
-    message = "the run did not come to its end"
-    ElementTree.SubElement(case, "error", message=message, type="interrupted")
+    entry = ElementTree.SubElement(suite, "testcase", classname=f"{report.edition}.run", name="run")
+    message = "the run was interrupted"
+    ElementTree.SubElement(entry, "error", message=message, type="interrupted")
     return suite
 
 
-def _sayable(text: str) -> str:
-    return UNSAYABLE.sub("\ufffd", text)
+def _in_xml(text: str) -> str:
+    return NOT_IN_XML.sub("\ufffd", text)

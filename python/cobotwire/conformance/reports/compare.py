@@ -1,4 +1,4 @@
-"""Two reports side by side: what became better, what worse, what is new."""
+"""Compare two reports: what became better, what became worse, what is new."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from typing import Literal
 
 from cobotwire.conformance.report import Report, Verdict
 from cobotwire.conformance.reports.matrix import Cell, Place, matrix
-from cobotwire.errors import UsageError
+from cobotwire.protocol.errors import UsageError
 
-Kind = Literal["worse", "better", "other", "came", "went"]
+Kind = Literal["worse", "better", "other", "added", "removed"]
 
-BAD = (Verdict.FAIL, Verdict.UNSTABLE)
-# Reply times vary by themselves; what is told is told as a hint, and never makes a report worse.
+# Reply times vary by themselves: a difference is only a hint and never makes a report worse.
 NOTABLE_RATIO = 1.5
 NOTABLE_SECONDS = 0.001
 ENOUGH = 3
@@ -21,16 +20,16 @@ ENOUGH = 3
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A test whose verdict differs; None: the report has no such test.
+    """A test case whose outcome differs on a command; None: the report has no result for it.
 
-    ``worse``: it fails now and did not; or it passed, and is not tested any longer.
+    ``worse``: it fails now and did not, or it passed and no longer does.
     """
 
     kind: Kind
     command: str
-    rule: str
-    before: Verdict | None
-    after: Verdict | None
+    case: str
+    before: str | None
+    after: str | None
     reason: str
 
 
@@ -45,25 +44,26 @@ class Slower:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What differs between two reports."""
+    """The differences between two reports."""
 
     changes: tuple[Change, ...]
     times: tuple[Slower, ...]
 
     @property
     def worse(self) -> bool:
-        """Whether anything is worse than it was."""
+        """Whether anything became worse."""
         return any(change.kind == "worse" for change in self.changes)
 
 
 def compare(before: Report, after: Report) -> Comparison:
-    """What differs, in the later report's order; what it lacks comes last.
+    """Return the differences in the order of the later report; what it lacks comes last.
 
     Raises:
-        UsageError: the two are about different kinds of things.
+        UsageError: the reports are about different kinds of subjects.
     """
     if before.kind != after.kind:
-        raise UsageError("kind", after.kind, f"{before.kind}, as the report to compare with")
+        message = f"reports of two kinds, {before.kind} and {after.kind}, cannot be compared"
+        raise UsageError("kind", message=message)
     old, new = matrix(before), matrix(after)
     places = dict.fromkeys([*new, *old])
     found = (_change(place, old.get(place), new.get(place)) for place in places)
@@ -71,26 +71,27 @@ def compare(before: Report, after: Report) -> Comparison:
 
 
 def _change(place: Place, old: Cell | None, new: Cell | None) -> Change | None:
-    before = None if old is None else old.verdict
-    after = None if new is None else new.verdict
+    before = None if old is None else old.outcome
+    after = None if new is None else new.outcome
     if before == after:
         return None
     shown = new or old
     assert shown is not None, "a place has a cell in one of the two"
-    reason = next(r.reason for r in shown.results if r.verdict is shown.verdict)
-    return Change(_kind(before, after), *place, before, after, reason)
+    return Change(_kind(old, new), *place, before, after, shown.gravest.reason)
 
 
-def _kind(before: Verdict | None, after: Verdict | None) -> Kind:
-    if after in BAD:
-        return "other" if before in BAD else "worse"
+def _kind(old: Cell | None, new: Cell | None) -> Kind:
+    before = None if old is None else old.verdict
+    after = None if new is None else new.verdict
+    if after is Verdict.FAIL:
+        return "other" if before is Verdict.FAIL else "worse"
     if before is Verdict.PASS:
         return "worse"
-    if before in BAD and after is Verdict.PASS:
+    if before is Verdict.FAIL and after is Verdict.PASS:
         return "better"
     if before is None:
-        return "came"
-    return "went" if after is None else "other"
+        return "added"
+    return "removed" if after is None else "other"
 
 
 def _times(before: Report, after: Report) -> list[Slower]:

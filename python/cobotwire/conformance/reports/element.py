@@ -1,4 +1,4 @@
-"""HTML and SVG out of nested calls; text is escaped by the standard library."""
+"""Build HTML and SVG from nested calls; the standard library escapes text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ Child = ElementTree.Element | str
 
 
 def element(tag: str, *children: Child, **attributes: str | float) -> ElementTree.Element:
-    """An element. ``class_`` is the attribute class; underscores within become hyphens."""
+    """Return an element. ``class_`` is the attribute class; inner underscores become hyphens."""
     named = {name.rstrip("_").replace("_", "-"): str(v) for name, v in attributes.items()}
     made = ElementTree.Element(tag, named)
     last: ElementTree.Element | None = None
@@ -24,6 +24,6 @@ def element(tag: str, *children: Child, **attributes: str | float) -> ElementTre
 
 
 def page(*children: Child, lang: str = "en") -> str:
-    """A whole document."""
+    """Return a document as text."""
     text = ElementTree.tostring(element("html", *children, lang=lang), "unicode", method="html")
     return f"<!doctype html>\n{text}\n"

@@ -1,4 +1,4 @@
-"""Results as a matrix: a row a command, a column a rule."""
+"""Arrange results as a matrix: a row for each command, a column for each test case."""
 
 from __future__ import annotations
 
@@ -6,15 +6,9 @@ from dataclasses import dataclass
 
 from cobotwire.conformance.report import Report, Result, Verdict
 
-# What a cell with several results shows: the one to look at first.
-GRAVEST = (
-    Verdict.FAIL,
-    Verdict.UNSTABLE,
-    Verdict.NOT_SUPPORTED,
-    Verdict.NOT_ALLOWED,
-    Verdict.PASS,
-)
-# The row of rules that are about the line and no command.
+# A cell with several results shows the first of these.
+GRAVEST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)
+# The row of test cases about the line as a whole.
 LINE = ""
 
 Place = tuple[str, str]
@@ -22,32 +16,42 @@ Place = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """The results of one rule on one command."""
+    """The results of one test case on one command."""
 
     command: str
-    rule: str
+    case: str
     results: tuple[Result, ...]
 
     @property
+    def gravest(self) -> Result:
+        """The first of the results with the gravest verdict."""
+        return min(self.results, key=lambda result: GRAVEST.index(result.verdict))
+
+    @property
     def verdict(self) -> Verdict:
-        """The gravest."""
-        return min((result.verdict for result in self.results), key=GRAVEST.index)
+        """The gravest verdict."""
+        return self.gravest.verdict
+
+    @property
+    def outcome(self) -> str:
+        """The gravest verdict with its cause."""
+        return self.gravest.outcome
 
 
 def matrix(report: Report) -> dict[Place, Cell]:
-    """The cells by command and rule, in the order in which they were tested."""
+    """Return the cells by command and test case, in the order in which they were tested."""
     found: dict[Place, list[Result]] = {}
     for result in report.results:
-        found.setdefault((result.command, result.rule), []).append(result)
+        found.setdefault((result.command, result.case), []).append(result)
     return {place: Cell(*place, tuple(results)) for place, results in found.items()}
 
 
 def commands(cells: dict[Place, Cell]) -> list[str]:
-    """The rows; the line's comes last."""
+    """Return the rows; the row of the line comes last."""
     found = dict.fromkeys(command for command, _ in cells)
     return sorted(found, key=lambda command: command == LINE)
 
 
-def rules(cells: dict[Place, Cell]) -> list[str]:
-    """The columns."""
-    return list(dict.fromkeys(rule for _, rule in cells))
+def case_ids(cells: dict[Place, Cell]) -> list[str]:
+    """Return the columns."""
+    return list(dict.fromkeys(case for _, case in cells))

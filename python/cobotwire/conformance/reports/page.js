@@ -1,5 +1,5 @@
 "use strict";
-// Following a link into what is folded opens it.
+// Unfold an element when a link to it is followed.
 addEventListener("hashchange", openTarget); openTarget();
 function openTarget() {
   const target = document.getElementById(location.hash.slice(1));

@@ -1,4 +1,4 @@
-"""Reply times as a picture: a row a query, on a scale of tenths, ones, tens of milliseconds."""
+"""Draw reply times: one row for each query, on a logarithmic scale of milliseconds."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from cobotwire.conformance.report import Report
 from cobotwire.conformance.reports.element import element
 
 ROW, LEFT, WIDTH, TOP = 20, 210, 620, 24
-# Below this nothing is told apart; a simulated arm in memory answers in no time at all.
+# Shorter times look alike; a simulated arm in memory replies in no time at all.
 LEAST_MS = 0.01
 TICKS_MS = (0.01, 0.1, 1, 10, 100, 1000, 10_000)
 
 
 def times_plot(report: Report) -> Element:
-    """From the fastest to the slowest, the middle nine tenths, the median, and the deadline."""
+    """Return a drawing of the full range, the middle nine tenths, the median and the deadline."""
     rows = [(name, sorted(times)) for name, times in report.reply_seconds.items() if times]
     most = max(max(times) for _, times in rows)
     scale = _Scale(1000 * max(most, *report.deadline_seconds.values(), 0.0))
@@ -33,15 +33,15 @@ def times_plot(report: Report) -> Element:
 
 
 class _Scale:
-    """Milliseconds to places, by their logarithm."""
+    """Converts seconds to positions by their logarithm."""
 
     def __init__(self, most_ms: float) -> None:
         self._last = next((tick for tick in TICKS_MS if tick >= most_ms), TICKS_MS[-1])
 
     def x(self, seconds: float) -> float:
         share = math.log10(max(1000 * seconds, LEAST_MS) / LEAST_MS)
-        whole = math.log10(self._last / LEAST_MS) or 1.0
-        return round(LEFT + WIDTH * min(share / whole, 1.0), 1)
+        full = math.log10(self._last / LEAST_MS) or 1.0
+        return round(LEFT + WIDTH * min(share / full, 1.0), 1)
 
     def grid(self, height: int) -> Iterator[Element]:
         for tick in (tick for tick in TICKS_MS if tick <= self._last):
@@ -69,7 +69,7 @@ def _row(
 
 
 def _spread(times: Sequence[float]) -> tuple[float, float, float]:
-    """The 5th, 50th and 95th of a hundred."""
+    """Return the 5th, 50th and 95th percentile."""
     if len(times) == 1:
         return times[0], times[0], times[0]
     cuts = quantiles(times, n=20, method="inclusive")

@@ -1,20 +1,20 @@
-"""Serial ports, and whatever else pyserial opens. This folder is its only importer."""
+"""Serial ports, and whatever else pyserial opens. Only this folder imports pyserial."""
 
 from __future__ import annotations
 
 import os
 
-from cobotwire.transport.interface import Link
-from cobotwire.transport.serial.url import UrlLink
+from cobotwire.transport.interface import OpenedTransport
+from cobotwire.transport.serial.url import UrlTransport
 
 __all__ = ["open_serial"]
 
 
-def open_serial(url: str, baudrate: int) -> Link:
-    """Open a port or URL; :func:`cobotwire.transport.open_link` says the rest."""
+def open_serial(url: str, baudrate: int) -> OpenedTransport:
+    """Open a port or URL; see :func:`cobotwire.transport.open_transport`."""
     scheme, separator, _ = url.partition("://")
     if os.name != "posix" or (separator and scheme.lower() != "hwgrep"):
-        return UrlLink(url, baudrate)
-    from cobotwire.transport.serial.port import PortLink
+        return UrlTransport(url, baudrate)
+    from cobotwire.transport.serial.port import SerialTransport
 
-    return PortLink(url, baudrate)
+    return SerialTransport(url, baudrate)

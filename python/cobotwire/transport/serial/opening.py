@@ -1,4 +1,4 @@
-"""How every port of pyserial is opened, and what its failures mean."""
+"""How each port of pyserial is opened, and what its failures mean."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from cobotwire.errors import LinkError, UsageError
+from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.transport.descriptor import reason_of
 
 
@@ -14,19 +14,22 @@ def configure(port: Any, baudrate: int) -> None:
     """Set up a port that is not open yet; frames are 8N1 without flow control."""
     port.baudrate = baudrate
     port.timeout = 0
-    # A 0x13 in the data would stop the line, and lines that the board does not have would too.
+    # A 0x13 in the data would stop the line, and so would control lines that the board lacks.
     port.xonxoff = False
     port.rtscts = False
     port.dsrdtr = False
-    # Asserted, these lines hold the controller of some boards in reset. Set before opening, they
-    # are low as soon as the port is open.
+    # These lines hold the controller of some boards in reset while they are asserted. Set before
+    # opening, they are low as soon as the port is open.
     port.dtr = False
     port.rts = False
 
 
-def ask_low_latency(port: Any) -> bool:
-    """Have the driver pass on what comes at once (an FTDI chip's timer goes from 16 to 1 ms)."""
-    # Only Linux has it, and there not every driver: a pty has not.
+def request_low_latency(port: Any) -> bool:
+    """Have the driver pass received bytes on at once (the timer of an FTDI chip is 16 ms).
+
+    Returns:
+        Whether it does now: only Linux can, and not with every driver.
+    """
     with suppress(AttributeError, NotImplementedError, ValueError, OSError):
         port.set_low_latency_mode(True)
         return True
@@ -35,7 +38,7 @@ def ask_low_latency(port: Any) -> bool:
 
 @contextmanager
 def opening(url: str) -> Iterator[None]:
-    """Turn what pyserial raises into UsageError or LinkError."""
+    """Turn the errors of pyserial into UsageError or LinkError."""
     try:
         yield
     # Each backend of pyserial fails in its own way, from KeyError to termios.error.
@@ -47,7 +50,7 @@ def opening(url: str) -> Iterator[None]:
 
 
 def _innermost(error: BaseException) -> BaseException:
-    """What went wrong first: pyserial wraps it in errors, and some of these fail in themselves."""
+    """Return the first error: pyserial wraps it in others, some of which fail themselves."""
     while error.__context__ is not None:
         error = error.__context__
     return error

@@ -10,8 +10,8 @@ from contextlib import suppress
 
 import serial
 
-from cobotwire.transport.descriptor import DescriptorLink
-from cobotwire.transport.serial.opening import ask_low_latency, configure, opening
+from cobotwire.transport.descriptor import DescriptorTransport
+from cobotwire.transport.serial.opening import configure, opening, request_low_latency
 
 DTR_AND_RTS = struct.pack("I", termios.TIOCM_DTR | termios.TIOCM_RTS)
 PSEUDO_TERMINALS = "/dev/pts/"
@@ -21,23 +21,23 @@ HARDWARE = "hwgrep://"
 class _QuietPort(serial.Serial):
     """Lowers DTR and RTS in one step.
 
-    Linux raises both when a port is opened. Lowered one after the other, DTR first, they pass
-    through DTR low and RTS high: with the usual two transistors that is the reset of an ESP32.
+    Linux raises both when a port is opened. Lowering DTR first passes through DTR low and RTS high:
+    with the usual two transistors that resets an ESP32.
     """
 
     def _update_dtr_state(self) -> None:
-        # Open calls this for DTR, then the same for RTS, which changes nothing any more.
+        # Opening calls this for DTR, then the same for RTS, which changes nothing any more.
         assert self.fd is not None, "called while opening"
         fcntl.ioctl(self.fd, termios.TIOCMBIC, DTR_AND_RTS)
 
 
-class PortLink(DescriptorLink):
-    """A serial port; see :class:`cobotwire.transport.interface.Link`.
+class SerialTransport(DescriptorTransport):
+    """An :class:`OpenedTransport` over a serial port.
 
-    The URL is a device, or ``hwgrep://TEXT`` for one whose name or USB ids hold the text.
+    The URL is a device, or ``hwgrep://TEXT`` for one whose name or USB ids contain the text.
 
-    Reading and writing go past pyserial, which waits by select() for each chunk once more, and does
-    not tell how much of a write was taken.
+    Reading and writing bypass pyserial, which calls select() once more for each chunk, and does not
+    tell how much of a write was taken.
     """
 
     kind = "serial"
@@ -46,13 +46,13 @@ class PortLink(DescriptorLink):
         """Open the port.
 
         Raises:
-            UsageError: the system has no such baud rate.
-            LinkError: it is not there, no serial port, or another program has it open.
+            UsageError: the system does not have this baud rate.
+            LinkError: the port does not exist, is not serial, or another program has it open.
         """
         self._port: _QuietPort | None = None
         super().__init__(url, baudrate)
 
-    def _connect(self) -> None:
+    def _connect(self) -> int:
         with opening(self.url):
             device = _device(self.url)
             port = _QuietPort()
@@ -62,36 +62,34 @@ class PortLink(DescriptorLink):
             port.exclusive = True
             port.open()
             self._port = port
-            self.low_latency = ask_low_latency(port)
-            # The lock of pyserial keeps out only programs that ask for it. This keeps out all. A
+            self.low_latency = request_low_latency(port)
+            descriptor: int = port.fileno()
+            # The lock of pyserial keeps out only programs that check it. This keeps out all. A
             # pty that its server holds open would stay locked if this process died.
             if not os.path.realpath(device).startswith(PSEUDO_TERMINALS):
-                keep_others_out(port.fileno())
+                keep_others_out(descriptor)
+            return descriptor
 
     def _release(self) -> None:
         if self._port is not None:
-            # What is gone already need not be given back.
+            # A port that is gone already cannot be closed.
             with suppress(Exception):
                 self._port.close()
             self._port = None
-
-    def _descriptor(self) -> int:
-        descriptor = None if self._port is None else self._port.fd
-        return -1 if descriptor is None else descriptor
 
     def _end_of_data(self) -> str:
         return "it is gone, or another program reads from it"
 
 
 def _device(url: str) -> str:
-    """The port; that of ``hwgrep://`` is looked for each time, as a plug may get another number."""
+    """Return the device; that of ``hwgrep://`` is looked up each time, as its number may change."""
     if not url.lower().startswith(HARDWARE):
         return url
     return str(serial.serial_for_url(url, do_not_open=True).port)
 
 
 def keep_others_out(descriptor: int) -> None:
-    """Let nobody else open this terminal (but root, who may) until its last user has closed it."""
-    # What has no such lock is kept apart by pyserial's alone.
+    """Let no other user but root open this terminal until its last user has closed it."""
+    # A device without such a lock has only that of pyserial.
     with suppress(OSError):
         fcntl.ioctl(descriptor, termios.TIOCEXCL)

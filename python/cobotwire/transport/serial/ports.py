@@ -1,4 +1,4 @@
-"""Which serial ports there are, and behind which of them an arm may stand."""
+"""List the serial ports of this machine, and say which of them may lead to an arm."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from serial.tools import list_ports
 
-# The bridges on the controllers of these arms (M5Stack Basic and Atom, and what makers of carrier
-# boards take). By vendor and product of USB; the ids are their makers' own.
+# The USB bridges on the controllers of these arms (M5Stack Basic and Atom, and carrier boards), by
+# USB vendor and product id.
 BRIDGES: dict[tuple[int, int], str] = {
     (0x10C4, 0xEA60): "CP2102/CP2104, the bridge of many M5Stack controllers",
     (0x1A86, 0x55D4): "CH9102, the bridge of newer M5Stack and Atom controllers",
@@ -18,11 +18,11 @@ BRIDGES: dict[tuple[int, int], str] = {
     (0x0403, 0x6015): "FT231X, the bridge of some carrier boards",
     (0x303A, 0x1001): "the USB port of an ESP32-S3 or -C3 itself, as on AtomS3",
 }
-# The built-in ports to which arms with a computer in their base have their controller wired. That
-# of the Jetson is none that pyserial looks for.
+# The built-in ports to which arms with a computer in their base wire their controller. pyserial
+# does not list that of the Jetson.
 WIRED = {
-    "/dev/ttyAMA": "the built-in port of a Raspberry Pi, to which Pi versions have their arm wired",
-    "/dev/ttyTHS": "the built-in port of a Jetson, to which its versions have their arm wired",
+    "/dev/ttyAMA": "the built-in port of a Raspberry Pi, to which Pi versions wire their arm",
+    "/dev/ttyTHS": "the built-in port of a Jetson, to which its versions wire their arm",
 }
 
 
@@ -31,12 +31,12 @@ class Port(NamedTuple):
 
     Attributes:
         device: what to open.
-        likely: whether an arm may well stand behind it.
-        why: what speaks for it, or that nothing does.
-        accessible: whether this user may open it; it may be open elsewhere all the same.
-        description: what the system calls it.
-        usb: vendor and product, ``10C4:EA60``; empty for what is no USB device.
-        serial_number: of the USB device; empty if it has none.
+        likely: whether it may well lead to an arm.
+        why: the reason for that, or for the contrary.
+        accessible: whether this user may open it; another program may have it open all the same.
+        description: the system's name for it.
+        usb: vendor and product, ``10C4:EA60``; empty for other devices.
+        serial_number: that of the USB device; empty if it has none.
     """
 
     device: str
@@ -49,7 +49,7 @@ class Port(NamedTuple):
 
 
 def ports() -> list[Port]:
-    """The ports of this machine, likely ones first. None of them is opened."""
+    """Return the ports of this machine, likely ones first. No port is opened."""
     found = {
         info.device: _port(
             info.device, info.vid, info.pid, info.description or "", info.serial_number or ""
@@ -63,14 +63,14 @@ def ports() -> list[Port]:
 
 
 def judge(device: str, vendor: int | None, product: int | None) -> tuple[bool, str]:
-    """Whether an arm may stand behind a port, and why."""
+    """Return whether a port may lead to an arm, and why."""
     if vendor is not None and product is not None:
         bridge = BRIDGES.get((vendor, product))
-        return (True, bridge) if bridge else (False, "a USB device that no such arm is known by")
+        return (True, bridge) if bridge else (False, "a USB device that no such arm has")
     for prefix, why in WIRED.items():
         if device.startswith(prefix):
             return True, why
-    return False, "no USB device, nor a port to which such an arm is known to be wired"
+    return False, "neither a USB device nor a built-in port to which these arms are wired"
 
 
 def _port(
@@ -81,7 +81,7 @@ def _port(
         device,
         likely,
         why,
-        # On Windows this is always so; there it is the opening that tells.
+        # On Windows only opening it tells.
         os.access(device, os.R_OK | os.W_OK) or os.name != "posix",
         description if description != "n/a" else "",
         "" if vendor is None or product is None else f"{vendor:04X}:{product:04X}",

@@ -1,4 +1,4 @@
-"""Whatever else pyserial opens: ``rfc2217://``, ``loop://``, ``spy://``; and ports on Windows."""
+"""What else pyserial opens: ``rfc2217://``, ``loop://``, ``spy://``; and ports on Windows."""
 
 from __future__ import annotations
 
@@ -11,25 +11,24 @@ from typing import Any
 
 import serial
 
-from cobotwire.errors import LinkError
-from cobotwire.transport.descriptor import READ_SIZE, reason_of, write_limit
-from cobotwire.transport.serial.opening import ask_low_latency, configure, opening
-from cobotwire.transport.waiting import Waiter
+from cobotwire.protocol.errors import LinkError
+from cobotwire.transport.descriptor import READ_SIZE, Waiter, reason_of, write_limit
+from cobotwire.transport.serial.opening import configure, opening, request_low_latency
 
 # A backend without a descriptor is read in slices of this length.
 SLICE_SECONDS = 0.01
 
-_log = logging.getLogger("cobotwire.link")
+_log = logging.getLogger("cobotwire.transport")
 
 
-class UrlLink:
-    """A link through pyserial's own reading and writing; see ``transport.interface.Link``."""
+class UrlTransport:
+    """An :class:`OpenedTransport` that pyserial itself reads and writes."""
 
     def __init__(self, url: str, baudrate: int) -> None:
         """Open the URL.
 
         Raises:
-            UsageError: the URL or baud rate is none that pyserial knows.
+            UsageError: pyserial does not know the URL or baud rate.
             LinkError: it cannot be opened.
         """
         scheme, separator, _ = url.partition("://")
@@ -46,26 +45,26 @@ class UrlLink:
         return f"<{type(self).__name__} {self.url}{', closed' if self._closed else ''}>"
 
     def reopen(self) -> None:
-        """Close and open again."""
+        """Close it and open it again."""
         self.close()
         with opening(self.url):
             port: Any = serial.serial_for_url(self.url, do_not_open=True)
             configure(port, self._baudrate)
             if os.name == "posix" and isinstance(port, serial.Serial):
-                # What stands behind spy:// is a port as any other.
+                # spy:// opens a port like any other.
                 port.exclusive = True
             port.open()
             self._port = port
             self._descriptor = _descriptor(port)
             if self._descriptor is None:
                 port.timeout = SLICE_SECONDS
-            self.low_latency = ask_low_latency(port)
+            self.low_latency = request_low_latency(port)
         self._waiter = Waiter()
         self._closed = False
         _log.info("%s: opened", self.url)
 
     def write(self, data: bytes) -> None:
-        """Send all of ``data``. If it fails, pyserial does not tell how much was taken."""
+        """Send all of ``data``. If that fails, pyserial does not tell how much was taken."""
         with self._faults("cannot be written"):
             limit = write_limit(len(data), self._baudrate)
             if self._port.write_timeout != limit:
@@ -73,16 +72,16 @@ class UrlLink:
             self._port.write(data)
 
     def write_some(self, data: bytes) -> int:
-        """All of ``data``: these backends have no other way. It may take as long as a write."""
+        """Send all of ``data``, which may take as long as a write: there is no other way."""
         self.write(data)
         return len(data)
 
     def read(self, timeout: float) -> bytes:
-        """What has come, as soon as there is something."""
+        """Return what has come, as soon as there is something."""
         with self._faults("cannot be read"):
             if self._descriptor is None:
                 return self._read_in_slices(time.monotonic() + timeout)
-            # Not by pyserial's timeout: to change it configures the port anew, with every call.
+            # Not by pyserial's timeout: changing it configures the port again with every call.
             if not self._waiter.wait(self._descriptor, timeout):
                 return b""
             if self._closed:
@@ -100,15 +99,15 @@ class UrlLink:
                 return data
 
     def fileno(self) -> int | None:
-        """None: even where there is a descriptor, pyserial must read, since spy:// shows it."""
+        """Return None: pyserial must read even a port with a descriptor, since spy:// shows it."""
         with self._faults("cannot be waited for"):
             return None
 
     def close(self) -> None:
-        """Give the port back."""
+        """Close the port."""
         self._closed = True
         self._waiter.wake()
-        # What is gone already, or closed by another thread right now, need not be given back.
+        # A port that is gone, or that another thread closes right now, cannot be closed.
         with suppress(Exception):
             self._port.close()
 
@@ -118,18 +117,18 @@ class UrlLink:
             raise LinkError(self.url, f"{what}: it is closed")
         try:
             yield
-        # Asked of a port that goes away, pyserial fails in as many ways as it has backends: its
-        # rfc2217 with an AttributeError, its posix port with termios.error or TypeError.
+        # On a port that goes away, each backend of pyserial fails in its own way: rfc2217 with an
+        # AttributeError, a POSIX port with termios.error or TypeError.
         except Exception as error:
             reason = "it was closed meanwhile" if self._closed else reason_of(error)
             raise LinkError(self.url, f"{what}: {reason}") from error
 
 
 def _descriptor(port: Any) -> int | None:
-    """What can be waited for; pyserial's other backends raise something or have no such method."""
+    """Return the descriptor to wait for; None for a backend without one."""
     try:
         descriptor: int = port.fileno()
     except (OSError, AttributeError):
         return None
-    # Windows waits for sockets only.
+    # Windows can wait only for sockets.
     return descriptor if os.name == "posix" else None

@@ -1,22 +1,22 @@
-//! A block of a stream, and the one quick look at a position in it.
+//! A block of a stream, and a fast check of one position in it.
 //!
-//! A position is 16 bits and the block has a margin behind the last one, so that no frame that
-//! starts in it can reach beyond its array: the compiler then needs no check of bounds.
+//! A position has 16 bits, and a margin follows the last one, so no frame that starts in the block
+//! reaches beyond its array. The compiler then needs no bounds checks.
 
 use super::window::{Pattern, SEEN, Window};
 use crate::check::Check;
-use crate::error::Reason;
 use crate::judge::Rules;
 use crate::legal::{BELIEVED, Headings, UNKNOWN_ID};
+use crate::reason::Reason;
 
 /// Positions of a block.
 pub(crate) const BLOCK: usize = 1 << 16;
-/// More than the longest frame that LEN can say.
+/// More than the longest frame that LEN can express.
 pub(crate) const MARGIN: usize = 260;
 /// More than the frames that can start in it: the shortest has header, LEN, id and check.
 pub(crate) const MOST: usize = BLOCK / 4;
-/// In how many places at once a block is scanned. Two are 1.4 times as fast as one, three 1.5 times;
-/// for four there are not enough registers.
+/// The number of places in which a block is scanned at once. Two are 1.4 times as fast as one,
+/// three 1.5 times; for four there are not enough registers.
 pub(crate) const LANES: usize = 3;
 /// The bytes of a block.
 pub(crate) type Block = [u8; BLOCK + MARGIN];
@@ -31,20 +31,20 @@ impl Found {
         Self(u32::from(at) | u32::from(group) << 16)
     }
 
-    /// Where it starts.
+    /// Return where it starts.
     #[inline]
     pub(crate) fn at(self) -> u16 {
         self.0 as u16
     }
 
-    /// Which messages it can be: the index of a group, or that of none if its id is unknown.
+    /// Return the index of the group of messages that it can be; of no group if its id is unknown.
     #[inline]
     pub(crate) fn group(self) -> u16 {
         (self.0 >> 16) as u16
     }
 }
 
-/// The rules of a plain format with a footer, in few words.
+/// The rules of a plain format with a footer, in compact form.
 #[derive(Clone, Copy)]
 pub(crate) struct Quick<'a> {
     header: [u8; 2],
@@ -53,16 +53,16 @@ pub(crate) struct Quick<'a> {
     pattern: Pattern,
 }
 
-/// What stands at a position of a block whose bytes are all there.
+/// The verdict on a position of a block.
 pub(crate) enum Look {
     /// A frame of that size and group.
     Frame(u16, u16),
-    /// None, for this reason.
+    /// No frame, for this reason.
     Noise(Reason),
 }
 
 impl<'a> Quick<'a> {
-    /// The rules, if they are that simple.
+    /// Return the rules, if the format is plain and has a footer.
     pub(crate) fn new(rules: &'a Rules) -> Option<Self> {
         let Check::Footer(footer) = rules.frame().check else {
             return None;
@@ -76,11 +76,11 @@ impl<'a> Quick<'a> {
         })
     }
 
-    /// A first look at several positions.
+    /// Make a first check of several positions.
     #[inline(always)]
     pub(crate) fn window(self, data: &Block, at: u16) -> Window {
         let seen = data.get(usize::from(at)..).and_then(<[u8]>::first_chunk);
-        self.pattern.look(seen.unwrap_or(&[0; SEEN])) // never so: there is the margin
+        self.pattern.look(seen.unwrap_or(&[0; SEEN])) // never the default: the margin follows
     }
 
     #[inline(always)]

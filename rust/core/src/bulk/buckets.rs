@@ -1,11 +1,11 @@
-//! Frames sorted by group, so that each group is decoded in one go.
+//! Frames sorted by group, so that each group is decoded at once.
 
 use super::block::{Found, LANES};
 
 /// The frames of some lanes, by lane and group.
 ///
-/// To add to a bucket is to read, and write, its size, and the processor waits for that if the next
-/// frame goes to the same one. So the lanes are sorted in turn, each into buckets of its own.
+/// Adding to a bucket reads and writes its size, and the processor waits for that if the next frame
+/// goes to the same bucket. Therefore the lanes alternate, and each has its own buckets.
 pub(crate) struct Buckets {
     parts: [Vec<Vec<u16>>; LANES],
 }
@@ -17,7 +17,7 @@ impl Buckets {
         }
     }
 
-    /// Sort the frames of up to as many lanes.
+    /// Sort the frames of all lanes.
     pub(crate) fn fill(&mut self, lanes: [&[Found]; LANES]) {
         let [a, b, c] = &mut self.parts;
         let [first, second, third] = lanes;
@@ -38,7 +38,7 @@ impl Buckets {
         }
     }
 
-    /// Empty them: each group with its frames, those of a group in the order of the lanes.
+    /// Pass on each group with its frames, in the order of the lanes, and empty the buckets.
     pub(crate) fn drain(&mut self, mut take: impl FnMut(usize, &[u16])) {
         let [first, second, third] = &mut self.parts;
         let groups = first.iter_mut().zip(second).zip(third).enumerate();
@@ -55,7 +55,7 @@ impl Buckets {
 
 #[inline(always)]
 fn push(part: &mut [Vec<u16>], found: Found) {
-    // A frame of no group has an unknown id.
+    // A frame without a group has an unknown id.
     if let Some(frames) = part.get_mut(usize::from(found.group())) {
         frames.push(found.at());
     }

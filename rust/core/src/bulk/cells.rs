@@ -1,30 +1,30 @@
 //! One column of numbers, of the type that fits them.
 
 use crate::field::Field;
-use crate::read::Value;
+use crate::number::Value;
 
 /// Which numbers a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
     /// Physical values: 64-bit floats, whatever the field.
     Physical,
-    /// The whole numbers of the wire, after the sign rule: the smallest integer type that holds
+    /// The raw values of the wire, after the sign rule: the smallest integer type that holds
     /// all that the field allows.
     Raw,
 }
 
 /// A number in a column of integers.
 pub(crate) trait Cell: Copy + Default {
-    /// A whole number that the column's field allows, so that it fits.
-    fn of(whole: i32) -> Self;
+    /// Convert a raw value that the column's field allows, so it fits.
+    fn of(raw: i32) -> Self;
 }
 
 macro_rules! cell {
     ($($type:ty),+) => {
         $(impl Cell for $type {
             #[inline(always)]
-            fn of(whole: i32) -> Self {
-                whole as Self
+            fn of(raw: i32) -> Self {
+                raw as Self
             }
         })+
     };
@@ -34,7 +34,7 @@ cell!(u8, i8, u16, i16, u32, i32, i64);
 
 /// A column, row after row.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // the types say it
+#[allow(missing_docs)] // the types document it
 pub enum Cells {
     F64(Vec<f64>),
     U8(Vec<u8>),
@@ -46,10 +46,10 @@ pub enum Cells {
     I64(Vec<i64>),
 }
 
-/// Told of memory that is about to be filled: where it starts, and its bytes.
+/// Called with the start and the size of memory that is about to be filled.
 pub type Advise = fn(*const u8, usize);
 
-/// Have memory for so many more.
+/// Reserve memory for `more` elements.
 pub(crate) fn reserve<T>(all: &mut Vec<T>, more: usize, advise: Advise) {
     if all.capacity() - all.len() < more {
         all.reserve_exact(more);
@@ -58,7 +58,7 @@ pub(crate) fn reserve<T>(all: &mut Vec<T>, more: usize, advise: Advise) {
     }
 }
 
-/// Do the same with the vector of whatever type.
+/// Apply the same expression to the vector of any type.
 macro_rules! each {
     ($cells:expr, $vector:ident => $what:expr) => {
         match $cells {
@@ -75,12 +75,12 @@ macro_rules! each {
 }
 
 impl Cells {
-    /// An empty column for a field.
+    /// Return an empty column for a field.
     pub(crate) fn new(field: &Field, numbers: Numbers) -> Self {
         if numbers == Numbers::Physical {
             return Self::F64(Vec::new());
         }
-        let (least, most) = field.whole_range();
+        let (least, most) = field.raw_range();
         let holds = |from: i64, to: i64| from <= least && most <= to;
         match () {
             () if holds(0, u8::MAX.into()) => Self::U8(Vec::new()),
@@ -93,29 +93,29 @@ impl Cells {
         }
     }
 
-    /// How many numbers it has.
+    /// Return the number of its numbers.
     #[must_use]
     pub fn len(&self) -> usize {
         each!(self, all => all.len())
     }
 
-    /// Whether it has none.
+    /// Return whether it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Have memory for so many more.
+    /// Reserve memory for `more` numbers.
     pub(crate) fn reserve(&mut self, more: usize, advise: Advise) {
         each!(self, all => reserve(all, more, advise));
     }
 
-    /// Forget the numbers, keep their memory.
+    /// Remove the numbers, but keep their memory.
     pub(crate) fn clear(&mut self) {
         each!(self, all => all.clear());
     }
 
-    /// An empty column of the same type.
+    /// Return an empty column of the same type.
     pub(crate) fn like(&self) -> Self {
         match self {
             Self::F64(_) => Self::F64(Vec::new()),
@@ -129,20 +129,21 @@ impl Cells {
         }
     }
 
-    /// One more number: the whole one, and its physical value. The types hold what fields allow.
-    pub(crate) fn push(&mut self, whole: i64, physical: Value) {
+    /// Append a number, given as raw and physical value. The type holds every value that the field
+    /// allows.
+    pub(crate) fn push(&mut self, raw: i64, physical: Value) {
         match self {
             Self::F64(all) => all.push(match physical {
                 Value::Real(real) => real,
-                _ => whole as f64,
+                _ => raw as f64,
             }),
-            Self::U8(all) => all.push(whole as u8),
-            Self::I8(all) => all.push(whole as i8),
-            Self::U16(all) => all.push(whole as u16),
-            Self::I16(all) => all.push(whole as i16),
-            Self::U32(all) => all.push(whole as u32),
-            Self::I32(all) => all.push(whole as i32),
-            Self::I64(all) => all.push(whole),
+            Self::U8(all) => all.push(raw as u8),
+            Self::I8(all) => all.push(raw as i8),
+            Self::U16(all) => all.push(raw as u16),
+            Self::I16(all) => all.push(raw as i16),
+            Self::U32(all) => all.push(raw as u32),
+            Self::I32(all) => all.push(raw as i32),
+            Self::I64(all) => all.push(raw),
         }
     }
 }

@@ -1,26 +1,26 @@
-//! The frames of one group into the columns of their forms.
+//! Decodes the frames of one group into the columns of their variants.
 
 use super::block::Block;
 use super::cells::Cells;
-use super::columns::Rows;
 use super::plan::{Allowed, FieldPlan, Plan};
-use crate::field::Number;
-use crate::read::{Reader, Value, physical, whole};
+use super::rows::Rows;
+use crate::number::{Number, Value};
+use crate::read::Reader;
 use crate::table::Table;
 
-/// What the frames of a group are read from and into.
+/// The frames of a group in a block.
 pub(crate) struct Job<'a> {
     pub(crate) table: &'a Table,
     pub(crate) block: &'a Block,
-    /// Where the block stands in the stream.
+    /// The position of the block in the stream.
     pub(crate) offset: u64,
-    /// Where the frames start in the block.
+    /// The positions of the frames in the block.
     pub(crate) frames: &'a [u16],
 }
 
 impl Job<'_> {
-    /// Append the frames to the rows of their forms; those that no form allows to `refused`.
-    pub(crate) fn run(&self, plan: &Plan, rows: &mut [Rows], refused: &mut Vec<u64>) {
+    /// Append the frames to the rows of their variants, or to `rejected` if no variant allows them.
+    pub(crate) fn run(&self, plan: &Plan, rows: &mut [Rows], rejected: &mut Vec<u64>) {
         if let (Some(fields), Some(rows)) = (&plan.fields, rows.get_mut(plan.rows))
             && fields.iter().all(|field| self.all_allowed(field))
         {
@@ -33,7 +33,7 @@ impl Job<'_> {
         }
         for at in self.frames {
             if !self.row(plan, *at, rows) {
-                refused.push(self.place(*at));
+                rejected.push(self.place(*at));
             }
         }
     }
@@ -50,18 +50,18 @@ impl Job<'_> {
                 let byte = self.block[usize::from(*at) + usize::from(plan.start)];
                 bytes[usize::from(byte)]
             }),
-            Allowed::Some(field) => self.numbers(plan, |number, whole| field.allows(number, whole)),
+            Allowed::Some(field) => self.numbers(plan, |number, raw| field.allows(number, raw)),
         }
     }
 
-    /// Ask of each number of a field, until one says no.
-    fn numbers(&self, plan: &FieldPlan, mut ask: impl FnMut(&Number, i64) -> bool) -> bool {
+    /// Call `check` with each number of a field, until it returns false.
+    fn numbers(&self, plan: &FieldPlan, mut check: impl FnMut(&Number, i64) -> bool) -> bool {
         self.frames.iter().all(|at| {
             let mut start = usize::from(*at) + usize::from(plan.start);
             plan.numbers.iter().all(|number| {
-                let read = whole(number, self.block, start);
+                let read = number.unpack(self.block, start);
                 start += number.width;
-                ask(number, read)
+                check(number, read)
             })
         })
     }
@@ -77,28 +77,28 @@ impl Job<'_> {
             (Some(words), Cells::I16(out)) => words.raw(block, frames, start, out),
             (Some(words), Cells::I32(out)) => words.raw(block, frames, start, out),
             (_, cells) => {
-                self.numbers(plan, |number, whole| {
-                    cells.push(whole, physical(number, whole));
+                self.numbers(plan, |number, raw| {
+                    cells.push(raw, number.physical(raw));
                     true
                 });
             }
         }
     }
 
-    /// One frame, by the first form that allows its values; whether there is one.
+    /// Append one frame to the first variant that allows its values; return whether there is one.
     fn row(&self, plan: &Plan, at: u16, all: &mut [Rows]) -> bool {
         let data = self.table.frame().overhead() + 1;
-        for (form, rows) in plan.forms.iter().zip(all.iter_mut().skip(plan.rows)) {
-            let Some(layout) = self.table.layout(*form) else {
+        for (id, rows) in plan.variants.iter().zip(all.iter_mut().skip(plan.rows)) {
+            let Some(variant) = self.table.variant(*id) else {
                 continue;
             };
             let start = usize::from(at) + data;
             let reader = Reader {
-                form: *form,
-                layout,
+                id: *id,
+                variant,
                 data: self
                     .block
-                    .get(start..start + layout.size())
+                    .get(start..start + variant.size())
                     .unwrap_or_default(),
                 offset: data,
             };
@@ -113,11 +113,11 @@ impl Job<'_> {
     }
 }
 
-/// Each field's numbers to its column.
+/// Append each field's numbers to its column.
 fn push(values: Vec<(usize, i64, Value)>, fields: &mut [Cells]) {
-    for (field, whole, physical) in values {
+    for (field, raw, physical) in values {
         if let Some(cells) = fields.get_mut(field) {
-            cells.push(whole, physical);
+            cells.push(raw, physical);
         }
     }
 }

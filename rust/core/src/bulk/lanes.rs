@@ -1,18 +1,18 @@
-//! The frames of a block, found in three places at once.
+//! Finds the frames of a block in three places at once.
 //!
-//! A scan has no memory: what stands at a position depends on the bytes from there on. But where
-//! the next frame starts is known only once this one's LEN is, and the processor waits for that.
-//! So a block is scanned in lanes, of which all but the first start at a guess: where a frame
-//! seems to stand. A lane that ends exactly where the next one started shows that the guess was
-//! right, and that both found what one scan would have found. Where a guess was wrong, the lanes
-//! behind it do not count, and the next block starts there.
+//! A scan has no memory: the verdict on a position depends only on the bytes from there on. But the
+//! start of the next frame depends on this frame's LEN, and the processor waits for that. Therefore
+//! a block is scanned in lanes. All lanes but the first start at a guess: a position at which a
+//! frame seems to start. If a lane ends exactly where the next one started, the guess was right,
+//! and both found the same as one scan. If a guess was wrong, the lanes after it do not count, and
+//! the next block starts there.
 
 use super::block::{BLOCK, Block, Found, LANES, Look, MOST, Quick};
 use super::spans::Runs;
 use super::window::WINDOW;
-use crate::error::Reason;
+use crate::reason::Reason;
 
-/// How many bytes a guess may look at.
+/// The number of bytes that a guess may examine.
 const GUESSING: usize = 512;
 
 /// One lane's finds.
@@ -24,12 +24,12 @@ pub(crate) struct Lane {
 }
 
 impl Lane {
-    /// The frames, in order.
+    /// Return the frames, in order.
     pub(crate) fn found(&self) -> &[Found] {
         self.found.get(..self.count).unwrap_or_default()
     }
 
-    /// The noise.
+    /// Return the noise.
     pub(crate) fn noise(&self) -> &Runs {
         &self.noise
     }
@@ -60,8 +60,8 @@ impl Lanes {
         }
     }
 
-    /// Scan a block from its start, where nothing before it reaches in. Gives the lanes that count,
-    /// and where the last of them ended.
+    /// Scan a block from its start, into which no earlier frame reaches. Return the lanes that
+    /// count, and the end of the last of them.
     #[inline(never)]
     #[allow(clippy::indexing_slicing)] // by lane, below their number
     pub(crate) fn run(&mut self, quick: Quick<'_>, data: &Block) -> (&[Lane], usize) {
@@ -106,11 +106,11 @@ fn step(quick: Quick<'_>, data: &Block, at: usize, end: usize, lane: &mut Lane) 
     }
 }
 
-/// Account for the noise from `at` on. Gives where a frame stands, or `end`.
+/// Account for the noise from `at` on. Return the position of the next frame, or `end`.
 #[inline(never)]
 fn pass_noise(quick: Quick<'_>, data: &Block, from: usize, end: usize, runs: &mut Runs) -> usize {
     let mut at = from;
-    // In registers; the most common reason is what is left.
+    // Count in registers; the remaining bytes have the most common reason.
     let (mut lengths, mut ids, mut checks) = (0, 0, 0);
     'windows: while at < end {
         let window = quick.window(data, at as u16).first(end - at);
@@ -138,8 +138,8 @@ fn pass_noise(quick: Quick<'_>, data: &Block, from: usize, end: usize, runs: &mu
     at
 }
 
-/// The first position from `at` on where a frame stands; if none does for a while, the lane is not
-/// worth it.
+/// Return the first position from `at` on where a frame starts. If the search takes long, the lane
+/// is not worth its cost.
 fn guess(quick: Quick<'_>, data: &Block, at: usize) -> usize {
     let enough = at + GUESSING;
     match pass_noise(quick, data, at, enough, &mut Runs::default()) {

@@ -1,7 +1,8 @@
-//! Whole captures at the speed of memory: where the frames are, and their values in columns.
+//! Reads whole captures at the speed of memory: the positions of frames, and their values in
+//! columns.
 //!
-//! The framing is that of [`crate::Framer`], frame for frame; what differs is that frames are looked
-//! for in blocks of 64 KiB and then decoded message by message, not one after the other.
+//! It finds the same frames as [`crate::Framer`], but searches blocks of 64 KiB and then decodes
+//! all frames of a message together, instead of one frame after the other.
 
 mod block;
 mod buckets;
@@ -11,6 +12,7 @@ mod decode;
 mod lanes;
 mod offsets;
 mod plan;
+mod rows;
 mod sample;
 mod scale;
 mod spans;
@@ -19,7 +21,8 @@ mod window;
 mod words;
 
 pub use cells::{Advise, Cells, Numbers};
-pub use columns::{ColumnReader, Columns, Rows};
+pub use columns::{ColumnReader, Columns};
 pub use offsets::{OffsetReader, Offsets};
 pub use plan::Plans;
+pub use rows::Rows;
 pub use spans::Spans;

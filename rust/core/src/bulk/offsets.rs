@@ -1,4 +1,4 @@
-//! Where the frames of a stream are, and nothing else of them.
+//! Finds only the positions of the frames of a stream.
 
 use super::block::{Block, Found, LANES};
 use super::cells::{Advise, reserve};
@@ -28,12 +28,12 @@ pub struct OffsetReader {
 struct Collected {
     frames: Vec<u64>,
     counts: Counts,
-    /// Where the id stands in a frame.
+    /// The index of the id in a frame.
     id_at: usize,
 }
 
 impl OffsetReader {
-    /// A reader at the start of a stream, with the memory of what an earlier one found, if any.
+    /// Return a reader for a new stream; it reuses the memory of `old` offsets.
     #[must_use]
     pub fn new(rules: Rules, old: Option<Offsets>) -> Self {
         let id_at = rules.frame().overhead();
@@ -49,24 +49,24 @@ impl OffsetReader {
         }
     }
 
-    /// Ask for the memory that the frames of `data` will need, as far as a look at parts of it tells.
+    /// Reserve memory for the frames of `data`, estimated from parts of it.
     pub fn expect(&mut self, data: &[u8], advise: Advise) {
         let rules = self.stream.rules();
         let counts = expected(rules, rules.legal().groups().len(), data);
         reserve(&mut self.collected.frames, counts.iter().sum(), advise);
     }
 
-    /// Take bytes; the frames that are certain are kept for [`OffsetReader::take`].
+    /// Feed bytes; [`OffsetReader::take`] returns the frames that are certain.
     pub fn feed(&mut self, chunk: &[u8]) {
         self.stream.feed(chunk, &mut self.collected);
     }
 
-    /// Refute what still waits.
+    /// Refute the candidate that waits.
     pub fn flush(&mut self) {
         self.stream.flush(&mut self.collected);
     }
 
-    /// What was found since the last time.
+    /// Return everything found since the last call.
     pub fn take(&mut self) -> Offsets {
         Offsets {
             frames: std::mem::take(&mut self.collected.frames),
@@ -74,13 +74,13 @@ impl OffsetReader {
         }
     }
 
-    /// What came so far.
+    /// Return the counts since the start of the stream.
     #[must_use]
     pub fn tally(&self) -> &Tally {
         self.stream.tally()
     }
 
-    /// Bytes fed that are not accounted for yet.
+    /// Return the number of bytes fed that are not accounted for yet.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.stream.pending()
@@ -98,7 +98,7 @@ impl Collect for Collected {
     }
 }
 
-/// Counts frames by id; each lane by itself, since adding to one count again and again is slow.
+/// Counts frames by id, separately for each lane: adding to one count again and again is slow.
 #[derive(Clone)]
 struct Counts([[u32; 256]; LANES]);
 

@@ -1,12 +1,12 @@
-//! How the frames of one group are read, settled once for each table.
+//! Plans how to read the frames of each group, once for each table.
 
 use super::words::Words;
-use crate::field::{Field, Number};
-use crate::legal::Form;
-use crate::read::whole;
-use crate::table::{Layout, Listening, Table};
+use crate::field::Field;
+use crate::message::{Listening, Variant, VariantId};
+use crate::number::Number;
+use crate::table::Table;
 
-/// How all frames are read that one who listens to some directions takes.
+/// The plans for every frame in the directions of a reader.
 #[derive(Clone, Debug)]
 pub struct Plans {
     pub(crate) listening: Listening,
@@ -14,13 +14,13 @@ pub struct Plans {
 }
 
 impl Plans {
-    /// The plans for a table. They take a while to make, and serve any number of readers.
+    /// Return the plans for a table. They are expensive to make and serve any number of readers.
     #[must_use]
     pub fn new(table: &Table, listening: Listening) -> Self {
         let mut rows = 0;
-        let plan = |forms: &Vec<Form>| {
-            let plan = Plan::new(table, forms, rows);
-            rows += forms.len();
+        let plan = |variants: &Vec<VariantId>| {
+            let plan = Plan::new(table, variants, rows);
+            rows += variants.len();
             plan
         };
         let groups = table.rules(listening).legal().groups().iter();
@@ -36,52 +36,52 @@ impl Plans {
 pub(crate) struct Plan {
     /// The id of its frames.
     pub(crate) id: u8,
-    /// The forms that a frame can be, in the order in which they are tried.
-    pub(crate) forms: Vec<Form>,
-    /// Where the rows of the first one stand among those of all forms.
+    /// The variants that a frame can be, in order of precedence.
+    pub(crate) variants: Vec<VariantId>,
+    /// The index of the first one's rows among those of all variants.
     pub(crate) rows: usize,
-    /// How the first form is read column by column, where that can be done.
+    /// How to read the first variant column by column, if that is possible.
     pub(crate) fields: Option<Vec<FieldPlan>>,
 }
 
-/// How one field is read.
+/// How to read one field.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldPlan {
     /// Where it starts in a frame.
     pub(crate) start: u16,
     /// Its numbers.
     pub(crate) numbers: Vec<Number>,
-    /// Which words are allowed.
+    /// Which raw values are allowed.
     pub(crate) allowed: Allowed,
-    /// Its fast reader, where the numbers are alike enough.
+    /// Its fast reader, if its numbers have the same width and order.
     pub(crate) words: Option<Words>,
 }
 
 impl Plan {
-    fn new(table: &Table, forms: &[Form], rows: usize) -> Self {
-        let first = forms.first();
-        let id = first.and_then(|form| table.commands().get(form.command));
-        let layout = first.and_then(|form| table.layout(*form));
+    fn new(table: &Table, variants: &[VariantId], rows: usize) -> Self {
+        let first = variants.first();
+        let id = first.and_then(|variant| table.commands().get(variant.command));
+        let variant = first.and_then(|variant| table.variant(*variant));
         Self {
             id: id.map_or(0, |command| command.id),
-            forms: forms.to_vec(),
+            variants: variants.to_vec(),
             rows,
-            fields: layout.and_then(|layout| plain_fields(table, layout)),
+            fields: variant.and_then(|variant| plain_fields(table, variant)),
         }
     }
 }
 
-/// The fields of a form, if no value decides how another is read.
-fn plain_fields(table: &Table, layout: &Layout) -> Option<Vec<FieldPlan>> {
+/// Return the fields of a variant, if it has no selector.
+fn plain_fields(table: &Table, variant: &Variant) -> Option<Vec<FieldPlan>> {
     let data = table.frame().overhead() + 1;
     let plan = |(index, field): (usize, &Field)| {
-        let start = u16::try_from(data + layout.start(index)).ok()?;
+        let start = u16::try_from(data + variant.start(index)).ok()?;
         field
             .selector
             .is_none()
             .then(|| FieldPlan::new(start, field))
     };
-    layout.fields().iter().enumerate().map(plan).collect()
+    variant.fields().iter().enumerate().map(plan).collect()
 }
 
 impl FieldPlan {
@@ -96,26 +96,26 @@ impl FieldPlan {
     }
 }
 
-/// Which words a field allows.
+/// Which raw values a field allows.
 #[derive(Clone, Debug)]
 pub(crate) enum Allowed {
-    /// All that its bytes can be.
+    /// Every combination of its bytes.
     All,
-    /// It is one byte, and these are.
+    /// The field is one byte; these are allowed.
     Bytes(Box<[bool; 256]>),
-    /// Those that the field says.
+    /// Those that the field allows.
     Some(Box<Field>),
 }
 
 impl Allowed {
     fn new(field: &Field, numbers: &[Number]) -> Self {
-        if field.choices.is_empty() && numbers.iter().all(Number::takes_every_word) {
+        if field.choices.is_empty() && numbers.iter().all(Number::takes_all_bytes) {
             return Self::All;
         }
         if let [number] = numbers
             && number.width == 1
         {
-            let allows = |byte| field.allows(number, whole(number, &[byte], 0));
+            let allows = |byte| field.allows(number, number.unpack(&[byte], 0));
             let mut bytes = [false; 256];
             for (byte, allowed) in (0..=u8::MAX).zip(&mut bytes) {
                 *allowed = allows(byte);

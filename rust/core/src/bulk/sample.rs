@@ -1,17 +1,17 @@
-//! How much a capture will give, from a part of it: so that memory is asked for once.
+//! Estimates the number of frames in a capture from parts of it, to allocate memory once.
 
 use super::block::{Block, Found, LANES};
 use super::stream::{Collect, Stream};
 use crate::judge::Rules;
 use crate::tally::Tally;
 
-/// Smaller input is not worth it.
+/// Smaller input is not worth an estimate.
 const WORTH: usize = 1 << 20;
-/// So many looks of so many bytes are taken.
+/// The number of parts that are read, and their size.
 const LOOKS: usize = 16;
 const LOOK: usize = 1 << 14;
 
-/// About how many frames of each group are in `data`, rather too many than too few.
+/// Estimate the number of frames of each group in `data`, rather too high than too low.
 pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> {
     if data.len() < WORTH {
         return Vec::new();
@@ -24,7 +24,7 @@ pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> 
     }
     let looked_at = (LOOKS * LOOK) as u64;
     let estimate = |count: u64| {
-        // What a sixteenth does not show is a few frames, or none.
+        // Add a sixteenth, so that the estimate is rarely too low.
         let all = (count + count / 16) * data.len() as u64 / looked_at;
         usize::try_from(all).unwrap_or_default()
     };

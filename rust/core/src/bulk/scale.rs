@@ -1,25 +1,25 @@
-//! A scale without a division.
+//! Scales without a division.
 //!
-//! The physical value is the double nearest to `whole * multiply / divide`. Dividing gives it, and
-//! costs more than all the rest; multiplying by the nearest double to `multiply / divide` does not:
-//! for 8,779 words of 65,536 the last bit of a hundredth is wrong. But that factor in two parts
-//! does: the high one has so few bits that its product is exact, the low one makes up for the
-//! rest, and one rounding is left, that of the sum. Whether it holds is tried for every word.
+//! The physical value is the double nearest to `raw * multiply / divide`. A division computes it,
+//! but costs more than everything else. Multiplying by the double nearest to `multiply / divide` is
+//! not exact: for hundredths, the last bit is wrong for 8,779 of 65,536 raw values. A factor in two
+//! parts is exact: the high part has so few bits that its product is exact, the low part adds the
+//! rest, and only the sum is rounded. The constructor verifies this for every raw value.
 
-use crate::field::Number;
+use crate::number::Number;
 
-/// How a whole number becomes a physical value.
+/// How a raw value becomes a physical value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
     multiply: f64,
     divide: f64,
     high: f64,
     low: f64,
-    /// Whether multiplying gives what dividing does.
+    /// Whether multiplying has the same result as dividing.
     pub(crate) exact: bool,
 }
 
-/// The bits of the high part that are not used: those of a word of two bytes with its sign.
+/// The unused bits of the high part: as many as a two-byte number with its sign has.
 const SPARE: u64 = (1 << 17) - 1;
 
 impl Scale {
@@ -33,7 +33,7 @@ impl Scale {
     };
 
     pub(crate) fn new(number: &Number) -> Self {
-        // Both casts are exact: the table is checked for it.
+        // Both casts are exact: Table::new checks that.
         let (multiply, divide) = (number.multiply as f64, number.divide as f64);
         if divide == 1.0 {
             return Self {
@@ -57,13 +57,13 @@ impl Scale {
     }
 
     #[inline(always)]
-    pub(crate) fn multiplied(self, whole: i32) -> f64 {
-        let whole = f64::from(whole);
-        whole * self.high + whole * self.low
+    pub(crate) fn multiplied(self, raw: i32) -> f64 {
+        let raw = f64::from(raw);
+        raw * self.high + raw * self.low
     }
 
     #[inline(always)]
-    pub(crate) fn divided(self, whole: i32) -> f64 {
-        f64::from(whole) * self.multiply / self.divide
+    pub(crate) fn divided(self, raw: i32) -> f64 {
+        f64::from(raw) * self.multiply / self.divide
     }
 }

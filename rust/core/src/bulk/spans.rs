@@ -1,28 +1,28 @@
-//! Where noise stands between frames, and how much of it there is.
+//! The positions and sizes of the noise between frames.
 
-use crate::error::Reason;
+use crate::reason::Reason;
 use crate::tally::Tally;
 
-/// Stretches of noise, adjacent ones joined: where they start in the stream, and their sizes.
+/// Spans of noise, adjacent ones joined: their positions in the stream, and their sizes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Spans {
-    /// Where each starts.
+    /// The position of each span.
     pub offsets: Vec<u64>,
-    /// Its bytes.
+    /// The number of its bytes.
     pub sizes: Vec<u64>,
 }
 
-/// Noise as it is found: in pieces that may touch each other.
+/// Collects noise that is found in adjacent pieces.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Noise {
-    /// The span that may go on: from where, to where.
+    /// The start and the end of the span that may continue.
     open: Option<(u64, u64)>,
-    /// Where a span was ended by a flush, and no frame has come since.
+    /// The end of a span that a flush ended, if no frame has come since.
     flushed: Option<u64>,
     closed: Spans,
 }
 
-/// The noise of one lane or scan, not yet known to count.
+/// The noise of one lane or scan, before it is known whether the lane counts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Runs {
     pub(crate) spans: Vec<(u32, u32)>,
@@ -35,7 +35,7 @@ impl Runs {
         self.reasons = Default::default();
     }
 
-    /// Noise from `from` to before `to`, which may touch the last.
+    /// Add noise from `from` to before `to`, which may touch the last noise.
     #[inline]
     pub(crate) fn span(&mut self, from: usize, to: usize) {
         let (from, to) = (from as u32, to as u32);
@@ -54,7 +54,7 @@ impl Runs {
 }
 
 impl Noise {
-    /// Take over what was found from stream offset `base` on.
+    /// Add the noise found from stream offset `base` on.
     pub(crate) fn add(&mut self, base: u64, runs: &Runs, tally: &mut Tally) {
         for (total, count) in tally.noise.iter_mut().zip(runs.reasons) {
             *total += count;
@@ -71,15 +71,15 @@ impl Noise {
         }
     }
 
-    /// All before stream offset `done` is accounted for: a span that ends earlier was followed by a
-    /// frame.
+    /// Account for everything before stream offset `done`: a frame followed each span that ends
+    /// earlier.
     pub(crate) fn settle(&mut self, done: u64, tally: &mut Tally) {
         if self.open.is_none_or(|(_, end)| end < done) {
             self.close(done, tally);
         }
     }
 
-    /// The noise so far is over; if there is a frame between it and `next`, that one resynced.
+    /// End the open span; if a frame lies between it and `next`, count a resync.
     fn close(&mut self, next: u64, tally: &mut Tally) {
         self.end();
         if self.flushed.take_if(|end| *end < next).is_some() {
@@ -87,7 +87,7 @@ impl Noise {
         }
     }
 
-    /// The stream was flushed: its noise is over, though more may touch it.
+    /// End the noise at a flush, although more noise may touch it.
     pub(crate) fn end(&mut self) {
         if let Some((from, to)) = self.open.take() {
             self.closed.offsets.push(from);
@@ -96,7 +96,7 @@ impl Noise {
         }
     }
 
-    /// The spans that are over.
+    /// Return the completed spans.
     pub(crate) fn take(&mut self) -> Spans {
         std::mem::take(&mut self.closed)
     }

@@ -1,20 +1,20 @@
-//! A stream in bulk: over the seam between two calls, and block by block through a chunk.
+//! Scans a stream in bulk: first the seam between two calls, then a chunk block by block.
 
 use super::block::{BLOCK, Block, Found, LANES, MARGIN, Quick};
 use super::lanes::{Lane, Lanes};
 use super::spans::{Noise, Runs, Spans};
-use crate::error::Reason;
 use crate::frame::Frame;
 use crate::judge::Rules;
 use crate::legal::{BELIEVED, Heading};
+use crate::reason::Reason;
 use crate::scan::{Sink, scan};
 use crate::seam::Seam;
 use crate::tally::Tally;
 
-/// Takes the frames of a stream, in order, in portions.
+/// Receives the frames of a stream in order, in portions.
 pub(crate) trait Collect {
-    /// Frames whose positions count from the start of `block`, which is at `offset` in the stream;
-    /// lane after lane.
+    /// Receive frames, lane after lane. Their positions count from the start of `block`, which is
+    /// at `offset` in the stream.
     fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally);
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct Stream {
     scratch: Scratch,
 }
 
-/// What a scan of less than a block needs.
+/// Buffers for scanning less than a block.
 #[derive(Clone)]
 struct Scratch {
     block: Box<Block>,
@@ -65,7 +65,7 @@ impl Stream {
         &self.rules
     }
 
-    /// The noise that is over by now.
+    /// Return the spans of noise that a frame has ended.
     pub(crate) fn take_noise(&mut self) -> Spans {
         self.noise.take()
     }
@@ -90,7 +90,7 @@ impl Stream {
                 chunk.get(at - seam..).unwrap_or_default(),
                 collect,
             );
-            // What is left is less than a block, or has to be scanned piece by piece.
+            // The rest is shorter than a block, or has to be scanned piece by piece.
             while let Some(rest) = chunk.get(at - seam..).filter(|rest| !rest.is_empty()) {
                 let passed = self.scan(offset + at as u64, rest, rest.len(), at_end, collect);
                 at += passed;
@@ -103,7 +103,7 @@ impl Stream {
         self.seam.keep(crossing, chunk, at);
     }
 
-    /// Whole blocks at the start of `data`; gives where the last one ended.
+    /// Scan the whole blocks at the start of `data`; return the end of the last one.
     fn blocks(&mut self, offset: u64, data: &[u8], collect: &mut impl Collect) -> usize {
         let Some(quick) = Quick::new(&self.rules) else {
             return 0;
@@ -123,8 +123,8 @@ impl Stream {
         at
     }
 
-    /// The positions of `data` up to `stop`, or as many as a block has. Gives the first that was
-    /// not passed.
+    /// Scan the positions of `data` up to `stop`, or as many as a block has. Return the first
+    /// position that was not scanned.
     fn scan(
         &mut self,
         offset: u64,
@@ -156,7 +156,7 @@ impl Stream {
     }
 }
 
-/// What a scan finds, as a lane gives it.
+/// The finds of a scan, in the form of a lane.
 struct Finds<'a> {
     rules: &'a Rules,
     found: &'a mut Vec<Found>,

@@ -1,9 +1,10 @@
-//! Several positions looked at together: most bytes of noise are no header, or one with a LEN that no
-//! frame has, and that shows without a look at each of them.
+//! Checks several positions together: most bytes of noise do not start a header, or start one with
+//! a LEN that no frame has, and need no check of their own.
 //!
-//! The bytes of a word stand for positions, the lowest for the first; its highest bit says yes.
+//! Each byte of a 64-bit word represents a position, the lowest byte the first; its highest bit
+//! means yes.
 
-/// How many positions.
+/// The number of positions.
 pub(crate) const WINDOW: usize = 8;
 /// The bytes that decide them.
 pub(crate) const SEEN: usize = WINDOW + 2;
@@ -11,12 +12,12 @@ pub(crate) const SEEN: usize = WINDOW + 2;
 const HIGH: u64 = 0x8080_8080_8080_8080;
 const ONES: u64 = 0x0101_0101_0101_0101;
 
-/// What to look for.
+/// The pattern to search for.
 #[derive(Clone, Copy)]
 pub(crate) struct Pattern {
     first: u64,
     second: u64,
-    /// The smallest and the largest LEN, as far as seven bits can say.
+    /// The smallest and the largest LEN, limited to seven bits.
     least: u64,
     most: u64,
     /// Whether a LEN of 128 and more is possible.
@@ -26,9 +27,9 @@ pub(crate) struct Pattern {
 /// What the positions are.
 #[derive(Clone, Copy)]
 pub(crate) struct Window {
-    /// Where a frame may stand.
+    /// The positions at which a frame may start.
     candidates: u64,
-    /// Where there is a header, but with a LEN that no frame has.
+    /// The positions of headers with a LEN that no frame has.
     bad_lengths: u64,
 }
 
@@ -44,7 +45,7 @@ impl Pattern {
         }
     }
 
-    /// Look at a window.
+    /// Check a window.
     #[inline(always)]
     pub(crate) fn look(self, seen: &[u8; SEEN]) -> Window {
         let [first, second, length] = [0, 1, 2].map(|start| word(seen, start));
@@ -62,7 +63,7 @@ impl Pattern {
 }
 
 impl Window {
-    /// Only its first positions.
+    /// Keep only the first positions.
     #[inline(always)]
     pub(crate) fn first(self, count: usize) -> Self {
         let mask = if count < WINDOW {
@@ -76,7 +77,7 @@ impl Window {
         }
     }
 
-    /// Take out the next position where a frame may stand.
+    /// Remove and return the next position at which a frame may start.
     #[inline(always)]
     pub(crate) fn next(&mut self) -> Option<usize> {
         if self.candidates == 0 {
@@ -87,7 +88,7 @@ impl Window {
         Some(index as usize)
     }
 
-    /// How many headers have a LEN that no frame has.
+    /// Return the number of headers with a LEN that no frame has.
     #[inline(always)]
     pub(crate) fn bad_lengths(self) -> usize {
         ((self.bad_lengths >> 7).wrapping_mul(ONES) >> 56) as usize

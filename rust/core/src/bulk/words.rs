@@ -1,11 +1,11 @@
-//! Fields whose numbers are bytes or big-endian words of two, as nearly all are.
+//! Reads fields whose numbers are single bytes or big-endian pairs, as nearly all fields are.
 
 use super::block::Block;
 use super::cells::Cell;
 use super::scale::Scale;
-use crate::field::{Number, Order};
+use crate::number::{Number, Order};
 
-/// How many numbers such a field may have at most.
+/// The limit on the numbers of such a field.
 const MOST: usize = 6;
 
 /// The rules of such a field: up to six numbers of one width.
@@ -13,13 +13,14 @@ const MOST: usize = 6;
 pub(crate) struct Words {
     width: usize,
     count: usize,
-    /// Added before a word is cut to its width, and taken off after: that is the sign rule.
+    /// Added before a number is cut to its width, and subtracted afterwards, to apply the sign
+    /// rule.
     bias: [i32; MOST],
     scales: [Scale; MOST],
 }
 
 impl Words {
-    /// The rules, if these numbers are such a field.
+    /// Return the rules, if these numbers form such a field.
     pub(crate) fn new(numbers: &[Number]) -> Option<Self> {
         let width = numbers.first()?.width;
         let alike = |number: &Number| {
@@ -37,7 +38,7 @@ impl Words {
         };
         let places = words.bias.iter_mut().zip(&mut words.scales);
         for (number, (bias, scale)) in numbers.iter().zip(places) {
-            // A sign rule beyond the word is none: nothing is negative, or all is.
+            // Limit a sign rule beyond the width: no raw value is negative, or all are.
             *bias = i32::try_from(most - number.signed_at.clamp(-1, most)).ok()?;
             *scale = Scale::new(number);
         }
@@ -64,7 +65,7 @@ impl Words {
         }
     }
 
-    /// Append a row of whole numbers for each frame.
+    /// Append a row of raw values for each frame.
     pub(crate) fn raw<T: Cell>(&self, block: &Block, frames: &[u16], start: u16, out: &mut Vec<T>) {
         let all = Task {
             words: self,
@@ -99,15 +100,15 @@ impl Task<'_> {
     fn physical<const WIDTH: usize, const N: usize>(&self, out: &mut Vec<f64>) {
         let scales: [Scale; N] = std::array::from_fn(|index| self.words.scales[index]);
         if scales.iter().all(|scale| scale.exact) {
-            self.rows::<WIDTH, N, f64>(out, |index, whole| scales[index].multiplied(whole));
+            self.rows::<WIDTH, N, f64>(out, |index, raw| scales[index].multiplied(raw));
         } else {
-            self.rows::<WIDTH, N, f64>(out, |index, whole| scales[index].divided(whole));
+            self.rows::<WIDTH, N, f64>(out, |index, raw| scales[index].divided(raw));
         }
     }
 
     #[inline(never)]
     fn raw<const WIDTH: usize, const N: usize, T: Cell>(&self, out: &mut Vec<T>) {
-        self.rows::<WIDTH, N, T>(out, |_, whole| T::of(whole));
+        self.rows::<WIDTH, N, T>(out, |_, raw| T::of(raw));
     }
 
     #[inline(always)]

@@ -1,22 +1,22 @@
-//! What the tests share: values to encode, and small tables.
+//! Helpers of the tests: values to encode, and small tables.
 
 // Each test file compiles this by itself and uses a part of it.
 #![allow(dead_code)]
 
 use cobotwire_core::{
-    Case, Check, Command, Event, Field, FrameFormat, Framer, Given, Layout, Number, Order, Reason,
-    Row, Table, Unread, ValueFault,
+    Case, Check, Command, Event, Field, FrameFormat, Framer, Given, Number, Order, Reason, Row,
+    Table, Unread, ValueFault, Variant,
 };
 
 /// A value as a caller may have it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
-    Whole(i64),
+    Integer(i64),
     Huge,
     Real(f64),
     Bool(bool),
     Text,
-    /// Its conversion fails by itself.
+    /// Its conversion raises an error of its own.
     Broken,
     Row(Vec<Sample>),
 }
@@ -31,9 +31,9 @@ impl Given for Sample {
     type Error = Broken;
     type Row = Samples;
 
-    fn whole(&self, flag: bool) -> Result<i64, Unread<Broken>> {
+    fn integer(&self, flag: bool) -> Result<i64, Unread<Broken>> {
         match self {
-            Self::Whole(whole) => Ok(*whole),
+            Self::Integer(integer) => Ok(*integer),
             Self::Bool(set) if flag => Ok(i64::from(*set)),
             Self::Huge => Err(Unread::Beyond),
             Self::Broken => Err(Unread::Foreign(Broken)),
@@ -43,7 +43,7 @@ impl Given for Sample {
 
     fn real(&self) -> Result<f64, Unread<Broken>> {
         match self {
-            Self::Whole(whole) => Ok(*whole as f64),
+            Self::Integer(integer) => Ok(*integer as f64),
             Self::Real(real) => Ok(*real),
             Self::Huge => Err(Unread::Fault(ValueFault::Range)),
             Self::Broken => Err(Unread::Foreign(Broken)),
@@ -76,7 +76,7 @@ impl Row for Samples {
     }
 }
 
-/// An unsigned number of so many bytes.
+/// Return an unsigned number of `width` bytes.
 pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
     Number {
         width,
@@ -89,7 +89,7 @@ pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
     }
 }
 
-/// The protocol's signed word: raw 33000 is still positive.
+/// Return the protocol's signed word: raw 33000 is still positive.
 pub fn word(divide: i64) -> Number {
     Number {
         signed_at: 33000,
@@ -120,20 +120,21 @@ pub fn frame_format() -> FrameFormat {
     }
 }
 
-/// A table whose command `n` has id `0x20 + n`, and one form in each direction: these fields.
-pub fn table(forms: Vec<Vec<Field>>) -> Table {
-    table_of(frame_format(), forms)
+/// Return a table whose command `n` has id `0x20 + n`, and one variant in each direction: these
+/// fields.
+pub fn table(variants: Vec<Vec<Field>>) -> Table {
+    table_of(frame_format(), variants)
 }
 
-/// The same with other frames.
-pub fn table_of(frame: FrameFormat, forms: Vec<Vec<Field>>) -> Table {
+/// Return the same table with another frame format.
+pub fn table_of(frame: FrameFormat, variants: Vec<Vec<Field>>) -> Table {
     let command = |(id, fields): (u8, Vec<Field>)| Command {
         id,
-        request: vec![Layout::new(fields.clone())],
-        reply: vec![Layout::new(fields)],
+        request: vec![Variant::new(fields.clone())],
+        reply: vec![Variant::new(fields)],
     };
-    let commands = (0x20..).zip(forms).map(command).collect();
-    Table::new(frame, commands).expect("the tests' tables are sound")
+    let commands = (0x20..).zip(variants).map(command).collect();
+    Table::new(frame, commands).expect("the tests' tables are valid")
 }
 
 /// An event with its own bytes; `None` is a frame.
@@ -150,7 +151,7 @@ pub fn owned(event: Event<'_>) -> Owned {
     }
 }
 
-/// All events of a stream cut into such chunks, noise of one reason joined over the calls too.
+/// Return the events of a stream in chunks; noise of one reason is joined across calls.
 pub fn events<'a>(framer: &mut Framer, chunks: impl IntoIterator<Item = &'a [u8]>) -> Vec<Owned> {
     let mut all: Vec<Owned> = Vec::new();
     let mut add = |event: Event<'_>| {
@@ -167,7 +168,7 @@ pub fn events<'a>(framer: &mut Framer, chunks: impl IntoIterator<Item = &'a [u8]
     all
 }
 
-/// A small generator of numbers, so that the tests need no crate for it.
+/// A small random number generator, so that the tests need no crate for it.
 pub struct Dice(pub u64);
 
 impl Dice {
@@ -183,7 +184,7 @@ impl Dice {
         self.roll(256) as u8
     }
 
-    /// A stream made of what makes framing hard.
+    /// Return a stream of bytes that are hard to frame.
     pub fn stream(&mut self) -> Vec<u8> {
         const PARTS: [&[u8]; 10] = [
             &[0xFE],

@@ -1,23 +1,23 @@
-//! Reads the generator's JSON: the records of Python's `cobotwire.table`, attribute by attribute.
+//! Reads the generator's JSON: the records of Python's `cobotwire.protocol.table` by attribute.
 
 // Each test file compiles this by itself and uses a part of it.
 #![allow(dead_code)]
 
 use cobotwire_core::{
-    Case, Check, Command, Direction, Field, FrameFormat, Layout, Number, Order, Table,
+    Case, Check, Command, Direction, Field, FrameFormat, Number, Order, Table, Variant,
 };
 use serde_json::Value;
 
 use crate::common::Sample;
 
-/// A table and what is known to be true of it.
+/// A table, the names of its commands, and its vectors.
 pub struct Edition {
     pub table: Table,
     pub names: Vec<String>,
     pub vectors: Vec<Vector>,
 }
 
-/// One frame and the values that it stands for, or why it stands for none.
+/// One frame and its values, or the reason of its rejection.
 pub struct Vector {
     pub name: String,
     pub command: String,
@@ -25,11 +25,19 @@ pub struct Vector {
     pub frame: Option<Vec<u8>>,
     pub values: Vec<Sample>,
     pub printed: Option<Vec<u8>>,
-    pub refused: Option<(String, usize)>,
+    pub rejected: Option<(String, usize)>,
     pub text: bool,
 }
 
 impl Edition {
+    /// Read an edition of the spec. The generator makes these files, and git ignores them.
+    pub fn generated(name: &str) -> Self {
+        let path = format!("{}/tests/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{path}: {error}; run `make products` first"));
+        Self::read(&text)
+    }
+
     pub fn read(text: &str) -> Self {
         let json: Value = serde_json::from_str(text).expect("the file is JSON");
         let commands = &json["table"]["commands"];
@@ -43,7 +51,7 @@ impl Edition {
 }
 
 fn vector(json: &Value) -> Vector {
-    let refused = &json["refused"];
+    let rejected = &json["refused"];
     Vector {
         name: string(&json["name"]),
         command: json["command"].as_str().unwrap_or_default().to_owned(),
@@ -57,10 +65,10 @@ fn vector(json: &Value) -> Vector {
             .as_array()
             .map_or(vec![], |values| values.iter().map(sample).collect()),
         printed: json["printed"].as_str().map(bytes),
-        refused: (!refused.is_null()).then(|| {
+        rejected: (!rejected.is_null()).then(|| {
             (
-                string(&refused["reason"]),
-                usize::try_from(whole(&refused["offset"])).unwrap(),
+                string(&rejected["reason"]),
+                usize::try_from(integer(&rejected["offset"])).unwrap(),
             )
         }),
         text: json["text"].as_bool().unwrap_or_default(),
@@ -73,19 +81,19 @@ fn sample(json: &Value) -> Sample {
         Value::Array(_) => Sample::Row(all(json, sample)),
         Value::Number(number) => number
             .as_i64()
-            .map_or_else(|| Sample::Real(number.as_f64().unwrap()), Sample::Whole),
+            .map_or_else(|| Sample::Real(number.as_f64().unwrap()), Sample::Integer),
         _ => Sample::Text,
     }
 }
 
 fn frame(json: &Value) -> FrameFormat {
     let bytes = |json: &Value| -> Vec<u8> {
-        let wholes = all(json, whole).into_iter();
-        wholes
+        let integers = all(json, integer).into_iter();
+        integers
             .map(|value| u8::try_from(value).expect("a byte"))
             .collect()
     };
-    // Files of before there were other checks than a footer do not name it.
+    // Files from before other checks existed do not name the footer check.
     let check = match json["check"].as_str().unwrap_or("footer") {
         "footer" => Check::Footer(bytes(&json["footer"])[0]),
         "crc16-modbus" => Check::Crc16Modbus,
@@ -103,52 +111,52 @@ fn frame(json: &Value) -> FrameFormat {
             bytes(addresses)
         },
         check,
-        maximum_length: whole(&json["maximum_length"]),
+        maximum_length: integer(&json["maximum_length"]),
     }
 }
 
 fn command(json: &Value) -> Command {
     Command {
-        id: u8::try_from(whole(&json["id"])).expect("a byte"),
-        request: all(&json["request"], layout),
-        reply: all(&json["reply"], layout),
+        id: u8::try_from(integer(&json["id"])).expect("a byte"),
+        request: all(&json["request"], variant),
+        reply: all(&json["reply"], variant),
     }
 }
 
-fn layout(json: &Value) -> Layout {
-    Layout::new(all(&json["fields"], field))
+fn variant(json: &Value) -> Variant {
+    Variant::new(all(&json["fields"], field))
 }
 
 fn field(json: &Value) -> Field {
     Field {
         flag: json["kind"] == "flag",
         many: json["many"] == true,
-        choices: all(&json["choices"], whole),
-        selector: usize::try_from(whole(&json["selector"])).ok(),
+        choices: all(&json["choices"], integer),
+        selector: usize::try_from(integer(&json["selector"])).ok(),
         cases: all(&json["cases"], case),
     }
 }
 
 fn case(json: &Value) -> Case {
     Case {
-        when: all(&json["when"], whole),
+        when: all(&json["when"], integer),
         numbers: all(&json["numbers"], number),
     }
 }
 
 fn number(json: &Value) -> Number {
     Number {
-        width: usize::try_from(whole(&json["width"])).expect("a width"),
+        width: usize::try_from(integer(&json["width"])).expect("a width"),
         order: if json["order"] == "little" {
             Order::Little
         } else {
             Order::Big
         },
-        signed_at: whole(&json["signed_at"]),
-        multiply: whole(&json["multiply"]),
-        divide: whole(&json["divide"]),
-        minimum: whole(&json["minimum"]),
-        maximum: whole(&json["maximum"]),
+        signed_at: integer(&json["signed_at"]),
+        multiply: integer(&json["multiply"]),
+        divide: integer(&json["divide"]),
+        minimum: integer(&json["minimum"]),
+        maximum: integer(&json["maximum"]),
     }
 }
 
@@ -160,9 +168,9 @@ fn all<T>(json: &Value, read: impl Fn(&Value) -> T) -> Vec<T> {
         .collect()
 }
 
-fn whole(json: &Value) -> i64 {
+fn integer(json: &Value) -> i64 {
     json.as_i64()
-        .unwrap_or_else(|| panic!("{json} is no whole number"))
+        .unwrap_or_else(|| panic!("{json} is not an integer"))
 }
 
 fn string(json: &Value) -> String {

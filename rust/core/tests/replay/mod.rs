@@ -1,5 +1,5 @@
-//! Reads `tests/found`: inputs that were hard once, each with what must come of it. Python's tests
-//! read the same files; how they are written is said at their top.
+//! Reads `tests/found`: inputs that were hard once, each with its expected result. Python's tests
+//! read the same files, which explain their format at the top.
 
 use cobotwire_core::{Direction, Listening, Reason};
 
@@ -9,22 +9,21 @@ pub struct Stream {
     pub table: String,
     pub listening: Listening,
     pub unknown: bool,
-    /// The bytes of a chunk, and whether the line is silent behind it.
+    /// The bytes of each chunk, and whether silence follows it.
     pub chunks: Vec<(Vec<u8>, bool)>,
-    /// Sizes; no reason: a frame.
+    /// The size of each event, and the reason of noise; a frame has no reason.
     pub events: Vec<(usize, Option<Reason>)>,
 }
 
 impl Stream {
-    /// Its bytes, whole.
+    /// Return all its bytes.
     pub fn bytes(&self) -> Vec<u8> {
         let chunks = self.chunks.iter().map(|(bytes, _)| &bytes[..]);
         chunks.collect::<Vec<_>>().concat()
     }
 }
 
-/// Bytes that are to be decoded, and what comes of it: a command and its form, or a reason and an
-/// offset.
+/// Bytes to decode, and the result: a command and its variant, or a reason and an offset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Single {
     pub table: String,
@@ -34,12 +33,12 @@ pub struct Single {
     pub outcome: (String, usize),
 }
 
-/// The lines of `streams.txt`.
+/// Return the streams of `streams.txt`.
 pub fn streams(text: &str) -> Vec<Stream> {
     lines(text).map(stream).collect()
 }
 
-/// The lines of `frames.txt`.
+/// Return the frames of `frames.txt`.
 pub fn singles(text: &str) -> Vec<Single> {
     lines(text).map(single).collect()
 }
@@ -77,7 +76,7 @@ fn event(text: &str) -> Option<(usize, Option<Reason>)> {
 fn single([what, bytes, outcome]: [&str; 3]) -> Single {
     let words: Vec<&str> = what.split_whitespace().collect();
     let Listening::To(direction) = listening(words[1]) else {
-        panic!("a frame goes one way");
+        panic!("a frame has one direction");
     };
     let (word, number) = outcome.split_once(' ').expect("a word and a number");
     Single {

@@ -1,5 +1,5 @@
-//! Bulk reading gives what the oracle gives frame by frame: the same rows, noise and counts, whole
-//! and in batches, into fresh memory and into used.
+//! Bulk reading finds the same rows, noise and counts as the oracle does frame by frame: at once
+//! and in batches, with new and with reused memory.
 
 use std::sync::Arc;
 
@@ -7,17 +7,17 @@ use cobotwire_core::{
     ColumnReader, Columns, Listening, Numbers, OffsetReader, Plans, Rules, Spans, Table, Value,
 };
 
-use super::rows::{Found, Rows, extend, key, layout};
+use super::rows::{Found, Rows, extend, key, variant_at};
 use super::tally::Count;
 use crate::input::{Chunk, Cutting, Input};
 use crate::oracle::Oracle;
 use crate::reading;
 use crate::subjects::LISTENING;
 
-/// More than a block of bulk reading with its margin, so that all its ways are gone.
+/// More bytes than several blocks of bulk reading, so that every path of its code runs.
 const SEVERAL_BLOCKS: usize = 150_000;
 
-/// A batch has rows for every form of the table, so that many of them take long.
+/// A batch has rows for every variant of the table, so many batches would be slow.
 const MOST_BATCHES: usize = 8;
 
 pub fn columns_hold_what_frames_read_as(data: &[u8]) {
@@ -32,7 +32,7 @@ pub fn columns_hold_what_frames_read_as(data: &[u8]) {
     read(&source, any, &input.stream, input.long, input.cutting);
 }
 
-/// All of it for any table; `any`: where frames and noise are, by any rules of it.
+/// Check columns for any table, and offsets by `any` of its rules.
 pub fn read(
     source: &Source<'_>,
     any: (&Oracle, &Rules),
@@ -52,7 +52,7 @@ pub fn read(
     columns_hold(source, &stream, &chunks);
 }
 
-/// Where frames and noise are, for any rules.
+/// Check the offsets of frames and noise, for any rules.
 fn offsets_hold((oracle, rules): (&Oracle, &Rules), stream: &[u8], chunks: &[Chunk<'_>]) {
     let (expected, count) = frames(oracle, stream);
     let mut reader = OffsetReader::new(rules.clone(), None);
@@ -74,12 +74,12 @@ fn offsets_hold((oracle, rules): (&Oracle, &Rules), stream: &[u8], chunks: &[Chu
     assert_eq!(reader.pending(), 0);
 }
 
-/// What columns are read by.
+/// The table, plans and rules by which columns are read.
 pub struct Source<'a> {
     pub table: &'a Arc<Table>,
     pub plans: &'a Arc<Plans>,
     pub listening: Listening,
-    /// It listens so, and believes no unknown id.
+    /// The oracle for the same directions, without unknown ids.
     pub oracle: &'a Oracle,
 }
 
@@ -90,20 +90,20 @@ impl Source<'_> {
     }
 }
 
-/// What they hold.
+/// Check the contents of columns.
 fn columns_hold(source: &Source<'_>, stream: &[u8], chunks: &[Chunk<'_>]) {
     let (frames, count) = frames(source.oracle, stream);
     let whole = [Chunk {
         bytes: stream,
         flush: false,
     }];
-    // Memory of the same types is used again, that of others is not.
+    // Only columns of the same types reuse memory.
     let mut old = None;
     for (numbers, cuts) in [
         (Numbers::Physical, [&whole[..], chunks]),
         (Numbers::Raw, [chunks, &whole[..]]),
     ] {
-        let (rows, refused) = expected(source, &frames, numbers);
+        let (rows, rejected) = expected(source, &frames, numbers);
         for chunks in cuts {
             let mut reader = source.reader(numbers, old.take());
             let mut found = Found::default();
@@ -117,9 +117,9 @@ fn columns_hold(source: &Source<'_>, stream: &[u8], chunks: &[Chunk<'_>]) {
             let last = reader.take();
             found.add(source.table, last.clone());
             old = Some(last);
-            found.refused.sort_unstable();
+            found.rejected.sort_unstable();
             assert_eq!(found.rows, rows, "the oracle's rows as {numbers:?}");
-            assert_eq!(found.refused, refused, "the oracle's refusals");
+            assert_eq!(found.rejected, rejected, "the oracle's rejections");
             assert_eq!(found.noise, count.spans, "the oracle's noise");
             count.check(reader.tally());
             assert_eq!(reader.pending(), 0);
@@ -127,7 +127,7 @@ fn columns_hold(source: &Source<'_>, stream: &[u8], chunks: &[Chunk<'_>]) {
     }
 }
 
-/// The oracle's frames, and its counts.
+/// Return the oracle's frames and counts.
 fn frames<'a>(oracle: &Oracle, stream: &'a [u8]) -> (Vec<(usize, &'a [u8])>, Count) {
     let mut count = Count::default();
     let mut frames = Vec::new();
@@ -143,26 +143,28 @@ fn frames<'a>(oracle: &Oracle, stream: &'a [u8]) -> (Vec<(usize, &'a [u8])>, Cou
     (frames, count)
 }
 
-/// Each frame by the first form that allows its values, a request's before a reply's.
+/// Return each frame's row in the first variant that allows its values, requests before replies;
+/// and the frames that no variant allows.
 fn expected(source: &Source<'_>, frames: &[(usize, &[u8])], numbers: Numbers) -> (Rows, Vec<u64>) {
     let mut rows = Rows::default();
-    let mut refused = Vec::new();
+    let mut rejected = Vec::new();
     for (at, bytes) in frames {
-        let Some(Ok((form, read))) = reading::heard(source.table, source.listening, bytes) else {
-            refused.push(*at as u64);
+        let Some(Ok((variant, read))) = reading::received(source.table, source.listening, bytes)
+        else {
+            rejected.push(*at as u64);
             continue;
         };
-        let fields = layout(source.table, form).fields().len();
-        let (offsets, columns) = rows.entry(key(form)).or_default();
+        let fields = variant_at(source.table, variant).fields().len();
+        let (offsets, columns) = rows.entry(key(variant)).or_default();
         columns.resize(fields, vec![]);
         offsets.push(*at as u64);
-        for (field, whole, value) in read {
+        for (field, raw, value) in read {
             columns[field].push(match (numbers, value) {
-                (Numbers::Raw, _) => whole,
+                (Numbers::Raw, _) => raw,
                 (_, Value::Real(real)) => real.to_bits() as i64,
-                _ => (whole as f64).to_bits() as i64,
+                _ => (raw as f64).to_bits() as i64,
             });
         }
     }
-    (rows, refused)
+    (rows, rejected)
 }

@@ -1,8 +1,8 @@
-//! The laws of decoding, and that the core reads as the oracle does.
+//! Checks the laws of decoding, and that the core decodes as the oracle does.
 
 use cobotwire_core::{
-    Choice, DecodeError, Direction, Event, Frame, Framer, Layout, Listening, Reason, Rules, Table,
-    Value, decode, encode, read,
+    Choice, DecodeError, Direction, Event, Frame, Framer, Listening, Reason, Rules, Table, Value,
+    Variant, decode, encode, read,
 };
 
 use crate::common::{Sample, Samples};
@@ -11,8 +11,8 @@ use crate::oracle::{Found, Oracle};
 use crate::reading;
 use crate::subjects::LISTENING;
 
-/// The whole stream as a frame, and each frame in it: they read as the oracle's, or are refused for
-/// its reason and at its byte; what was read builds the same bytes again.
+/// Check that the whole stream, taken as one frame, and each frame in it have the oracle's result:
+/// the same values, or the same reason and offset. Decoded values encode to the same bytes.
 pub fn frames_read_as_the_oracles(data: &[u8]) {
     let input = Input::read(data);
     let table = &input.subject.table;
@@ -20,7 +20,7 @@ pub fn frames_read_as_the_oracles(data: &[u8]) {
         let rules = input.subject.rules(index, input.unknown);
         Framer::new(rules.clone()).feed(&input.stream, |event| {
             if let Event::Frame { frame, .. } = event {
-                heard(table, rules, *listening, frame);
+                as_received(table, rules, *listening, frame);
             }
         });
         let Listening::To(direction) = listening else {
@@ -37,10 +37,10 @@ pub fn frames_read_as_the_oracles(data: &[u8]) {
     }
 }
 
-/// As the framer gave it, which knows what it heard.
-fn heard(table: &Table, rules: &Rules, listening: Listening, frame: Frame<'_>) {
+/// Check that reading a judged frame has the same result as judging and decoding its bytes.
+fn as_received(table: &Table, rules: &Rules, listening: Listening, frame: Frame<'_>) {
     let bytes = frame.bytes();
-    let expected = match reading::heard(table, listening, bytes) {
+    let expected = match reading::received(table, listening, bytes) {
         Some(Ok(found)) => Ok(reading::decoded(table, found, bytes)),
         Some(Err(bad)) => Err(DecodeError::Raw(bad)),
         None => Err(DecodeError::Frame {
@@ -48,16 +48,23 @@ fn heard(table: &Table, rules: &Rules, listening: Listening, frame: Frame<'_>) {
             offset: table.frame().overhead(),
         }),
     };
-    assert_eq!(read(table, rules, frame), expected);
+    assert_eq!(read(table, rules, frame, None), expected);
+    for direction in [Direction::Request, Direction::Reply] {
+        let one_way = table.rules(Listening::To(direction));
+        for of in [None, Some(0), Some(bytes.len())] {
+            let judged_again = decode(table, direction, bytes, of);
+            assert_eq!(read(table, one_way, frame, of), judged_again);
+        }
+    }
 }
 
-/// For any table, of which `oracle` listens to that direction.
+/// Check decoding of one direction, for any table; `oracle` has the same direction.
 pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
     let met = decode(table, direction, data, None);
     let (reason, offset) = match oracle.look(data) {
         Found::Frame(size) if size == data.len() => {
             let expected = reading::read(table, direction, data, None);
-            let expected = expected.expect("a legal frame has a form");
+            let expected = expected.expect("a legal frame has a variant");
             assert_eq!(met, expected.map_err(DecodeError::Raw));
             return each_call(table, direction, data);
         }
@@ -70,11 +77,11 @@ pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
         offset: at,
     }) = met
     else {
-        panic!("not refused for {reason:?}: {met:?}");
+        panic!("not rejected for {reason:?}: {met:?}");
     };
     assert_eq!((given, at), (reason, offset.unwrap_or(at)));
     if offset.is_none() {
-        assert!(at < data.len(), "a byte that is there refutes it");
+        assert!(at < data.len(), "a byte of the data refutes it");
         assert_eq!(
             oracle.look(&data[..at]),
             Found::Waits,
@@ -83,11 +90,12 @@ pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
     }
 }
 
-/// Asked for a certain call, it reads as the first form of that call, or as none.
+/// Check that, read as a given command, the frame has the first variant of it that allows the
+/// values.
 fn each_call(table: &Table, direction: Direction, data: &[u8]) {
     let id = data[table.frame().overhead()];
     for (of, command) in table.commands().iter().enumerate() {
-        // One call of another id stands for all of them.
+        // One command with another id represents all of them.
         if command.id == id || of == data.len() {
             one_call(table, direction, data, of);
         }
@@ -109,27 +117,27 @@ fn one_call(table: &Table, direction: Direction, data: &[u8], of: usize) {
     }
 }
 
-/// What a frame was read as, in that form and to that address, is that frame: every word on the
-/// wire that is allowed stands for a value of its own.
+/// Check that the values of a frame, with its variant and address, encode to the same frame: each
+/// legal raw value has a distinct physical value.
 ///
-/// That holds by any table that makes sense ([`makes_sense`]): its scales are exact enough for a
-/// double to be rounded back to the step that it came from.
+/// This holds for every consistent table ([`makes_sense`]): its scales are exact enough to round a
+/// double back to its raw value.
 pub fn read_back(table: &Table, direction: Direction, data: &[u8]) {
     let Ok(decoded) = decode(table, direction, data, None) else {
         return;
     };
-    let command = &table.commands()[decoded.form.command];
-    let layout = &command.layouts(direction)[decoded.form.layout];
-    if !makes_sense(layout) {
+    let command = &table.commands()[decoded.variant.command];
+    let variant = &command.variants(direction)[decoded.variant.variant];
+    if !makes_sense(variant) {
         return;
     }
     let choice = Choice {
-        form: Some(decoded.form.layout),
+        variant: Some(decoded.variant.variant),
         address: decoded.address,
     };
     let values = Samples(samples(&decoded.values));
     let built = encode::<Sample>(table.frame(), command, direction, &values, choice);
-    assert_eq!(built.as_deref(), Ok(data), "{:?}", decoded.form);
+    assert_eq!(built.as_deref(), Ok(data), "{:?}", decoded.variant);
 }
 
 fn samples(values: &[Value]) -> Vec<Sample> {
@@ -141,18 +149,18 @@ fn samples(values: &[Value]) -> Vec<Sample> {
                 let elements: Vec<Value> = rest.by_ref().take(*count).copied().collect();
                 Sample::Row(samples(&elements))
             }
-            Value::Whole(whole) => Sample::Whole(*whole),
+            Value::Integer(integer) => Sample::Integer(*integer),
             Value::Real(real) => Sample::Real(*real),
         });
     }
     all
 }
 
-/// Whether what can be read can be built: the closed list stands within the bounds, which only the
-/// encoder looks at then, and what picks a case is not itself picked.
-fn makes_sense(layout: &Layout) -> bool {
-    layout.fields().iter().all(|field| {
-        let selector = field.selector.map(|index| &layout.fields()[index]);
+/// Return whether every message that decodes can be encoded: the closed lists lie within the
+/// bounds, which only the encoder checks as well, and no selector has a selector itself.
+fn makes_sense(variant: &Variant) -> bool {
+    variant.fields().iter().all(|field| {
+        let selector = field.selector.map(|index| &variant.fields()[index]);
         let numbers = || field.cases.iter().flat_map(|case| &case.numbers);
         let within = |choice: &i64| {
             numbers().all(|number| (number.minimum..=number.maximum).contains(choice))

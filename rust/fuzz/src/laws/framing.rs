@@ -1,4 +1,4 @@
-//! The laws of framing, and that the core cuts as the oracle does.
+//! Checks the laws of framing, and that the core cuts streams as the oracle does.
 
 use cobotwire_core::{Event, Framer, OwnedFrame, Rules};
 
@@ -7,13 +7,14 @@ use crate::common::{Owned, owned};
 use crate::input::{Chunk, Cutting, Input};
 use crate::oracle::Oracle;
 
-/// After each chunk: the same events as the oracle's, at the same offsets, and the same bytes wait.
+/// Check after each chunk that the framer has the oracle's events and offsets, and keeps the same
+/// bytes.
 pub fn events_are_the_oracles(data: &[u8]) {
     let input = Input::read(data);
     hold(input.oracle(), input.rules(), &input.chunks());
 }
 
-/// All of it for any table.
+/// Check framing for any table.
 pub fn hold(oracle: &Oracle, rules: &Rules, chunks: &[Chunk<'_>]) {
     let mut framer = Framer::new(rules.clone());
     let mut line = Line {
@@ -39,7 +40,7 @@ pub fn hold(oracle: &Oracle, rules: &Rules, chunks: &[Chunk<'_>]) {
     assert_eq!(line.offset, fed as u64, "every byte is accounted for");
 }
 
-/// What was fed and is in no event yet.
+/// The bytes of a transport that were fed and that no event covers yet.
 struct Line<'a> {
     oracle: &'a Oracle,
     rules: &'a Rules,
@@ -78,11 +79,14 @@ impl Line<'_> {
         self.open.drain(..settled);
         self.offset += settled as u64;
         assert_eq!(framer.pending(), self.open.len(), "the same bytes wait");
-        assert!(framer.pending() < rules.longest(), "little waits");
+        assert!(
+            framer.pending() < rules.longest(),
+            "fewer bytes wait than the longest frame has"
+        );
     }
 }
 
-/// A frame says of itself what its bytes say, and a copy of it the same.
+/// Check that the accessors of a frame and of its copy agree with its bytes.
 fn check_frame(oracle: &Oracle, rules: &Rules, event: Event<'_>) {
     let Event::Frame { frame, .. } = event else {
         return;
@@ -95,12 +99,12 @@ fn check_frame(oracle: &Oracle, rules: &Rules, event: Event<'_>) {
     assert_eq!(OwnedFrame::from(frame).get(oracle.format()), frame);
 }
 
-/// However a stream is cut, its events are the same, adjacent noise of one reason joined.
+/// Check that the events do not depend on the chunks, if adjacent noise of one reason is joined.
 pub fn chunking_does_not_matter(data: &[u8]) {
     let input = Input::read(data);
     let whole = cut(&input, 0);
     for class in 1..=5 {
-        assert_eq!(cut(&input, class), whole, "cut as {class} says");
+        assert_eq!(cut(&input, class), whole, "cut by class {class}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Work grows with the input and not faster, whatever the input.
+//! Checks that the work is linear in the size of every input.
 
 use std::time::Duration;
 
@@ -7,16 +7,16 @@ use rustix::time::{ClockId, clock_gettime};
 
 use crate::input::{Chunk, Input};
 
-/// For the framer, and for bulk reading, whose blocks are longer than the other.
+/// The short stream for the framer and, since its blocks are longer, for bulk reading.
 const SHORT: [usize; 2] = [8 << 10, 128 << 10];
 const TIMES: usize = 8;
 /// Quadratic work would take `TIMES` times as long.
 const MOST: u32 = 3;
-/// Others' use of the caches makes one measurement slow, but not all of them.
-const TRIES: usize = 12;
+/// Other processes use the caches as well: they slow down some measurements, but not all.
+const ATTEMPTS: usize = 12;
 
-/// A byte of a stream takes at most three times as long in one of eight times the length; the
-/// fuzz bytes are the pattern that is repeated.
+/// Check that a byte takes at most three times as long in a stream of eight times the length; both
+/// streams repeat the stream of the fuzz bytes.
 pub fn work_grows_with_the_input(data: &[u8]) {
     let input = Input::read(data);
     if input.stream.is_empty() {
@@ -26,8 +26,8 @@ pub fn work_grows_with_the_input(data: &[u8]) {
     let short = repeated(&input.stream, size);
     let long = repeated(&input.stream, size * TIMES);
     let (mut least_short, mut least_long) = (Duration::MAX, Duration::MAX);
-    for _ in 0..TRIES {
-        // The short one as often as to read as many bytes.
+    for _ in 0..ATTEMPTS {
+        // Read the short stream eight times, so that both read the same number of bytes.
         least_short = least_short.min(time(&input, &short, TIMES));
         least_long = least_long.min(time(&input, &long, 1));
         if least_long <= least_short * MOST {
@@ -75,7 +75,7 @@ fn read(input: &Input, chunks: &[Chunk<'_>]) {
     reader.flush();
 }
 
-/// What this thread has computed so far.
+/// Return the processor time of this thread.
 fn own_time() -> Duration {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)

@@ -1,4 +1,4 @@
-//! What holds for any bytes: one function a target.
+//! Properties that hold for any bytes: one function for each target.
 
 pub mod columns;
 pub mod decoding;

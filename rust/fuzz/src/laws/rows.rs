@@ -1,38 +1,38 @@
-//! The rows of columns, in a shape that does not tell batches or types apart.
+//! The rows of columns, in a representation that is independent of batches and types.
 
 use std::collections::BTreeMap;
 
-use cobotwire_core::{Cells, Columns, Direction, Field, Form, Layout, Number, Spans, Table};
+use cobotwire_core::{Cells, Columns, Direction, Field, Number, Spans, Table, Variant, VariantId};
 
-/// The rows of each form: where they start, and its fields' numbers.
+/// The rows of each variant: where they start, and its fields' numbers.
 pub type Rows = BTreeMap<(bool, usize, usize), (Vec<u64>, Vec<Vec<i64>>)>;
 
-/// The layout of a form.
-pub fn layout(table: &Table, form: Form) -> &Layout {
-    &table.commands()[form.command].layouts(form.direction)[form.layout]
+/// Return the variant with this id.
+pub fn variant_at(table: &Table, variant: VariantId) -> &Variant {
+    &table.commands()[variant.command].variants(variant.direction)[variant.variant]
 }
 
-/// A form's place among the rows.
-pub fn key(form: Form) -> (bool, usize, usize) {
+/// Return the key of a variant in [`Rows`].
+pub fn key(variant: VariantId) -> (bool, usize, usize) {
     (
-        form.direction == Direction::Reply,
-        form.command,
-        form.layout,
+        variant.direction == Direction::Reply,
+        variant.command,
+        variant.variant,
     )
 }
 
-/// What a reader found, batch after batch.
+/// The results of a reader, collected over its batches.
 #[derive(Debug, Default)]
 pub struct Found {
     pub rows: Rows,
-    pub refused: Vec<u64>,
+    pub rejected: Vec<u64>,
     pub noise: Spans,
 }
 
 impl Found {
     pub fn add(&mut self, table: &Table, columns: Columns) {
         for rows in columns.rows {
-            let fields = layout(table, rows.form).fields();
+            let fields = variant_at(table, rows.variant).fields();
             assert_eq!(rows.fields.len(), fields.len(), "a column for each field");
             for (cells, field) in rows.fields.iter().zip(fields) {
                 assert!(fits(cells, field), "{cells:?} holds {field:?}");
@@ -41,19 +41,19 @@ impl Found {
                 assert!(rows.fields.iter().all(Cells::is_empty));
                 continue;
             }
-            let (offsets, all) = self.rows.entry(key(rows.form)).or_default();
+            let (offsets, all) = self.rows.entry(key(rows.variant)).or_default();
             offsets.extend(rows.offsets);
             all.resize(fields.len(), vec![]);
             for (all, cells) in all.iter_mut().zip(&rows.fields) {
-                all.extend(wholes(cells));
+                all.extend(raw_values(cells));
             }
         }
-        self.refused.extend(columns.refused);
+        self.rejected.extend(columns.rejected);
         extend(&mut self.noise, columns.noise);
     }
 }
 
-/// Whether a column's type holds all that its field allows.
+/// Return whether a column's type holds all that its field allows.
 fn fits(cells: &Cells, field: &Field) -> bool {
     let (least, most) = match cells {
         Cells::F64(_) | Cells::I64(_) => (i64::MIN, i64::MAX),
@@ -64,7 +64,7 @@ fn fits(cells: &Cells, field: &Field) -> bool {
         Cells::U32(_) => (0, u32::MAX.into()),
         Cells::I32(_) => (i32::MIN.into(), i32::MAX.into()),
     };
-    let holds = |whole: &i64| (least..=most).contains(whole);
+    let holds = |raw: &i64| (least..=most).contains(raw);
     let mut numbers = field.cases.iter().flat_map(|case| &case.numbers);
     let nothing = |number: &Number| number.minimum > number.maximum;
     if field.choices.is_empty() {
@@ -74,8 +74,8 @@ fn fits(cells: &Cells, field: &Field) -> bool {
     }
 }
 
-/// Floats as their bits, so that a zero's sign counts.
-fn wholes(cells: &Cells) -> Vec<i64> {
+/// Return numbers as integers; floats as their bits, so that the sign of zero counts.
+fn raw_values(cells: &Cells) -> Vec<i64> {
     fn cast<T: Copy + Into<i64>>(all: &[T]) -> Vec<i64> {
         all.iter().map(|value| (*value).into()).collect()
     }
@@ -91,7 +91,7 @@ fn wholes(cells: &Cells) -> Vec<i64> {
     }
 }
 
-/// One behind the other.
+/// Append spans.
 pub fn extend(all: &mut Spans, more: Spans) {
     all.offsets.extend(more.offsets);
     all.sizes.extend(more.sizes);

@@ -1,24 +1,25 @@
-//! A table is a caller's data: whatever it says, it is refused, or it works.
+//! Checks that any table, which is a caller's data, is either rejected or works.
 
 use std::sync::Arc;
 
 use cobotwire_core::{Direction, Listening, Plans, Table};
 
 use super::{columns, decoding, framing};
-use crate::input::{Bytes, Cutting};
+use crate::bytes::Bytes;
+use crate::input::Cutting;
 use crate::oracle::Oracle;
 use crate::random;
 use crate::script;
-use crate::subjects::{LISTENING, forms, rules};
+use crate::subjects::{LISTENING, rules, variants};
 
-/// Bits of a byte; its low two pick how to listen.
+/// Bits of a byte; its low two bits pick the directions.
 const UNKNOWN: u8 = 4;
 const FLUSHES: u8 = 8;
 const COLUMNS: u8 = 0x10 | 0x20;
 const LONG: u8 = 0x40 | 0x80;
 
-/// Framing and decoding hold by any table that is not refused, for streams of its own frames.
-pub fn any_table_is_refused_or_works(data: &[u8]) {
+/// Check framing and decoding with any table that is not rejected, for streams of its frames.
+pub fn any_table_is_rejected_or_works(data: &[u8]) {
     let mut bytes = Bytes(data);
     let (format, commands) = random::table(&mut bytes);
     let count = commands.len();
@@ -33,7 +34,7 @@ pub fn any_table_is_refused_or_works(data: &[u8]) {
         flushes: flags & FLUSHES != 0,
     };
     let unknown = flags & UNKNOWN != 0;
-    let stream = script::play(&table, &forms(&table), bytes);
+    let stream = script::play(&table, &variants(&table), bytes);
     let listening = LISTENING[usize::from(flags & 3) % LISTENING.len()];
     let oracle = Oracle::new(&table, listening, unknown);
     let rules = rules(&table, listening, unknown);
@@ -41,7 +42,7 @@ pub fn any_table_is_refused_or_works(data: &[u8]) {
     for direction in [Direction::Request, Direction::Reply] {
         decodes(&table, direction, &stream);
     }
-    // To plan how columns are read takes so long that not every table can have it.
+    // Planning columns is slow, so only some tables check them.
     if flags & COLUMNS == COLUMNS {
         let source = columns::Source {
             table: &table,
@@ -54,14 +55,14 @@ pub fn any_table_is_refused_or_works(data: &[u8]) {
     }
 }
 
-/// The stream and what the oracle finds in it.
+/// Check that the stream and the frames that the oracle finds in it decode as they must.
 fn decodes(table: &Table, direction: Direction, stream: &[u8]) {
     let oracle = Oracle::new(table, Listening::To(direction), false);
     decoding::hold(table, &oracle, direction, stream);
     let mut rest = stream;
     for (size, reason) in oracle.spans(stream, true).0 {
-        let (span, behind) = rest.split_at(size);
-        rest = behind;
+        let (span, after) = rest.split_at(size);
+        rest = after;
         if reason.is_none() {
             decoding::hold(table, &oracle, direction, span);
             decoding::read_back(table, direction, span);

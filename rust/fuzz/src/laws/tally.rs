@@ -1,4 +1,4 @@
-//! What a line's counts must be.
+//! The expected counts of a stream.
 
 use cobotwire_core::{Reason, Spans, Tally};
 
@@ -13,7 +13,7 @@ pub struct Count {
 }
 
 impl Count {
-    /// The next event.
+    /// Count the next event.
     pub fn add(&mut self, oracle: &Oracle, bytes: &[u8], reason: Option<Reason>) {
         let (offset, size) = (self.tally.bytes, bytes.len() as u64);
         self.tally.bytes += size;
@@ -35,7 +35,7 @@ impl Count {
         self.in_noise = reason.is_some();
     }
 
-    /// All bytes fed are in events by now.
+    /// Return all bytes fed are in events by now.
     pub fn check(&self, tally: &Tally) {
         let numbers = |tally: &Tally| (tally.bytes, tally.noise, tally.resyncs);
         assert_eq!(numbers(tally), numbers(&self.tally), "the oracle's counts");

@@ -1,4 +1,4 @@
-"""What is said of one problem code."""
+"""The explanation of a problem code."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """A code: what it means, why that is a problem, how to mend it, and lines that show it.
+    """A code: what it means, why that is a problem, how to fix it, and lines that show it.
 
-    ``wrong`` are lines of a spec that give the code, ``right`` the same lines mended.
+    ``wrong`` are lines of a spec that cause the problem, ``right`` the corrected lines.
     """
 
     code: str

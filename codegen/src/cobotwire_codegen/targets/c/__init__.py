@@ -1,4 +1,4 @@
-"""C99 for firmware and hosts: a header and a source for each edition."""
+"""Write C99 for firmware and hosts: a header and a source for each edition."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cobotwire_codegen.targets.c.tables import Tables
 
 
 def render_c(edition: Edition, templates: Path | None = None) -> Files:
-    """The edition's header and source; ``templates`` go before the shipped ones."""
+    """Return the edition's header and source; ``templates`` replace the shipped ones."""
     jinja = environment(templates)
     jinja.filters.update(comment=names.comment, c_string=names.string, rows=names.rows)
     jinja.filters.update(whole=names.whole)
@@ -36,18 +36,18 @@ def render_c(edition: Edition, templates: Path | None = None) -> Files:
 
 
 def overhead(edition: Edition) -> int:
-    """Bytes of a frame in front of its command id."""
+    """Return the number of bytes before a frame's command id."""
     return len(edition.frame.header) + bool(edition.frame.addresses) + 1
 
 
 def _enums(found: list[Message]) -> Iterator[Enum]:
-    """The enums that a message has, each once."""
+    """Return the enums in messages, each once."""
     types = (t for m in found for member in m.members for _, t in lower.cases(member.field))
     yield from dict.fromkeys(type for type in types if isinstance(type, Enum))
 
 
 def _scaled(found: list[Message]) -> Iterator[Quantity]:
-    """The quantities whose steps are not one, each name once: a narrower range scales alike."""
+    """Return the scaled quantities, each name once: only their ranges can differ."""
     seen: set[str] = set()
     for message in found:
         for member in message.members:

@@ -1,4 +1,4 @@
-"""The forms of an edition's messages, as C sees them: a struct each, numbered by command id."""
+"""Describe an edition's variants for C: a struct each, numbered by command id."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Literal
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Edition, Field, Form, Quantity, Type, Value
+from cobotwire_codegen.model import Command, Edition, Field, Quantity, Type, Value, Variant
 from cobotwire_codegen.render.words import allowed
 from cobotwire_codegen.targets.c import names
 from cobotwire_codegen.wire import size
@@ -19,9 +19,9 @@ DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A field in the struct of its message, from its ``index``-th whole number on.
+    """A field in the struct of its message; ``index`` counts the raw values before it.
 
-    A field that is always one number has no place there: ``count`` is 0.
+    A constant field has no place in the struct: its ``count`` is 0.
     """
 
     field: Field
@@ -36,14 +36,14 @@ class Member:
 
     @property
     def text(self) -> str:
-        """What it is: what it means, what it may be, how large its steps are."""
+        """The comment: meaning, allowed values, size of a step."""
         doc = self.field.doc.rstrip(".")
         return f"{doc}: {allowed(self.field)}{''.join(steps(self.field))}."
 
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One form of a request or a reply; ``number`` counts the forms of one message from 0."""
+    """One variant of a request or a reply; ``number`` counts the variants of one message from 0."""
 
     command: Command
     direction: Direction
@@ -52,41 +52,41 @@ class Message:
 
     @property
     def symbol(self) -> str:
-        """Its name without the edition's prefix."""
-        form = f"_{self.number + 1}" if self.number else ""
-        return f"{self.command.name}_{self.direction}{form}"
+        """The name without the edition's prefix."""
+        variant = f"_{self.number + 1}" if self.number else ""
+        return f"{self.command.name}_{self.direction}{variant}"
 
     @property
     def fields(self) -> tuple[Member, ...]:
-        """The members that the struct has."""
+        """The members of the struct."""
         return tuple(member for member in self.members if member.count)
 
     @property
     def count(self) -> int:
-        """How many whole numbers the struct holds."""
+        """The number of raw values in the struct."""
         return sum(member.count for member in self.members)
 
     @property
     def size(self) -> int:
-        """Data bytes on the wire."""
+        """The number of data bytes on the wire."""
         return sum(size(member.field.type) for member in self.members)
 
 
 def messages(edition: Edition) -> list[Message]:
-    """Every form of every message by command id; within an id as the table has them."""
+    """Return every variant of every message, sorted by command id, then in the table's order."""
     found = [
-        Message(command, direction, number, _members(form))
+        Message(command, direction, number, _members(variant))
         for command in edition.commands
         for direction in DIRECTIONS
-        for number, form in enumerate(command.forms(direction))
+        for number, variant in enumerate(command.variants(direction))
     ]
     return sorted(found, key=lambda message: message.command.id)
 
 
-def _members(form: Form) -> tuple[Member, ...]:
+def _members(variant: Variant) -> tuple[Member, ...]:
     made: list[Member] = []
     index = 0
-    for field in form:
+    for field in variant:
         shapes = [len(lower.numbers(type)) for _, type in lower.cases(field)]
         count = max(shapes) if field.const is None else 0
         made.append(Member(field, index, count))
@@ -95,18 +95,18 @@ def _members(form: Form) -> tuple[Member, ...]:
 
 
 def steps(field: Field) -> Iterator[str]:
-    """How large a step of the whole number is, where it is not one."""
+    """Return the size of a step of the raw value, unless it is one."""
     found: dict[str, list[str]] = {}
     for name, quantity in quantities(field):
         if quantity.scale != 1:
             found.setdefault(f"{_exact(quantity.scale)} {quantity.unit}".strip(), []).append(name)
     for step, owners in found.items():
-        whose = ", ".join(filter(None, owners))
-        yield f"; {whose} in steps of {step}" if whose else f"; in steps of {step}"
+        parts = ", ".join(filter(None, owners))
+        yield f"; {parts} in steps of {step}" if parts else f"; in steps of {step}"
 
 
 def quantities(field: Field) -> Iterator[tuple[str, Quantity]]:
-    """The quantities that a field can hold, each with its name in its value or its case."""
+    """Yield the quantities that a field can hold, with their names in its value or case."""
     for when, type in lower.cases(field):
         chosen = [member.name for member, _ in field.cases if member.value in when]
         yield from _parts(", ".join(chosen), type)

@@ -1,4 +1,4 @@
-"""How names, numbers and sentences are spelt in C."""
+"""Write names, numbers and comments in C."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ WIDTH = 100
 
 
 def member(name: str) -> str:
-    """A field's name as that of a struct's member."""
+    """Return the name of a field's struct member."""
     return f"{name}_" if name in KEYWORDS else name
 
 
 def whole(value: int) -> str:
-    """A whole number as a constant, of a type that is wide enough by itself."""
+    """Return an integer as a constant of a type that is wide enough."""
     # The lowest number of a type has no constant: its minus sign is an operator.
     return f"({value + 1} - 1)" if value <= -(2**31) else str(value)
 
 
 def string(text: str) -> str:
-    """Text as a string constant; what is not printable ASCII as octal, which ends by itself."""
+    """Return text as a string constant; what is not printable ASCII is escaped in octal."""
     plain = {'"': '\\"', "\\": "\\\\", "?": "\\?"}
     return '"' + "".join(_character(byte, plain) for byte in text.encode()) + '"'
 
@@ -42,7 +42,7 @@ def _character(byte: int, plain: dict[str, str]) -> str:
 
 
 def comment(text: str, indent: int = 0) -> str:
-    """A comment of as many lines as it takes."""
+    """Return a comment, on several lines if needed."""
     margin = " " * indent
     safe = " ".join(text.split()).replace("*/", "* /").replace("/*", "/ *")
     lines = textwrap.wrap(safe, WIDTH - indent - 6, break_on_hyphens=False) or [""]
@@ -50,7 +50,7 @@ def comment(text: str, indent: int = 0) -> str:
 
 
 def rows(items: Iterable[str]) -> str:
-    """The elements of an array, as many on a line as fit; C wants one at least."""
+    """Return the elements of an array, as many on a line as fit; C needs at least one element."""
     lines = [""]
     for item in items:
         if len(lines[-1]) + len(item) + 6 > WIDTH and lines[-1]:
@@ -60,6 +60,6 @@ def rows(items: Iterable[str]) -> str:
 
 
 def bits(numbers: Sequence[int]) -> list[str]:
-    """A set of bytes as 32 bytes with a bit for each."""
+    """Return a set of byte values as a mask of 256 bits, in 32 bytes."""
     mask = sum(1 << number for number in set(numbers))
     return [f"0x{byte:02X}" for byte in mask.to_bytes(32, "little")]

@@ -1,4 +1,4 @@
-"""The tables that the C codec interprets: what occurs twice stands once."""
+"""Build the tables that the C codec interprets; equal runs are stored once."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ NO_SELECTOR = 0xFF
 
 
 class Pool:
-    """An array of rows, in which runs are found again."""
+    """An array of rows that stores equal runs once."""
 
     def __init__(self) -> None:
         self.rows: list[str] = []
 
     def place(self, run: Sequence[str]) -> int:
-        """Where the run stands in the array, after adding what was missing."""
+        """Return where the run starts in the array; append it if it is missing."""
         wanted = list(run)
         for start in range(len(self.rows) - len(wanted) + 1):
             if self.rows[start : start + len(wanted)] == wanted:
@@ -50,18 +50,18 @@ class Tables:
         return bits([message.size + overhead for message in own])
 
     def _message(self, message: Message) -> str:
-        form = tuple(member.field for member in message.members)
-        fields = [self._field(member, form) for member in message.members]
+        variant = tuple(member.field for member in message.members)
+        fields = [self._field(member, variant) for member in message.members]
         place = self.fields.place(fields)
         direction = message.direction.upper()
         return (
             f"{{{place}, 0x{message.command.id:02X}, {direction}, {message.size}, {len(fields)}}}"
         )
 
-    def _field(self, member: Member, form: tuple[Field, ...]) -> str:
+    def _field(self, member: Member, variant: tuple[Field, ...]) -> str:
         field = member.field
         cases = [self._case(when, lower.numbers(type)) for when, type in lower.cases(field)]
-        selector = lower.selector(field, form)
+        selector = lower.selector(field, variant)
         choices = _choices(field)
         parts = [
             self.cases.place(cases),
@@ -90,7 +90,7 @@ def _row(parts: list[str]) -> str:
 
 
 def _choices(field: Field) -> tuple[int, ...]:
-    """The closed list, unless the bounds say the same."""
+    """Return the closed list; empty if the bounds allow the same values."""
     choices = lower.field_choices(field)
     if (
         field.const is None
@@ -117,6 +117,6 @@ def _numbers(found: list[Message]) -> list[dict[str, Any]]:
 
 
 def _wide(number: dict[str, Any]) -> bool:
-    """Whether the wire can say what 32 bits with a sign cannot; an illegal number is read, too."""
+    """Return whether the wire can carry numbers, legal or not, that int32_t cannot hold."""
     top, signed_at = 256 ** number["width"] - 1, number["signed_at"]
     return bool(signed_at >= 2**31 or (signed_at < top and signed_at - top < -(2**31)))

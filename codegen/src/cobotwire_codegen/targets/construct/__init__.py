@@ -1,4 +1,4 @@
-"""Declarations for construct, a parsing library that nobody here wrote."""
+"""Write declarations for construct, an independent parsing library."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from cobotwire_codegen.targets.construct.declarations import Declarations
 
 
 def render_construct(editions: Sequence[Edition]) -> Files:
-    """A module an edition.
+    """Return a module for each edition.
 
     Raises:
-        ValueError: its frames do not end with a fixed footer; construct is not told of sums.
+        ValueError: an edition's frames have a checksum or an address, which are not declared.
     """
     return {PurePosixPath(f"{edition.name}.py"): _module(edition) for edition in editions}
 
@@ -23,7 +23,7 @@ def render_construct(editions: Sequence[Edition]) -> Files:
 def _module(edition: Edition) -> str:
     template = environment().get_template("construct/edition.py.j2")
     found = Declarations(edition)
-    # The messages first: they name the types that they need.
+    # Messages come first: only they add the types that they need.
     messages = [(literal(key), message) for key, message in found.messages()]
     marks = {"HEADER": edition.frame.header, "FOOTER": edition.frame.footer}
     return template.render(

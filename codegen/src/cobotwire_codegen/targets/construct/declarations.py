@@ -1,11 +1,21 @@
-"""The model as calls of construct's classes."""
+"""Express the model as calls of construct's classes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Edition, Enum, Field, Flag, Form, Quantity, Type, Value
+from cobotwire_codegen.model import (
+    Command,
+    Edition,
+    Enum,
+    Field,
+    Flag,
+    Quantity,
+    Type,
+    Value,
+    Variant,
+)
 from cobotwire_codegen.render.literal import Call, Name, literal
 from cobotwire_codegen.wire import size
 
@@ -13,47 +23,49 @@ Key = tuple[str, str, int]
 
 
 class Declarations:
-    """Messages, and the numbers in them; equal numbers are declared once, by their type's name."""
+    """The messages and their numbers; equal numbers are declared once, by their type's name."""
 
     def __init__(self, edition: Edition) -> None:
         if edition.frame.check != "footer" or edition.frame.addresses:
-            raise ValueError(f"{edition.name}: only frames with a footer and without an address")
+            raise ValueError(
+                f"{edition.name}: construct needs frames with a footer and without an address"
+            )
         self._edition = edition
         self.types: dict[str, Call] = {}
         self._names: dict[str, str] = {}
 
     def messages(self) -> Iterator[tuple[Key, Call]]:
-        """Each form of each message: its key, its declaration."""
+        """Yield the key and the declaration of each variant of each message."""
         for command in self._edition.commands:
             for direction in ("request", "reply"):
-                forms = command.requests if direction == "request" else command.replies
-                for index, form in enumerate(forms):
+                variants = command.requests if direction == "request" else command.replies
+                for index, variant in enumerate(variants):
                     key = (command.name, direction, index)
-                    yield key, self._frame(command, form)
+                    yield key, self._frame(command, variant)
 
-    def _frame(self, command: Command, form: Form) -> Call:
+    def _frame(self, command: Command, variant: Variant) -> Call:
         frame = self._edition.frame
-        # No field of a message has such names; some have one called end.
-        data = sum(size(field.type) for field in form)
+        # The prefix keeps these names apart from fields; some messages have a field named end.
+        data = sum(size(field.type) for field in variant)
         parts = {
             "frame_header": Name("HEADER"),
             "frame_length": Call("Const", 1 + data + frame.check_size, Name("Byte")),
             "frame_id": Call("Const", command.id, Name("Byte")),
-            **self._ahead(form),
-            **{field.name: self._field(field, form) for field in form},
+            **self._ahead(variant),
+            **{field.name: self._field(field, variant) for field in variant},
             "frame_footer": Name("FOOTER"),
             "frame_end": Name("Terminated"),
         }
         return Call("Struct", **parts)
 
-    def _ahead(self, form: Form) -> dict[str, Call]:
-        """A selector behind the field that it decides is looked at before."""
+    def _ahead(self, variant: Variant) -> dict[str, Call]:
+        """Return declarations that read each selector that follows the field it decides."""
         found = {}
         at = len(self._edition.frame.header) + 2
-        for field in form:
-            later = form[form.index(field) + 1 :]
-            for selector in (other for other in later if other.name == field.by):
-                between = form[form.index(field) : form.index(selector)]
+        for field in variant:
+            later = variant[variant.index(field) + 1 :]
+            for selector in (other for other in later if other.name == field.selector):
+                between = variant[variant.index(field) : variant.index(selector)]
                 offset = at + sum(size(other.type) for other in between)
                 found[_name_ahead(selector.name)] = Call(
                     "Pointer", offset, self._plain(selector, selector.type)
@@ -61,11 +73,11 @@ class Declarations:
             at += size(field.type)
         return found
 
-    def _field(self, field: Field, form: Form) -> Call | Name:
-        if not field.by:
+    def _field(self, field: Field, variant: Variant) -> Call | Name:
+        if not field.selector:
             return self._plain(field, field.type)
-        before = [other.name for other in form[: form.index(field)]]
-        selector = field.by if field.by in before else _name_ahead(field.by)
+        before = [other.name for other in variant[: variant.index(field)]]
+        selector = field.selector if field.selector in before else _name_ahead(field.selector)
         pairs = [
             (value, self._plain(field, type)) for when, type in lower.cases(field) for value in when
         ]
@@ -78,7 +90,7 @@ class Declarations:
         return number if field.const is None else Call("Const", field.const, number)
 
     def _number(self, type: Quantity | Enum | Flag) -> Name:
-        """The name under which the type's number is declared."""
+        """Return the name under which the type's number is declared."""
         expression = _expression(type)
         text = literal(expression)
         if text not in self._names:

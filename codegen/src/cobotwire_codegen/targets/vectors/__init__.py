@@ -1,4 +1,4 @@
-"""Vectors for everybody: JSON that any implementation, in any language, can test itself with."""
+"""Write vectors as JSON, for tests of implementations in any language."""
 
 from __future__ import annotations
 
@@ -13,6 +13,6 @@ _SCHEMA = Path(__file__).with_name("schema.json")
 
 
 def render_shared_vectors(editions: Sequence[Edition]) -> Files:
-    """A file an edition, and the schema of them all."""
+    """Return a file for each edition, and the schema of all."""
     files = {PurePosixPath(f"{edition.name}.json"): document(edition) for edition in editions}
     return files | {PurePosixPath("schema.json"): _SCHEMA.read_text(encoding="utf-8")}

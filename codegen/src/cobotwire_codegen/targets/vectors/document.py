@@ -1,4 +1,4 @@
-"""The vectors of an edition as one JSON document, a line each."""
+"""Write the vectors of an edition as one JSON document, one line each."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ VERSION = 1
 
 
 def document(edition: Edition) -> str:
-    """The file's text."""
+    """Return the file's text."""
     laws: dict[Direction, Law] = {
         "request": Law(edition, "request"),
         "reply": Law(edition, "reply"),
@@ -77,19 +77,19 @@ def _message(example: Example, laws: dict[Direction, Law]) -> dict[str, Any]:
         "name": f"{example.command.name} {example.direction}, {example.what}",
         "command": example.command.name,
         "direction": example.direction,
-        "form": _form_number(example),
+        "variant": _variant_number(example),
         "bytes": _hex(example.data),
         "fields": _fields(example),
-        # Calls may share an id: without the call's name the bytes read as the first that fits.
+        # Commands may share an id: the bytes alone decode as the first command that fits.
         "read_as": reading.command.name,
     }
 
 
 def _fields(example: Example) -> list[dict[str, Any]]:
     found = []
-    for field in example.form:
+    for field in example.variant:
         numbers = example.wholes[field.name]
-        parts = slots(field, example.form, example.wholes) or ()
+        parts = slots(field, example.variant, example.wholes) or ()
         record = {
             "name": field.name,
             "whole": list(numbers),
@@ -101,16 +101,16 @@ def _fields(example: Example) -> list[dict[str, Any]]:
     return found
 
 
-def _form_number(example: Example) -> int:
-    return example.command.forms(example.direction).index(example.form)
+def _variant_number(example: Example) -> int:
+    return example.command.variants(example.direction).index(example.variant)
 
 
 def _refused(case: Beyond) -> dict[str, Any]:
-    """A message that no encoder may build: one number of it is out of range."""
+    """Return a message that encoders must reject: one of its numbers is out of range."""
     example = case.example
     fields = _fields(example)
     record = next(record for record in fields if record["name"] == case.field.name)
-    slot = (slots(case.field, example.form, example.wholes) or ())[case.element]
+    slot = (slots(case.field, example.variant, example.wholes) or ())[case.element]
     record["whole"][case.element] = case.whole
     record["value"][case.element] = slot.value(case.whole)
     record.pop("label", None)
@@ -118,7 +118,7 @@ def _refused(case: Beyond) -> dict[str, Any]:
         "name": f"{example.command.name} {example.direction}, {case.field.name} {case.whole}",
         "command": example.command.name,
         "direction": example.direction,
-        "form": _form_number(example),
+        "variant": _variant_number(example),
         "fields": fields,
         "field": case.field.name,
         "element": case.element,
@@ -131,7 +131,7 @@ def _span(span: Span) -> dict[str, Any]:
 
 
 def _texts(edition: Edition) -> list[dict[str, Any]]:
-    """What goes over the line outside any frame: replies, and what follows a request."""
+    """Return the texts outside frames: replies, and texts that follow a request."""
     found = []
     for command in edition.commands:
         for direction, text in (("request", command.request_text), ("reply", command.text)):
@@ -142,11 +142,11 @@ def _texts(edition: Edition) -> list[dict[str, Any]]:
 
 def _text(command: str, direction: str, text: Text) -> dict[str, Any]:
     values = {name: f"{name}-1" for name, _ in text.fields}
-    said = "".join(prefix + value for prefix, value in zip(text.prefixes, values.values()))
+    content = "".join(prefix + value for prefix, value in zip(text.prefixes, values.values()))
     return {
         "command": command,
         "direction": direction,
-        "bytes": _hex((said + text.suffix).encode()),
+        "bytes": _hex((content + text.suffix).encode()),
         "fields": values,
     }
 

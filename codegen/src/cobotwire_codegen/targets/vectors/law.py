@@ -1,6 +1,6 @@
-"""The law of framing and reading once more, straight from the model and without haste.
+"""Implement framing and decoding once more, straight from the model and without optimization.
 
-What vectors expect comes from here, not from a codec: so they can show that a codec is wrong.
+Vectors take their expected results from here, not from a codec, so they can prove a codec wrong.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
-from cobotwire_codegen.model import Command, Edition, Form
+from cobotwire_codegen.model import Command, Edition, Variant
 from cobotwire_codegen.targets.vectors.slots import Wholes, slots
 from cobotwire_codegen.wire import check_of, size
 
@@ -16,17 +16,17 @@ Direction = Literal["request", "reply"]
 
 
 class Fault(NamedTuple):
-    """Why bytes are no message, and at which byte that shows."""
+    """Why bytes are not a message, and at which byte this shows."""
 
     reason: str
     offset: int
 
 
 class Reading(NamedTuple):
-    """What a frame says."""
+    """A decoded frame."""
 
     command: Command
-    form: Form
+    variant: Variant
     wholes: Wholes
 
 
@@ -40,23 +40,23 @@ class Span(NamedTuple):
 
 
 class Law:
-    """What is legal in one direction of an edition."""
+    """The frames that are legal in one direction of an edition."""
 
     def __init__(self, edition: Edition, direction: Direction) -> None:
         self._frame = edition.frame
         self._addresses = {member.value for member in edition.frame.addresses}
-        self._forms: dict[int, list[tuple[Command, Form]]] = {}
+        self._variants: dict[int, list[tuple[Command, Variant]]] = {}
         for command in edition.commands:
-            for form in command.forms(direction):
-                self._forms.setdefault(command.id, []).append((command, form))
-        # Where LEN stands; CMD is behind it, and the data behind that.
+            for variant in command.variants(direction):
+                self._variants.setdefault(command.id, []).append((command, variant))
+        # The index of LEN; CMD follows it, then the data.
         self._at = len(edition.frame.header) + bool(self._addresses)
-        self._lengths = {length for id in self._forms for length in self._lengths_of(id)}
+        self._lengths = {length for id in self._variants for length in self._lengths_of(id)}
 
     def frame_fault(self, data: bytes) -> Fault | None:
-        """Why ``data`` does not begin with a frame; None: it does.
+        """Return why ``data`` does not begin with a frame; None if it does.
 
-        ``truncated`` where more bytes could still make it one.
+        The reason is ``truncated`` if more bytes could still complete a frame.
         """
         for index, byte in enumerate(self._frame.header):
             if index >= len(data):
@@ -74,7 +74,7 @@ class Law:
         return self._end_fault(data, data[self._at], data[self._at + 1])
 
     def _end_fault(self, data: bytes, length: int, id: int) -> Fault | None:
-        if id not in self._forms:
+        if id not in self._variants:
             return Fault("unknown-id", self._at + 1)
         if length not in self._lengths_of(id):
             return Fault("bad-length", self._at)
@@ -86,7 +86,7 @@ class Law:
         return None if data[check:end] == right else Fault("bad-check", check)
 
     def read(self, data: bytes) -> Reading | Fault:
-        """What one whole frame says, as the first message that allows its values."""
+        """Return one whole frame decoded as the first message that allows its values."""
         fault = self.frame_fault(data)
         if fault is not None:
             return fault
@@ -97,24 +97,24 @@ class Law:
 
     def _read(self, id: int, data: bytes) -> Reading | Fault:
         first = None
-        for command, form in self._forms[id]:
-            if _size(form) != len(data):
+        for command, variant in self._variants[id]:
+            if _size(variant) != len(data):
                 continue
-            found = self._wholes(form, data)
+            found = self._wholes(variant, data)
             if not isinstance(found, Fault):
-                return Reading(command, form, found)
+                return Reading(command, variant, found)
             first = first or found
         assert first is not None, "LEN was legal for the id"
         return first
 
-    def _wholes(self, form: Form, data: bytes) -> Wholes | Fault:
-        starts = dict(zip((field.name for field in form), _starts(form)))
+    def _wholes(self, variant: Variant, data: bytes) -> Wholes | Fault:
+        starts = dict(zip((field.name for field in variant), _starts(variant)))
         found: Wholes = {}
-        picked = _unchecked(form, data)
-        for field in form:
-            parts = slots(field, form, picked)
+        picked = _unchecked(variant, data)
+        for field in variant:
+            parts = slots(field, variant, picked)
             if parts is None:
-                return Fault("bad-value", self._at + 2 + starts[field.by])
+                return Fault("bad-value", self._at + 2 + starts[field.selector])
             at = starts[field.name]
             numbers = []
             for slot in parts:
@@ -127,7 +127,7 @@ class Law:
         return found
 
     def cut(self, stream: bytes) -> Iterator[Span]:
-        """A stream that ends, in frames and noise; each byte is judged on its own.
+        """Return a finished stream as frames and noise; each byte is judged on its own.
 
         Adjacent noise of one reason is one span.
         """
@@ -154,23 +154,23 @@ class Law:
 
     def _lengths_of(self, id: int) -> set[int]:
         overhead = 1 + self._frame.check_size
-        return {overhead + _size(form) for _, form in self._forms[id]}
+        return {overhead + _size(variant) for _, variant in self._variants[id]}
 
 
-def _starts(form: Form) -> list[int]:
-    """Where in the data each field begins."""
-    sizes = [size(field.type) for field in form]
-    return [sum(sizes[:index]) for index in range(len(form))]
+def _starts(variant: Variant) -> list[int]:
+    """Return where in the data each field begins."""
+    sizes = [size(field.type) for field in variant]
+    return [sum(sizes[:index]) for index in range(len(variant))]
 
 
-def _unchecked(form: Form, data: bytes) -> Wholes:
-    """The numbers of the fields that stand for themselves, legal or not; they may pick cases."""
+def _unchecked(variant: Variant, data: bytes) -> Wholes:
+    """Return the raw values of fields without a selector, legal or not, to pick cases by."""
     return {
         field.name: tuple(slot.read(data[at : at + slot.wire.width]) for slot in parts[:1])
-        for field, at in zip(form, _starts(form))
-        if not field.by and (parts := slots(field, form, {}))
+        for field, at in zip(variant, _starts(variant))
+        if not field.selector and (parts := slots(field, variant, {}))
     }
 
 
-def _size(form: Form) -> int:
-    return sum(size(field.type) for field in form)
+def _size(variant: Variant) -> int:
+    return sum(size(field.type) for field in variant)

@@ -1,4 +1,4 @@
-"""Bytes that are no message, a few for each form: each wrong in one place."""
+"""Damage messages: a few for each variant, each wrong in one place."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, beyond, examp
 
 
 class Malformed(NamedTuple):
-    """Bytes, and what is wrong with them."""
+    """Bytes that are not a message, and the reason."""
 
     what: str
     direction: Direction
@@ -21,10 +21,10 @@ class Malformed(NamedTuple):
 
 
 def malformed(edition: Edition, laws: dict[Direction, Law]) -> Iterator[Malformed]:
-    """Every kind of damage for every form, and every number that can be out of range."""
+    """Yield every kind of damage for every variant, and every number that can be out of range."""
     for direction, what, data in _broken(edition):
         fault = laws[direction].read(data)
-        # Damage can make another legal message: then there is nothing to refuse.
+        # Damage can make another legal message: then there is nothing to reject.
         if isinstance(fault, Fault):
             yield Malformed(what, direction, data, fault)
 
@@ -52,7 +52,7 @@ def _damaged(edition: Edition, data: bytes) -> Iterator[tuple[str, bytes]]:
     yield "LEN one more", _with(data, length, data[length] + 1)
     yield "check", _with(data, len(data) - 1, data[-1] ^ 1)
     yield "last byte missing", data[:-1]
-    yield "cut behind LEN", data[: length + 1]
+    yield "cut after LEN", data[: length + 1]
     yield "a byte too many", data + b"\x00"
     if edition.frame.addresses:
         yield "address", _with(data, length - 1, 0xFE)
@@ -63,8 +63,8 @@ def _with(data: bytes, at: int, byte: int) -> bytes:
 
 
 def _unknown(edition: Edition, direction: Direction) -> Iterator[bytes]:
-    """A message of the edition under an id that it lacks; none where nothing goes that way."""
-    ids = {command.id for command in edition.commands if command.forms(direction)}
+    """Yield a message with an id that the edition lacks; none if the direction has no messages."""
+    ids = {command.id for command in edition.commands if command.variants(direction)}
     free = next(id for id in range(255, -1, -1) if id not in ids and id not in (0xFE, 0xFA))
     at = len(edition.frame.header) + bool(edition.frame.addresses) + 1
     for example in islice((e for e in examples(edition) if e.direction == direction), 1):

@@ -1,36 +1,36 @@
-"""Every form of every message: an ordinary one, its bounds, every choice; and what is refused."""
+"""Make vectors of every variant of every message: usual values, bounds, choices, rejections."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from cobotwire_codegen.model import Command, Edition, Field, Form
+from cobotwire_codegen.model import Command, Edition, Field, Variant
 from cobotwire_codegen.targets.vectors.law import Direction
-from cobotwire_codegen.targets.vectors.slots import Slot, Wholes, slots, variants
+from cobotwire_codegen.targets.vectors.slots import Slot, Wholes, case_choices, slots
 from cobotwire_codegen.wire import enclose
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
-# Ordinary numbers stand off the middle, each elsewhere, so that a wrong order of fields, bytes or
-# cases shows.
+# Ordinary numbers lie off the middle, each at another share of its range, so that a wrong order of
+# fields, bytes or cases shows.
 SHARES = (0.61, 0.23, 0.83, 0.37, 0.71, 0.13, 0.53)
 
 
 class Example(NamedTuple):
-    """A message by its numbers, and the bytes that say it."""
+    """A message by its raw values, and its bytes."""
 
     what: str
     command: Command
     direction: Direction
-    form: Form
+    variant: Variant
     wholes: Wholes
     data: bytes
 
 
 class Beyond(NamedTuple):
-    """A message with one number that the edition rules out.
+    """A message with one number that the edition does not allow.
 
-    ``data`` holds the bytes that would say it, None where no word reads as that number.
+    ``data`` is the encoded message, None if no bytes decode to that number.
     """
 
     example: Example
@@ -41,52 +41,54 @@ class Beyond(NamedTuple):
 
 
 def examples(edition: Edition) -> Iterator[Example]:
-    """Complete by construction: every form, every case, the bounds and choices of every number."""
-    for command, direction, form in forms(edition):
+    """Yield every variant and case, with the bounds and choices of every number."""
+    for command, direction, variant in variants(edition):
         seen: set[bytes] = set()
-        for what, wholes in _wholes(form):
-            data = spell(edition, command, form, wholes)
-            # Where a form has few numbers, its bounds and its choices are the same messages.
+        for what, wholes in _wholes(variant):
+            data = encode(edition, command, variant, wholes)
+            # Where a variant has few numbers, its bounds and its choices are the same messages.
             if data not in seen:
                 seen.add(data)
-                yield Example(what, command, direction, form, wholes, data)
+                yield Example(what, command, direction, variant, wholes, data)
 
 
-def forms(edition: Edition) -> Iterator[tuple[Command, Direction, Form]]:
-    """Every form of every framed message."""
+def variants(edition: Edition) -> Iterator[tuple[Command, Direction, Variant]]:
+    """Yield every variant of every framed message."""
     for command in edition.commands:
         for direction in DIRECTIONS:
-            for form in command.forms(direction):
-                yield command, direction, form
+            for variant in command.variants(direction):
+                yield command, direction, variant
 
 
 def beyond(edition: Edition, example: Example) -> Iterator[Beyond]:
-    """For each number of a message: the nearest ones that are ruled out."""
-    for field in example.form:
-        parts = slots(field, example.form, example.wholes)
+    """Yield for each number of a message the nearest illegal ones."""
+    for field in example.variant:
+        parts = slots(field, example.variant, example.wholes)
         assert parts is not None, "an example has a case for every field"
         for element, slot in enumerate(parts):
             for whole in _outside(slot):
                 numbers = list(example.wholes[field.name])
                 numbers[element] = whole
                 wholes = example.wholes | {field.name: tuple(numbers)}
-                sayable = slot.sayable(whole) and not _picks(field, example.form)
-                data = spell(edition, example.command, example.form, wholes) if sayable else None
+                encodable = slot.encodable(whole) and not _picks(field, example.variant)
+                data = (
+                    encode(edition, example.command, example.variant, wholes) if encodable else None
+                )
                 yield Beyond(example, field, element, whole, data)
 
 
-def spell(edition: Edition, command: Command, form: Form, wholes: Wholes) -> bytes:
-    """The frame that says these numbers, legal or not."""
+def encode(edition: Edition, command: Command, variant: Variant, wholes: Wholes) -> bytes:
+    """Return the frame with these raw values, legal or not."""
     data = b""
-    for field in form:
-        for slot, whole in zip(slots(field, form, wholes) or (), wholes[field.name]):
+    for field in variant:
+        for slot, whole in zip(slots(field, variant, wholes) or (), wholes[field.name]):
             data += slot.word(whole)
     return enclose(edition.frame, command.id, data)
 
 
-def _picks(field: Field, form: Form) -> bool:
-    """Whether another field's case depends on this one: then its size is not known."""
-    return any(other.by == field.name for other in form)
+def _picks(field: Field, variant: Variant) -> bool:
+    """Return whether another field's case depends on this one: then its size is not known."""
+    return any(other.selector == field.name for other in variant)
 
 
 def _outside(slot: Slot) -> Iterator[int]:
@@ -98,44 +100,44 @@ def _outside(slot: Slot) -> Iterator[int]:
     yield min(slot.choices) - 1
 
 
-def _wholes(form: Form) -> Iterator[tuple[str, Wholes]]:
-    for picked in variants(form):
+def _wholes(variant: Variant) -> Iterator[tuple[str, Wholes]]:
+    for picked in case_choices(variant):
         case = "".join(f", {name} {value}" for name, value in picked.items())
         for what, choose in _CHOOSERS:
-            yield what + case, _message(form, picked, choose)
-    for field in form:
-        yield from _choices(form, field)
+            yield what + case, _message(variant, picked, choose)
+    for field in variant:
+        yield from _choices(variant, field)
 
 
-def _choices(form: Form, field: Field) -> Iterator[tuple[str, Wholes]]:
-    """One message for each member of a closed list."""
-    ordinary = _message(form, {}, _ordinary)
-    for element, slot in enumerate(slots(field, form, ordinary) or ()):
+def _choices(variant: Variant, field: Field) -> Iterator[tuple[str, Wholes]]:
+    """Yield a message for each member of a closed list."""
+    ordinary = _message(variant, {}, _ordinary)
+    for element, slot in enumerate(slots(field, variant, ordinary) or ()):
         for choice in slot.choices:
-            if field.by or len(ordinary[field.name]) > 1:
+            if field.selector or len(ordinary[field.name]) > 1:
                 numbers = list(ordinary[field.name])
                 numbers[element] = choice
                 yield f"{field.name} {choice}", ordinary | {field.name: tuple(numbers)}
             else:
-                yield f"{field.name} {choice}", _message(form, {field.name: choice}, _ordinary)
+                yield f"{field.name} {choice}", _message(variant, {field.name: choice}, _ordinary)
 
 
 Choose = Callable[[Slot, int], int]
 
 
-def _message(form: Form, picked: dict[str, int], choose: Choose) -> Wholes:
+def _message(variant: Variant, picked: dict[str, int], choose: Choose) -> Wholes:
     wholes: Wholes = {}
     count = 0
-    # Selectors first: they decide what the others may be.
-    for field in sorted(form, key=lambda field: bool(field.by)):
-        parts = slots(field, form, wholes)
+    # Selectors come first: they decide which values the other fields may have.
+    for field in sorted(variant, key=lambda field: bool(field.selector)):
+        parts = slots(field, variant, wholes)
         assert parts is not None, "what is chosen for a selector has a case"
         numbers = []
         for slot in parts:
             numbers.append(picked.get(field.name, choose(slot, count)))
             count += 1
         wholes[field.name] = tuple(numbers)
-    return {field.name: wholes[field.name] for field in form}
+    return {field.name: wholes[field.name] for field in variant}
 
 
 def _ordinary(slot: Slot, count: int) -> int:

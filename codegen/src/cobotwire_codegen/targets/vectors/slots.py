@@ -1,4 +1,4 @@
-"""The numbers of a message, one by one: where each stands, and what it may be."""
+"""Split messages into single numbers, with their places and legal values."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Enum, Field, Flag, Form, Quantity, Type, Value, Wire
+from cobotwire_codegen.model import Enum, Field, Flag, Quantity, Type, Value, Variant, Wire
 
 Wholes = dict[str, tuple[int, ...]]
-"""A message: by field, its numbers as they stand on the wire, before their scale."""
+"""A message: its raw values by field."""
 
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """One number of a field. ``choices`` closes the list of what it may be."""
+    """One number of a field. ``choices``, if there are any, are its only legal values."""
 
     wire: Wire
     scale: Fraction
@@ -24,48 +24,48 @@ class Slot:
     choices: tuple[int, ...]
 
     def allows(self, whole: int) -> bool:
-        """Whether the edition allows this number."""
+        """Return whether the edition allows this number."""
         return whole in self.choices if self.choices else self.lowest <= whole <= self.highest
 
     def value(self, whole: int) -> int | float:
-        """What the number stands for."""
+        """Return the physical value of a raw value."""
         exact = whole * self.scale
         return whole if self.scale == 1 else float(exact)
 
     def word(self, whole: int) -> bytes:
-        """The number's bytes."""
+        """Return the bytes of a raw value."""
         word = whole % int(256**self.wire.width)
         return word.to_bytes(self.wire.width, self.wire.order)
 
-    def sayable(self, whole: int) -> bool:
-        """Whether some word reads as this number, legal or not."""
+    def encodable(self, whole: int) -> bool:
+        """Return whether some bytes decode to this number, legal or not."""
         return self.wire.minimum <= whole <= self.wire.maximum
 
     def read(self, data: bytes) -> int:
-        """The number that bytes stand for."""
+        """Return the raw value of bytes."""
         word = int.from_bytes(data, self.wire.order)
         return word if word <= self.wire.signed_at else word - 256**self.wire.width
 
 
-def slots(field: Field, form: Form, wholes: Wholes) -> tuple[Slot, ...] | None:
-    """A field's numbers in a message that has these already; None if its selector picks no case."""
-    if not field.by:
+def slots(field: Field, variant: Variant, wholes: Wholes) -> tuple[Slot, ...] | None:
+    """Return a field's numbers in a message; None if its selector picks no case."""
+    if not field.selector:
         return _slots(field, field.type)
-    picked = wholes[field.by][0]
+    picked = wholes[field.selector][0]
     for when, type in lower.cases(field):
         if picked in when:
             return _slots(field, type)
     return None
 
 
-def variants(form: Form) -> Iterator[dict[str, int]]:
-    """For each case that a field has: what its selector must be. One empty one if none has any."""
-    pickers = [field for field in form if field.by]
+def case_choices(variant: Variant) -> Iterator[dict[str, int]]:
+    """Yield the selector values for each case; one empty entry if there are no cases."""
+    pickers = [field for field in variant if field.selector]
     if not pickers:
         yield {}
     for field in pickers:
         for when, _ in lower.cases(field):
-            yield {field.by: when[0]}
+            yield {field.selector: when[0]}
 
 
 def _slots(field: Field, type: Type) -> tuple[Slot, ...]:

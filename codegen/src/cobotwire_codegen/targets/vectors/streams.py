@@ -1,4 +1,4 @@
-"""Streams of frames and what stands between them on bad lines, with the events to be found."""
+"""Build streams of frames and noise, with the events that a framer must find."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, Example, exam
 
 
 class Stream(NamedTuple):
-    """Bytes, and what is in them when they have been flushed at their end."""
+    """The bytes of a stream, and the events in it after a flush at its end."""
 
     what: str
     direction: Direction
@@ -23,7 +23,7 @@ Recipe = Callable[[Edition, bytes, bytes], bytes]
 
 
 def streams(edition: Edition, laws: dict[Direction, Law]) -> Iterator[Stream]:
-    """Every recipe in every direction, until each form has been in a stream."""
+    """Yield every recipe in every direction until each variant has been in a stream."""
     for direction in DIRECTIONS:
         found = [e for e in examples(edition) if _ordinary(e, direction)]
         for index in range(max(len(found), len(RECIPES)) if found else 0):
@@ -38,30 +38,30 @@ def _ordinary(example: Example, direction: Direction) -> bool:
 
 
 def _false_header(edition: Edition, one: bytes, other: bytes) -> bytes:
-    """A legal heading that nobody sent, which claims the frames behind it."""
+    """Return the start of a frame, with a LEN that covers the frames after it."""
     return one[: _body(edition)] + one + other
 
 
 def _swallowed(edition: Edition, one: bytes, other: bytes) -> bytes:
-    """A frame that lost a byte, so that it claims the head of the next."""
+    """Return a frame that lost a byte, so that its LEN covers the head of the next frame."""
     middle = len(one) // 2
     return one[:middle] + one[middle + 1 :] + other + one
 
 
 def _servo(edition: Edition, one: bytes, other: bytes) -> bytes:
-    """A packet of the servo bus whose checksum, FE, stands in front of a header."""
+    """Return a servo packet that ends with the checksum FE, before a header."""
     body = bytes([0x01, 0x04, 0x02, 0x00])
     checked = body + bytes([(0x01 - sum(body)) % 256])
     return b"\xff\xff" + checked + bytes([~sum(checked) & 0xFF]) + one + other
 
 
 def _nested(edition: Edition, one: bytes, other: bytes) -> bytes:
-    """A frame inside a frame that is broken at its end."""
+    """Return a frame inside a frame with a broken end."""
     return one[:-1] + other + bytes([one[-1] ^ 1]) + one
 
 
 def _body(edition: Edition) -> int:
-    """How many bytes stand before the data."""
+    """Return the number of bytes before the data."""
     return len(edition.frame.header) + bool(edition.frame.addresses) + 2
 
 

@@ -1,4 +1,4 @@
-"""A Wireshark dissector in Lua: a file an edition, which a plugin folder takes as it is."""
+"""Write a Wireshark dissector in Lua for each edition: one file for the plugin folder."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cobotwire_codegen.targets.wireshark.lua import lua
 
 
 def render_wireshark(editions: Sequence[Edition], templates: Path | None = None) -> Files:
-    """A dissector an edition; templates in ``templates`` take the place of the shipped ones."""
+    """Return a dissector for each edition; ``templates`` replace the shipped ones."""
     jinja = environment(templates)
     jinja.filters["lua"] = lua
     template = jinja.get_template("wireshark/dissector.lua.j2")

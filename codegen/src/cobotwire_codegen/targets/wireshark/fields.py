@@ -1,8 +1,8 @@
-"""The fields that the dissector declares: what they are called in filters, and of which type.
+"""Declare the dissector's fields: their names in filters, and their types.
 
 A filter name means one thing. ``mycobot.angle`` is the field ``angle`` of every command that has
-one; where commands use a name for different units or words, the command's name stands in between
-(``mycobot.jog_angle.direction``).
+one. If commands use a name for different units or labels, the command's name comes in between:
+``mycobot.jog_angle.direction``.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ OWN = frozenset(
         *("bad_value", "missing", "cut_off", "unanswered", "other_edition"),
     }
 )
-# Of two types for one name, the one that can say what both say.
+# From narrow to wide: a name that has two types gets the one that holds the values of both.
 _WIDTH = ("BOOLEAN", "UINT32", "INT32", "INT64", "DOUBLE")
 
 
 class Shown(NamedTuple):
-    """A field of Wireshark's: its name for people, its name in filters, its type."""
+    """A field of Wireshark: its display name, its name in filters, its type."""
 
     title: str
     filter: str
@@ -39,10 +39,10 @@ class Shown(NamedTuple):
 
 
 class Declared:
-    """Every field of an edition, each distinct one once, counted from 1 as Lua does."""
+    """The distinct fields of an edition, counted from 1 as in Lua."""
 
     def __init__(self, edition: Edition) -> None:
-        """Settle names and types from all commands; ``number`` and ``group`` then declare."""
+        """Choose names and types from all commands; ``number`` and ``group`` declare fields."""
         self.protocol = edition.name.lower()
         self.all: list[Shown] = []
         self._numbers: dict[Shown, int] = {}
@@ -54,7 +54,7 @@ class Declared:
                 self._types[name] = _wider(self._types.get(name, "BOOLEAN"), _type(field, number))
 
     def number(self, command: Command, field: Field, type: Type, number: dict[str, Any]) -> int:
-        """The index of the field that shows one number."""
+        """Return the index of the field that shows one number."""
         name = self._filter(command, field, number["name"])
         kind = self._types[name]
         words = _words(type) if kind in ("UINT32", "INT32") else ()
@@ -63,14 +63,14 @@ class Declared:
         return self._index(Shown(title, name, kind, words, field.doc))
 
     def group(self, command: Command, field: Field) -> int:
-        """The index of the field that holds a field of several numbers; 0 where there is one."""
+        """Return the index of the group of a field with several numbers; 0 for a single number."""
         if not isinstance(field.type, Value):
             return 0
         name = self._filter(command, field, "")
         return self._index(Shown(field.name, name, "NONE", (), field.doc))
 
     def text(self, name: str, doc: str) -> int:
-        """The index of a field of a text outside any frame."""
+        """Return the index of a field of text outside frames."""
         return self._index(Shown(name, self._free(f"text.{name}"), "STRING", (), doc))
 
     def _index(self, shown: Shown) -> int:
@@ -94,7 +94,7 @@ def _uses(edition: Edition) -> Iterator[tuple[Command, Field]]:
 
 
 def _ambiguous(edition: Edition) -> set[str]:
-    """The names that commands use for different things."""
+    """Return the names that commands use for different things."""
     meanings: dict[str, dict[str, set[tuple[Any, ...]]]] = defaultdict(lambda: defaultdict(set))
     for command, field in _uses(edition):
         meanings[field.name][command.name] |= _meanings(field)
@@ -129,7 +129,7 @@ def _type(field: Field, number: dict[str, Any]) -> str:
         return "DOUBLE"
     if number["signed_at"] == 256 ** number["width"] - 1:
         return "UINT32"
-    # A sign rule of its own may say more than 32 bits can.
+    # An unusual sign rule may need more than 32 bits.
     return "INT32" if number["signed_at"] < 2**31 else "INT64"
 
 

@@ -1,4 +1,4 @@
-"""Lua expressions as text."""
+"""Write Lua expressions as text."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ WIDTH = 100
 
 
 class Name(str):
-    """A name or any other text that stands as it is."""
+    """A name, or other text that is written unchanged."""
 
 
 def lua(value: Any, indent: int = 0, before: int = 0) -> str:
-    """The text of an expression: on one line if it fits, else a line for each part.
+    """Return the text of an expression: on one line if it fits, else a line for each part.
 
-    ``indent`` is the column of the statement, ``before`` counts what stands on its line already.
+    ``indent`` is the column of the statement; ``before`` counts the characters to its left.
     """
     flat = _flat(value)
     if not isinstance(value, (dict, list, tuple)) or indent + before + len(flat) < WIDTH:
@@ -44,13 +44,13 @@ def _flat(value: Any) -> str:
     if isinstance(value, int):
         return str(value)
     if not isinstance(value, (dict, list, tuple)):
-        raise TypeError(f"Lua has no words for {value!r}")
+        raise TypeError(f"cannot write {value!r} in Lua")
     parts = ", ".join(key + _flat(part) for key, part in _parts(value))
     return f"{{ {parts} }}" if parts else "{}"
 
 
 def quoted(text: str | bytes) -> str:
-    """A string literal; what is no printable ASCII is spelt as its bytes."""
+    """Return a string literal; what is not printable ASCII is escaped byte by byte."""
     data = text.encode() if isinstance(text, str) else text
     return '"' + "".join(map(_character, data)) + '"'
 

@@ -1,4 +1,4 @@
-"""``python -m cobotwire.conformance.codec.adapter NAME``: answers on standard output."""
+"""``python -m cobotwire.conformance.codec.adapter NAME``: answer questions on standard output."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.conformance.codec.adapter.loop import Answer, serve
 from cobotwire.conformance.codec.adapter.ours import OurCodec
-from cobotwire.conformance.codec.trials import Json
-from cobotwire.errors import UsageError
+from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.protocol.errors import UsageError
 
 
 class Adapter:
-    """Makes the codec that the greeting asks for."""
+    """Creates the codec of the edition that the greeting names."""
 
     def __init__(self, name: str) -> None:
         self._name = name
         self._answer: Answer | None = None
 
     def ask(self, question: Json) -> Json:
-        """The answer to one question; the first one names the edition."""
+        """Return the answer to one question; the first question names the edition."""
         if question["do"] == "hello":
             self._answer = self._of_edition(question["edition"])
         if self._answer is None:
-            raise UsageError("do", question["do"], "hello first")
+            raise UsageError("do", message=f"the first question is {question['do']}, not hello")
         return self._answer(question)
 
     def _of_edition(self, edition: str) -> Answer:
@@ -40,7 +40,7 @@ class Adapter:
 
 
 def main() -> None:
-    """Serve until the questions end."""
+    """Answer until the questions end."""
     serve(Adapter("".join(sys.argv[1:])).ask, sys.stdin, sys.stdout)
 
 

@@ -1,4 +1,4 @@
-"""The line protocol as an implementation sees it: a question a line in, an answer a line out."""
+"""The loop of an implementation: read a question from each line, write an answer to each."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import json
 from collections.abc import Callable
 from typing import IO
 
-from cobotwire.conformance.codec.trials import Json
-from cobotwire.errors import CobotwireError
+from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.protocol.errors import CobotwireError
 
 Answer = Callable[[Json], Json]
 
@@ -17,8 +17,8 @@ def serve(answer: Answer, questions: IO[str], answers: IO[str]) -> None:
     for line in questions:
         question = json.loads(line)
         try:
-            said = answer(question)
+            result = answer(question)
         except CobotwireError as error:
-            said = {"error": str(error)}
-        answers.write(json.dumps({"id": question["id"], **said}) + "\n")
+            result = {"error": str(error)}
+        answers.write(json.dumps({"id": question["id"], **result}) + "\n")
         answers.flush()

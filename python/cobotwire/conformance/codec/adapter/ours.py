@@ -1,11 +1,11 @@
-"""A codec of ours behind the line protocol."""
+"""Our codecs as implementations of the line protocol."""
 
 from __future__ import annotations
 
 from cobotwire.codec.interface import Codec, Framer, Noise
 from cobotwire.conformance.codec.named import encode_named, plain_fields
-from cobotwire.conformance.codec.trials import Json
-from cobotwire.errors import ProtocolError, UsageError
+from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.protocol.errors import ProtocolError, UsageError
 
 ABILITIES = [
     *(f"{do} {direction}" for do in ("encode", "decode") for direction in ("request", "reply")),
@@ -15,13 +15,13 @@ ABILITIES = [
 
 
 class OurCodec:
-    """Answers questions with a codec; in the same process it is an ``Implementation`` as well."""
+    """Answers questions with a codec; an ``Implementation`` in the same process."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
 
     def ask(self, question: Json) -> Json:
-        """The answer to one question."""
+        """Return the answer to one question."""
         does = {
             "hello": self._hello,
             "encode": self._encode,
@@ -61,7 +61,7 @@ class OurCodec:
 
 
 def events_of(framer: Framer, chunk: str | None) -> list[Json]:
-    """What a chunk, or a silence, makes certain."""
+    """Return the events that a chunk, or a silence, makes certain."""
     events = framer.flush() if chunk is None else framer.feed(bytes.fromhex(chunk))
     return [
         {"noise": event.data.hex(), "offset": event.offset, "reason": event.reason}

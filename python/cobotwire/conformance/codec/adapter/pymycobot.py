@@ -1,8 +1,8 @@
-"""The maker's library pymycobot, unmodified, behind the line protocol: MyCobot280 on our port.
+"""The maker's library pymycobot, unmodified, as an implementation: MyCobot280 on our port.
 
-It writes requests, and reads the reply to what it has just asked. It cuts no streams, reads no
-requests and writes no replies. Where it would wait for more bytes, or ask again, it counts as
-having refused what came.
+It encodes requests, and decodes the reply to the request that it has just sent. It frames no
+streams, decodes no requests and encodes no replies. If it waits for more bytes, or sends a request
+again, it has rejected what came.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ import warnings
 from collections.abc import Iterable
 from typing import Any
 
-from cobotwire.conformance.codec.trials import Json
-from cobotwire.conformance.codec.trials.pictures import named_values, plainest
-from cobotwire.table import Command, Field, Layout, Table
+from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.conformance.codec.questions.samples import named_values, plainest
+from cobotwire.protocol.table import Command, Field, Table, Variant
 
-# What it raises of arguments by accident. Its own checks raise classes of its own.
+# Exceptions that it raises by accident. Its own checks raise its own classes.
 _BY_ACCIDENT = (struct.error, TypeError, ValueError, IndexError, KeyError, AttributeError)
 
 
@@ -29,43 +29,43 @@ class _Wrote(Exception):
         super().__init__(data.hex(" "))
 
 
-class _Refused(Exception):
-    """It would wait, or ask again."""
+class _Rejected(Exception):
+    """The library waits for more bytes, or sends the request again."""
 
 
 class _Port:
-    """What it uses of ``serial.Serial``. Without an answer it throws what was written."""
+    """The part of ``serial.Serial`` that it uses. Without a reply, a write raises its bytes."""
 
-    def __init__(self, answer: bytes | None) -> None:
-        self._answer = answer
+    def __init__(self, reply: bytes | None) -> None:
+        self._reply = reply
         self._waiting = b""
-        self._asked = False
+        self._sent = False
 
     def isOpen(self) -> bool:
-        """It is."""
+        """Return True."""
         return True
 
     def reset_input_buffer(self) -> None:
-        """Throw away what was not read, as it asks for before each request."""
+        """Discard unread bytes; the library calls this before each request."""
         self._waiting = b""
 
     def write(self, data: Any) -> None:
-        """Take a request; the answer is there at once."""
-        if self._answer is None:
+        """Take a request; the reply is available at once."""
+        if self._reply is None:
             raise _Wrote(bytes(data))
-        if self._asked:
-            raise _Refused("it asks again")
-        self._asked = True
-        self._waiting += self._answer
+        if self._sent:
+            raise _Rejected("it sends the request again")
+        self._sent = True
+        self._waiting += self._reply
 
     def inWaiting(self) -> int:
-        """How many bytes of the answer are left."""
+        """Return how many bytes of the reply are left."""
         return len(self._waiting)
 
     def read(self, size: int = 1) -> bytes:
-        """The next bytes of the answer."""
+        """Return the next bytes of the reply."""
         if not self._waiting:
-            raise _Refused("it waits for more bytes")
+            raise _Rejected("it waits for more bytes")
         data, self._waiting = self._waiting[:size], self._waiting[size:]
         return data
 
@@ -75,7 +75,7 @@ class Pymycobot:
 
     def __init__(self, table: Table) -> None:
         with warnings.catch_warnings():
-            # Importing it calls what newer Pythons deprecate; that is not ours to mend.
+            # Its import uses functions that newer Pythons deprecate.
             warnings.simplefilter("ignore")
             from pymycobot import MyCobot280
 
@@ -83,9 +83,9 @@ class Pymycobot:
         self._table = table
 
     def ask(self, question: Json) -> Json:
-        """The answer to one question."""
+        """Return the answer to one question."""
         does = question["do"], question.get("direction")
-        # It prints what it finds in some replies; the answers are ours alone.
+        # It prints while it decodes some replies, but standard output is only for answers.
         with contextlib.redirect_stdout(sys.stderr):
             if does == ("hello", None):
                 return self._hello()
@@ -93,7 +93,7 @@ class Pymycobot:
                 return self._encode(question)
             if does == ("decode", "reply") and "command" in question:
                 return self._decode(question)
-        return {"unsupported": "pymycobot reads replies, and only those of what it has asked"}
+        return {"unsupported": "pymycobot decodes only replies to its own requests"}
 
     def _hello(self) -> Json:
         return {
@@ -103,15 +103,15 @@ class Pymycobot:
             "can": ["encode request", "decode reply"],
         }
 
-    def _peer(self, answer: bytes | None) -> Any:
-        """Its class as its constructor makes it, but for the port and 1.5 s of sleep."""
+    def _peer(self, reply: bytes | None) -> Any:
+        """Return an object of its class without opening a port or sleeping 1.5 s."""
         peer = object.__new__(self._kind)
         module = sys.modules[self._kind.__module__]
         module.CommandGenerator.__init__(peer)
         peer.calibration_parameters = module.calibration_parameters
         peer.lock = threading.Lock()
         peer.thread_lock = True
-        peer._serial_port = _Port(answer)
+        peer._serial_port = _Port(reply)
         return peer
 
     def _encode(self, question: Json) -> Json:
@@ -131,23 +131,25 @@ class Pymycobot:
         call = getattr(self._peer(data), command.name, None)
         if call is None:
             return {"unsupported": f"pymycobot has no {command.name}"}
-        asked = min(command.request, key=lambda form: form.size)
-        arguments = _arguments(command, named_values(asked, plainest(asked)))
+        shortest = min(command.request, key=lambda variant: variant.size)
+        arguments = _arguments(command, named_values(shortest, plainest(shortest)))
         result = _without_output(call, arguments)
         if result is None or result == -1:
-            return {"error": f"it gives {result}"}
+            return {"error": f"it returns {result}"}
         size = len(data) - self._table.frame.overhead - 1 - self._table.frame.check_size
-        layouts = [form for form in command.reply if form.size == size] or list(command.reply)
-        return {"command": command.name, "fields": _by_name(layouts[0], result)}
+        variants = [variant for variant in command.reply if variant.size == size] or list(
+            command.reply
+        )
+        return {"command": command.name, "fields": _by_name(variants[0], result)}
 
 
 def _without_output(call: Any, arguments: list[Any]) -> Any:
-    """Call it. What it raises of arguments or bytes is a refusal; -1 stands for it here."""
+    """Call a method; return -1 if it rejects the arguments or the bytes."""
     try:
         return call(*arguments)
     except _Wrote:
         raise
-    except (_Refused, *_BY_ACCIDENT):
+    except (_Rejected, *_BY_ACCIDENT):
         return -1
     except Exception as error:
         if type(error).__module__.startswith("pymycobot"):
@@ -156,17 +158,19 @@ def _without_output(call: Any, arguments: list[Any]) -> Any:
 
 
 def _arguments(command: Command, fields: Json) -> list[Any]:
-    """Values as its callers give them: in order, lists, and whole numbers where they are whole."""
-    form = next(
-        form for form in command.request if {field.name for field in form.fields} == set(fields)
+    """Return values as its callers pass them: in order, as lists, integers where possible."""
+    variant = next(
+        variant
+        for variant in command.request
+        if {field.name for field in variant.fields} == set(fields)
     )
-    framed = [_plain(fields[field.name]) for field in form.fields if not _is_constant(field)]
+    framed = [_plain(fields[field.name]) for field in variant.fields if not _is_constant(field)]
     text = command.request_text
     return framed + ([] if text is None else [""] * len(text.fields))
 
 
 def _is_constant(field: Field) -> bool:
-    """Whether it can hold one number alone, and so is no argument of the library's method."""
+    """Return whether a field has only one legal value; the method then has no argument for it."""
     number = field.cases[0].numbers[0]
     return number.minimum == number.maximum or len(field.choices) == 1
 
@@ -177,9 +181,9 @@ def _plain(value: Any) -> Any:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
-def _by_name(layout: Layout, result: Any) -> Json:
-    """What it gives, by our names; what it took for an echo it does not tell."""
-    fields = [field for field in layout.fields if not field.echo]
+def _by_name(variant: Variant, result: Any) -> Json:
+    """Return its result by our field names; it omits what it takes for an echo."""
+    fields = [field for field in variant.fields if not field.echo]
     if len(fields) == 1:
         return {fields[0].name: [result] if fields[0].many and _alone(result) else result}
     flat = list(result) if isinstance(result, Iterable) else [result]

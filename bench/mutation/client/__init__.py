@@ -1,1 +1,0 @@
-"""Clients that are broken in one place each, for the referee to find."""

@@ -1,1 +1,0 @@
-"""Client libraries before the referee: sessions, and who plays them."""

@@ -1,0 +1,104 @@
+"""The edition file, and which files it consists of."""
+
+from __future__ import annotations
+
+from cobotwire_codegen.language.changes import CHANGE, ChangesFile
+from cobotwire_codegen.language.frame import FrameFile
+from cobotwire_codegen.language.json_schema import ref
+from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField
+from cobotwire_codegen.language.names import CLASS, LOWER, METHOD
+from cobotwire_codegen.language.proof import VECTOR, ErrataFile, Erratum, VectorsFile
+from cobotwire_codegen.language.records import (
+    Choice,
+    Described,
+    InFile,
+    InFiles,
+    Named,
+    Part,
+    Record,
+    optional,
+    or_file,
+    required,
+)
+from cobotwire_codegen.language.shapes import Name, Names, Text, Whole
+from cobotwire_codegen.language.types import SECTIONS, TypesFile
+
+_JOINTS = "How many joints the arm has."
+_FRAME = "The frame format and the transport."
+
+
+class Acks(Record):
+    """The acknowledgement that every command gets which has no other reply."""
+
+    field = required(Part(ReplyField), "The field of the reply; a bare frame is legal as well.")
+    why = required(Text(), "The reason.")
+    except_ = optional(Names(), "Commands that are not acknowledged.")
+    EXAMPLE = """\
+field: {name: done, type: flag}
+except: [set_ssid_pwd]
+why: Closed-loop firmware acknowledges setters; older firmware sends nothing.
+"""
+
+
+_CHANGES = Choice("changes_or_change", {"changes": ChangesFile}, CHANGE)
+_VECTORS = Choice("vectors_or_vector", {"vectors": VectorsFile}, VECTOR)
+_ERRATA = Choice("errata_or_erratum", {"errata": ErrataFile}, Erratum)
+
+
+class _Edition(Record):
+    edition = required(Name(LOWER), "The edition's name; the name of the generated package.")
+    class_ = required(Name(CLASS), "The client's class in the generated Python.")
+    title = required(Text(), "A heading.")
+    doc = required(Text(), "What the edition is, in a sentence or two.")
+    document = optional(Text(), "The document that the edition was taken from.")
+    firmware = optional(Text(), "The firmware that speaks it.")
+    types = optional(InFile(TypesFile), "What a field can be.")
+    commands = optional(
+        InFiles(CommandsFile, Named(Command, METHOD)),
+        "The commands: a file for each family, or all of them right here as one family.",
+    )
+    vectors = optional(
+        InFiles(_VECTORS, or_file(ref(VectorsFile.definition()))),
+        "Frames with the values that they carry. Every variant of every message needs one.",
+    )
+    errata = optional(
+        InFiles(_ERRATA, or_file(ref(ErrataFile.definition()))),
+        "The places where the document is wrong or contradicts itself.",
+    )
+    acks = optional(Part(Acks), "How commands without a reply are acknowledged.")
+
+
+class WholeEdition(_Edition):
+    """An edition: one version of a protocol."""
+
+    HEADING = "Edition"
+    joints = required(Whole(0), _JOINTS)
+    frame = required(InFile(FrameFile), _FRAME)
+
+
+class DeltaEdition(_Edition):
+    """An edition that is stated as the difference from another one, its base.
+
+    It starts with the base's frame, types, commands and vectors. Its own types, commands and
+    vectors are added; its changes change what is there.
+    """
+
+    base = required(Name(r"\.yaml$", "a file name"), "The file of the base.")
+    joints = optional(Whole(0), f"{_JOINTS} Left out: as in the base.")
+    frame = optional(InFile(FrameFile), f"{_FRAME} Left out: as in the base.")
+    changes = optional(InFiles(_CHANGES), "The changes, in order.")
+
+
+EDITION = Choice("edition", {"base": DeltaEdition}, WholeEdition)
+
+# Which kind a file is: the first of these keys that it has decides. An edition may have many of the
+# other keys, so it is first.
+FILES: dict[str, Described] = {
+    "edition": EDITION,
+    "family": CommandsFile,
+    "changes": ChangesFile,
+    "vectors": VectorsFile,
+    "errata": ErrataFile,
+    "frame": FrameFile,
+    **dict.fromkeys(SECTIONS, TypesFile),
+}

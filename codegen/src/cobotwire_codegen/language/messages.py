@@ -1,0 +1,237 @@
+"""The commands file: commands, their messages, and the fields of these."""
+
+from __future__ import annotations
+
+from cobotwire_codegen.language import facts
+from cobotwire_codegen.language.json_schema import Schema, either
+from cobotwire_codegen.language.names import CASE, CLASS, LOWER, METHOD
+from cobotwire_codegen.language.records import (
+    Choice,
+    Listed,
+    ListedTwice,
+    Named,
+    Part,
+    Record,
+    optional,
+    required,
+)
+from cobotwire_codegen.language.shapes import (
+    Anything,
+    Known,
+    Name,
+    Names,
+    Numbers,
+    Range,
+    Text,
+    Texts,
+    Whole,
+    Word,
+    YesNo,
+)
+from cobotwire_codegen.language.words import ROLES, SAFETY
+
+_TYPE = Known("type_name", "the name of a type")
+
+
+_NO_FIELDS = ("empty-list", "leave the key out")
+
+
+class Case(Record):
+    """The type of a field for one value of its selector."""
+
+    type = required(_TYPE, "A quantity, flag, enum or value type.")
+    EXAMPLE = "{type: rotation}"
+
+
+class _Field(Record):
+    name = required(Name(LOWER), "The name of the argument or result.")
+    doc = optional(Text(), "What it is. Left out: the description of its type.")
+    range = optional(Range(), "A range inside that of the type, in the type's unit.")
+    optional_ = optional(YesNo(), "It may be left out. Only the last fields can be optional.")
+    const = optional(Whole(), "Its raw value is always this one; callers do not give it.")
+
+
+class _ReplyField(_Field):
+    echo = optional(
+        Word(("required", "optional")),
+        "It repeats the request's field of the same name, and the reply is matched by it. With "
+        "`optional`, older firmware leaves it out, and both variants are legal.",
+        "",
+    )
+
+
+class _Typed(Record):
+    type = required(_TYPE, "A quantity, flag, enum or value type.")
+
+
+class _Selected(Record):
+    selector = required(
+        Name(LOWER), "Another field of the message: an enum, or one with few whole numbers."
+    )
+    cases = required(
+        Named(Case, CASE), "The type for each value of the selector: a member's name or a number."
+    )
+
+
+class RequestField(_Typed, _Field):
+    """An argument of a request."""
+
+    EXAMPLE = '{name: speed, type: speed, doc: "How fast, in percent.", optional: true}'
+
+
+class SelectedRequestField(_Selected, _Field):
+    """An argument whose type depends on the value of another argument, its selector."""
+
+    EXAMPLE = """\
+name: value
+selector: axis
+doc: The target of the axis.
+cases:
+  X: {type: length}
+  RX: {type: rotation}
+"""
+
+
+class ReplyField(_Typed, _ReplyField):
+    """A part of a reply."""
+
+    EXAMPLE = "{name: joint, type: joint, echo: optional}"
+
+
+class SelectedReplyField(_Selected, _ReplyField):
+    """A part of a reply whose type depends on the value of another part, its selector."""
+
+
+ANY_REQUEST_FIELD = Choice("any_request_field", {"selector": SelectedRequestField}, RequestField)
+ANY_REPLY_FIELD = Choice("any_reply_field", {"selector": SelectedReplyField}, ReplyField)
+FIELDS: dict[str, Choice] = {"request": ANY_REQUEST_FIELD, "reply": ANY_REPLY_FIELD}
+
+
+class TextField(Record):
+    """A part of a text."""
+
+    name = required(Name(LOWER), "Its name.")
+    doc = required(Text(), "What it is.")
+    EXAMPLE = "{name: ssid, doc: The name of the network.}"
+
+
+class RequestText(Record):
+    """Text that follows a request outside any frame."""
+
+    text = required(Text(), "The text, with each field in braces: `word {field} word {field}`.")
+    fields = optional(Listed(TextField), "The fields, in the order of the text.")
+    EXAMPLE = """\
+text: "'{account}'({password})"
+fields:
+  - {name: account, doc: The name of the network.}
+  - {name: password, doc: Its password.}
+"""
+
+
+class ReplyText(RequestText):
+    """A reply that is text outside any frame. It ends when no byte follows for a while."""
+
+    class_ = required(Name(CLASS), "The class of the result in the generated Python.")
+    silence_ms = required(Whole(1), "How long the line is silent after it, in milliseconds.")
+    EXAMPLE = """\
+text: "ssid: {ssid} password: {password}"
+silence_ms: 50
+class: WifiAccount
+fields:
+  - {name: ssid, doc: The name of the network.}
+  - {name: password, doc: Its password.}
+"""
+
+
+def _read_by() -> Schema:
+    stated: Schema = {
+        "type": "object",
+        "propertyNames": {"pattern": LOWER},
+        "additionalProperties": {"type": ["string", "integer"]},
+    }
+    query = {"additionalProperties": stated, "minProperties": 1, "maxProperties": 1}
+    return either("object", {"type": "object", **query}, {"type": "string"})
+
+
+class Command(Record):
+    """A command: its id, its request and its reply. The key in `commands` names its method."""
+
+    id = required(Whole(0, 255, "bad-id"), "CMD, the byte that identifies the command.")
+    title = required(Text(), "A heading.")
+    doc = required(Text(), "One or two sentences about what it does.")
+    safety = required(
+        Word(SAFETY, SAFETY.values()), "What may be repeated, and what a conformance run may send."
+    )
+    source = facts.source()
+    request = optional(
+        Listed(ANY_REQUEST_FIELD, _NO_FIELDS), "The data that is sent. Left out: none."
+    )
+    request_variants = optional(
+        ListedTwice(ANY_REQUEST_FIELD),
+        "The variants of the request, the full one first, if they differ in more than optional "
+        "fields at the end. They are told apart by length, then by the values that each allows.",
+    )
+    reply = optional(
+        Listed(ANY_REPLY_FIELD, _NO_FIELDS), "The data of the reply. Left out: no reply."
+    )
+    reply_variants = optional(
+        ListedTwice(ANY_REPLY_FIELD), "The variants of the reply, the full one first."
+    )
+    reply_text = optional(Part(ReplyText), "The reply, if it is text outside any frame.")
+    request_text = optional(Part(RequestText), "Text that follows the request.")
+    ack = optional(
+        YesNo(),
+        "The reply is an acknowledgement: it may come, come late or never, and clients do not wait "
+        "for it.",
+    )
+    alias = optional(
+        Name(METHOD), "Another command: this one is the same message under a second name."
+    )
+    role = optional(
+        Word(ROLES, ROLES.values()), "How hand-written code finds the command in every edition.", ""
+    )
+    read_by = optional(
+        Anything(
+            "a query's name, or {QUERY: {reply field: request field or whole number}}", _read_by()
+        ),
+        "The query that reports what the command has set, so that a conformance run can set, read "
+        "and compare. Fields are paired by name; where names differ, or the result is a fixed "
+        "state, the reply's fields state it.",
+    )
+    agrees_with = optional(Names(), "Queries that report the same values while the arm rests.")
+    samples = optional(
+        Anything(
+            "a list of mappings from an argument to its raw values",
+            {"type": "array", "items": Named(Numbers(), LOWER).schema()},
+        ),
+        "The raw values that a conformance run may send if not every legal one is harmless. An "
+        "entry is for the first variant of the request that has its arguments.",
+    )
+    shares_id = optional(Names(), "Commands that have the same id with other data.")
+    deadline_ms = optional(
+        Whole(1), "How long a client waits for the reply. Left out: as the transport states.", 0
+    )
+    notes = optional(Texts(), "Sentences for the reference.")
+    disputed = facts.disputed()
+    EXCLUSIVE = (("request", "request_variants"), ("reply", "reply_variants"))
+    EXAMPLE = """\
+id: 0x21
+title: Send one joint to an angle
+doc: Moves one joint to an angle.
+safety: motion
+source: [274-304]
+role: joint target
+request:
+  - {name: joint, type: joint}
+  - {name: angle, type: angle}
+  - {name: speed, type: speed}
+"""
+
+
+class CommandsFile(Record):
+    """A family of commands. In a delta, the family of the base with that name grows."""
+
+    family = required(Name(LOWER), "The family's name; a module of the generated Python.")
+    title = required(Text(), "A heading.")
+    doc = required(Text(), "What the family contains.")
+    commands = required(Named(Command, METHOD), "The commands by the names of their methods.")

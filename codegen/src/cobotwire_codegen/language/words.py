@@ -1,0 +1,53 @@
+"""The closed lists of words, with descriptions where a word needs one."""
+
+from __future__ import annotations
+
+SAFETY = {
+    "query": "Reads and changes nothing. Only queries are ever repeated automatically.",
+    "setting": "Changes a setting until the power is switched off.",
+    "motion": "Moves the arm, or allows it to move.",
+    "power": "Switches power.",
+    "persistent write": "Changes something that outlives a power cycle.",
+}
+CHECKS = {
+    "footer": "Every frame ends with the same byte.",
+    "crc16-modbus": "A CRC-16/MODBUS over everything before it, high byte first.",
+    "sum": "The low byte of the sum of CMD and data.",
+}
+ROLES = {
+    "joint targets": "Moves all joints; the first argument is the row of targets.",
+    "joint target": "Moves one joint: the first argument selects it, the second is its target.",
+    "coordinate targets": "Moves the end to a pose; the first argument is the row of coordinates.",
+    "coordinate target": "Moves along one axis: the first argument selects it.",
+    "reached": "Reports whether the arm is at a target.",
+    "moving": "Reports whether the arm is in motion.",
+    "stop": "Stops the arm.",
+    "joints": "Reports the angles of all joints.",
+    "coordinates": "Reports the pose of the end.",
+    "powered": "Reports whether the motors have power.",
+    "version": "Reports the version of the firmware.",
+}
+UNITS = (
+    "degree",
+    "degree_celsius",
+    "hertz",
+    "millimetre",
+    "milliampere",
+    "percent",
+    "step_per_second",
+    "tick",
+    "volt",
+)
+CONFIDENCE = ("high", "medium", "low")
+VERDICTS = ("consistent", "erratum", "label only", "text and byte disagree")
+REASONS = (
+    "no-header",
+    "bad-address",
+    "bad-length",
+    "unknown-id",
+    "bad-check",
+    "truncated",
+    "trailing",
+    "bad-value",
+)
+ERRATUM_KINDS = ("text", "table", "title", "label", "example", "missing")

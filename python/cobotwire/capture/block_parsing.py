@@ -1,0 +1,121 @@
+"""Read the blocks of a pcapng file; every length is checked before it is used."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from typing import BinaryIO, NamedTuple
+
+from cobotwire.capture import block_encoding as blocks
+from cobotwire.protocol.errors import CaptureError
+
+# Wireshark's own limit; a longer block is taken for damage.
+LARGEST_BLOCK = 16 * 1024 * 1024
+SMALLEST_BLOCK = 12
+SMALLEST_SECTION = 28
+NOT_PCAPNG = "the file is not a pcapng recording"
+
+
+class Block(NamedTuple):
+    """One block: its offset in the file, and its byte order (``<`` or ``>``)."""
+
+    offset: int
+    kind: int
+    body: bytes
+    order: str
+
+
+class Truncated(EOFError):
+    """The file ends inside the block that begins at ``offset``."""
+
+    def __init__(self, offset: int) -> None:
+        self.offset = offset
+        super().__init__(offset)
+
+
+def blocks_of(file: BinaryIO, name: str) -> Iterator[Block]:
+    """Yield the blocks of a file, in order.
+
+    Raises:
+        CaptureError: the file is not a pcapng file, or it is damaged.
+        Truncated: the file ends inside a block.
+    """
+    offset, order = 0, ""
+    while head := _take(file, 8, offset):
+        kind = struct.unpack("<I", head[:4])[0]
+        if kind == blocks.SECTION:
+            magic = _take(file, 4, offset, within=True)
+            order = _order_of(magic, name, offset)
+        else:
+            magic = b""
+            if not order:
+                raise CaptureError(name, offset, NOT_PCAPNG)
+            kind = struct.unpack(order + "I", head[:4])[0]
+        size = struct.unpack(order + "I", head[4:])[0]
+        _check_size(size, kind, name, offset)
+        rest = magic + _take(file, size - 8 - len(magic), offset, within=True)
+        if rest[-4:] != head[4:]:
+            raise CaptureError(name, offset, "damaged: the two lengths of a block differ")
+        yield Block(offset, kind, rest[:-4], order)
+        offset += size
+
+
+def _take(file: BinaryIO, size: int, offset: int, within: bool = False) -> bytes:
+    """Return exactly ``size`` bytes, or none at the end of the file unless ``within`` a block."""
+    data = b""
+    while len(data) < size:
+        more = file.read(size - len(data))
+        if not more:
+            if data or within:
+                raise Truncated(offset)
+            return b""
+        data += more
+    return data
+
+
+def _order_of(magic: bytes, name: str, offset: int) -> str:
+    for order in "<>":
+        if struct.unpack(order + "I", magic)[0] == blocks.BYTE_ORDER_MAGIC:
+            return order
+    raise CaptureError(name, offset, NOT_PCAPNG)
+
+
+def _check_size(size: int, kind: int, name: str, offset: int) -> None:
+    smallest = SMALLEST_SECTION if kind == blocks.SECTION else SMALLEST_BLOCK
+    if size % 4 or not smallest <= size <= LARGEST_BLOCK:
+        allowed = f"a multiple of 4 in {smallest}..{LARGEST_BLOCK}"
+        raise CaptureError(name, offset, f"damaged: a block has length {size}, not {allowed}")
+
+
+class Fields:
+    """Read a block's body from its beginning; reading past its end raises CaptureError."""
+
+    def __init__(self, block: Block, name: str) -> None:
+        self._block, self._name = block, name
+        self._at = 0
+
+    def numbers(self, format: str) -> tuple[int, ...]:
+        """Return numbers in a format of :mod:`struct`."""
+        data = self.data(struct.calcsize("=" + format))
+        return struct.unpack(self._block.order + format, data)
+
+    def data(self, size: int) -> bytes:
+        """Return ``size`` bytes and skip the padding after them."""
+        end = self._at + size
+        if end > len(self._block.body):
+            raise CaptureError(
+                self._name,
+                self._block.offset,
+                "damaged: a block is shorter than its content",
+            )
+        data = self._block.body[self._at : end]
+        self._at = min(end + -size % 4, len(self._block.body))
+        return data
+
+    def options(self) -> Iterator[tuple[int, bytes]]:
+        """Yield the options at the end of the body."""
+        while self._at < len(self._block.body):
+            code, size = self.numbers("HH")
+            if code == blocks.END:
+                return
+            yield code, self.data(size)

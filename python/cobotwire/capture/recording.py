@@ -1,0 +1,92 @@
+"""Record one transport to a capture file of its own."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Literal, Self
+
+from cobotwire.capture.file_errors import unusable_file
+from cobotwire.capture.recorder import Moment, Recorder
+from cobotwire.capture.writer import CaptureWriter
+from cobotwire.codec.interface import Codec
+from cobotwire.protocol.errors import CaptureError
+
+
+class Recording:
+    """A recorder that owns its file.
+
+    ``TappedTransport(open_transport(url, baudrate), recording.record)`` passes it each chunk when
+    it is read or written. As the ``trace`` of a client it gets every byte too, but only when the
+    frame is complete.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        codec: Codec | None,
+        *,
+        url: str = "",
+        baudrate: int = 0,
+        application: str = "cobotwire",
+    ) -> None:
+        """Create the file.
+
+        Args:
+            path: the file; an existing file is not overwritten.
+            codec: cuts the bytes into frames; None records the chunks as they come.
+            url: the port, for the readers of the capture.
+            baudrate: bits a second, for the readers of the capture.
+            application: the name of the program that writes the capture.
+
+        Raises:
+            UsageError: the file exists already, or it cannot be created.
+        """
+        try:
+            self._file = Path(path).open("xb")  # noqa: SIM115  (closed by close())
+        except (OSError, ValueError) as error:
+            raise unusable_file("record", path, error) from None
+        self._name = str(path)
+        self._writer = CaptureWriter(self._file, application)
+        self._recorder = Recorder(self._writer, codec, url=url, baudrate=baudrate, name=self._name)
+
+    def __call__(self, moment: Moment) -> None:
+        """Record one item of a client's traffic."""
+        self._recorder(moment)
+
+    def record(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:
+        """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds."""
+        self._recorder.record(direction, data, at)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Finish the file. Closing twice is harmless.
+
+        Raises:
+            CaptureError: a write failed, so the recording is incomplete.
+        """
+        if self._file.closed:
+            return
+        try:
+            self._recorder.close()
+            self._writer.finish()
+        except OSError as error:
+            raise CaptureError(
+                self._name, self._writer.size, f"the recording could not be finished: {error}"
+            ) from error
+        finally:
+            # On a full disk closing fails as well; the error is already raised.
+            with suppress(OSError):
+                self._file.close()

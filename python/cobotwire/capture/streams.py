@@ -1,0 +1,207 @@
+"""Cut the packets of a capture into frames again; decode and diagnose them.
+
+Each direction of each interface is one stream of bytes.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from cobotwire import codec as codecs
+from cobotwire import editions
+from cobotwire.capture.packet import Direction, Packet
+from cobotwire.capture.reader import CaptureReader
+from cobotwire.capture.recorder import IDLE_NS
+from cobotwire.codec.interface import Codec, Event, Frame, Listening
+from cobotwire.diagnose import Diagnoser, Item
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.messages import Reply, Request
+
+LISTENING: dict[Direction, Listening] = {"sent": "request", "received": "reply"}
+
+
+class DirectionStream:
+    """Joins the packets of one direction on one interface, and cuts frames and noise out of them.
+
+    Attributes:
+        codec: the codec of the interface's edition.
+        interface: an index into ``CaptureReader.interfaces``.
+        direction: the direction of the packets.
+        listening: what the framer looks for.
+        framer: the framer, with its counters.
+        start_ns: when the first packet came.
+    """
+
+    def __init__(
+        self, codec: Codec, packet: Packet, listening: Listening, accept_unknown: bool
+    ) -> None:
+        self.codec, self.interface, self.direction = codec, packet.interface, packet.direction
+        self.listening = LISTENING.get(packet.direction, listening)
+        self.framer = codec.framer(self.listening, accept_unknown=accept_unknown)
+        # Where in the stream each piece starts, and when it came.
+        self._times: deque[tuple[int, int]] = deque()
+        self._size = 0
+        self.start_ns = packet.time_ns
+        self._waiting = False
+
+    def is_idle(self, time_ns: int) -> bool:
+        """Return whether bytes wait for more, although none came for ``IDLE_NS``."""
+        return self._waiting and time_ns >= self._times[-1][1] + IDLE_NS
+
+    def feed(self, packet: Packet) -> list[Event]:
+        """Take the next packet of this direction; return what is certain by now."""
+        for size, time_ns in packet.pieces or ((len(packet.data), packet.time_ns),):
+            self._times.append((self._size, time_ns))
+            self._size += size
+        self._waiting = True
+        return self.framer.feed(packet.data)
+
+    def flush(self) -> list[Event]:
+        """Return what waits for more bytes."""
+        self._waiting = False
+        return self.framer.flush()
+
+    def time_of(self, offset: int) -> int:
+        """Return when a byte came; the offsets of successive calls must not decrease."""
+        while len(self._times) > 1 and self._times[1][0] <= offset:
+            self._times.popleft()
+        return self._times[0][1]
+
+
+class StreamEvents(NamedTuple):
+    """Events of one stream; ``idle``: the stream is idle, so no later byte belongs to them."""
+
+    stream: DirectionStream
+    events: list[Event]
+    idle: bool
+
+
+def cut(
+    packets: Iterable[Packet],
+    codec_of: Callable[[int], Codec],
+    listening: Listening = "both",
+    *,
+    accept_unknown: bool = False,
+) -> Iterator[StreamEvents]:
+    """Yield frames and noise of all directions, each as soon as it is certain.
+
+    Args:
+        packets: the packets of a capture.
+        codec_of: gives the codec for the index of an interface.
+        listening: what packets of unknown direction hold.
+        accept_unknown: whether to accept frames with ids that the edition lacks.
+    """
+    streams: dict[tuple[int, Direction], DirectionStream] = {}
+    for packet in packets:
+        for stream in streams.values():
+            if stream.is_idle(packet.time_ns):
+                yield StreamEvents(stream, stream.flush(), idle=True)
+        key = packet.interface, packet.direction
+        if key not in streams:
+            codec = codec_of(packet.interface)
+            streams[key] = DirectionStream(codec, packet, listening, accept_unknown)
+        yield StreamEvents(streams[key], streams[key].feed(packet), idle=False)
+    for stream in streams.values():
+        yield StreamEvents(stream, stream.flush(), idle=True)
+
+
+class CapturedMessage(NamedTuple):
+    """A decoded frame of a capture.
+
+    Attributes:
+        time_ns: when its first byte was sent or received, in nanoseconds since 1970 (UTC).
+        interface: an index into ``CaptureReader.interfaces``.
+        direction: whether it was sent or received.
+        message: the typed message, to be matched with ``match``; the error if a field holds a value
+            that the edition does not allow.
+    """
+
+    time_ns: int
+    interface: int
+    direction: Direction
+    message: Request[Any] | Reply[Any] | ProtocolError
+
+
+def messages(capture: CaptureReader, edition: str = editions.DEFAULT) -> Iterator[CapturedMessage]:
+    """Yield the decoded messages of a capture; ``edition`` applies where the capture names none.
+
+    ::
+
+        for captured in messages(read("arm.pcapng")):
+            match captured.message:
+                case SendAngle(joint, angle):
+                    print("request", joint, angle)
+                case GetAnglesReply(angles):
+                    print("reply", angles)
+    """
+    events = cut(capture, lambda interface: codec_of_interface(capture, interface, edition))
+    for stream, cut_events, _ in events:
+        for event in cut_events:
+            if isinstance(event, Frame):
+                time_ns = stream.time_of(event.offset)
+                yield CapturedMessage(time_ns, stream.interface, stream.direction, _typed(event))
+
+
+def _typed(frame: Frame) -> Request[Any] | Reply[Any] | ProtocolError:
+    try:
+        return frame.message.typed
+    except ProtocolError as error:
+        return error
+
+
+def diagnose_capture(
+    capture: CaptureReader,
+    edition: str,
+    listening: Listening = "both",
+    *,
+    accept_unknown: bool = False,
+) -> Iterator[tuple[DirectionStream, list[Item]]]:
+    """Yield the frames and findings of a capture with their streams; see :func:`cut`.
+
+    Requests that were sent on an interface make their echoes certain.
+    """
+    diagnosers: dict[DirectionStream, Diagnoser] = {}
+    sent: dict[int, list[bytes]] = {}
+    for stream, events, idle in cut(
+        capture,
+        lambda interface: codec_of_interface(capture, interface, edition),
+        listening,
+        accept_unknown=accept_unknown,
+    ):
+        if stream not in diagnosers:
+            diagnosers[stream] = Diagnoser(stream.codec, stream.listening)
+        diagnoser = diagnosers[stream]
+        if stream.direction == "received":
+            for data in sent.pop(stream.interface, ()):
+                diagnoser.sent(data)
+        items = diagnoser.feed(events) + (diagnoser.flush() if idle else [])
+        if stream.direction == "sent":
+            frames = [item.data for item in items if isinstance(item, Frame)]
+            sent.setdefault(stream.interface, []).extend(frames)
+        yield stream, items
+
+
+def codec_of_interface(capture: CaptureReader, interface: int, default_edition: str) -> Codec:
+    """Return the codec of the edition that the capture names, or else of the default edition."""
+    return _codec(capture.interfaces[interface].edition, default_edition)
+
+
+@lru_cache
+def _codec(recorded_edition: str, default_edition: str) -> Codec:
+    known = recorded_edition in editions.names()
+    return codecs.load(editions.load(recorded_edition if known else default_edition).TABLE)
+
+
+def packets_of_interface(capture: CaptureReader, interface: int) -> list[Packet]:
+    """Return all packets of one interface.
+
+    Raises:
+        UsageError: the capture has no interface with that index.
+    """
+    packets = [packet for packet in capture if packet.interface == interface]
+    if not 0 <= interface < len(capture.interfaces):
+        raise UsageError("interface", interface, f"0..{len(capture.interfaces) - 1}")
+    return packets

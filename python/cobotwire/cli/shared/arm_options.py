@@ -1,0 +1,51 @@
+"""Open the port of an arm with the options of the verb, and record its traffic on request."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import click
+
+from cobotwire import codec as codecs
+from cobotwire.capture import Recording
+from cobotwire.protocol.table import Table
+from cobotwire.transport import OpenedTransport, TappedTransport, open_transport
+
+Verb = Callable[..., Any]
+
+baudrate_option = click.option(
+    "--baudrate", type=int, help="Bits a second [default: the edition's]."
+)
+
+
+def arm_options(verb: Verb) -> Verb:
+    """Add the options of every verb that opens the port of an arm."""
+    record_option = click.option(
+        "--record", metavar="FILE", help="Record all traffic to FILE (pcapng)."
+    )
+    return baudrate_option(record_option(verb))
+
+
+@contextmanager
+def open_arm(
+    port: str, table: Table, baudrate: int | None, record: str | None
+) -> Iterator[OpenedTransport]:
+    """Open a port; close it at the end, and finish the recording, whatever happened.
+
+    Raises:
+        UsageError: the port, the baud rate or the file is not allowed. Nothing was sent.
+        LinkError: the port does not exist, or it cannot be opened.
+        CaptureError: at the end: the recording is incomplete.
+    """
+    speed = table.baudrate if baudrate is None else baudrate
+    transport = open_transport(port, speed)
+    try:
+        if record is None:
+            yield transport
+            return
+        with Recording(record, codecs.load(table), url=port, baudrate=speed) as recording:
+            yield TappedTransport(transport, recording.record)
+    finally:
+        transport.close()

@@ -1,0 +1,123 @@
+"""Format frames and findings: on one line, byte by byte, or as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import click
+
+from cobotwire.cli.shared.output import as_hex, as_json_value
+from cobotwire.codec.interface import Frame
+from cobotwire.diagnose import Finding, Item, Unrecognised
+from cobotwire.diagnose.explain import (
+    REMEMBERED,
+    FrameReader,
+    Reading,
+    format_message,
+    frame_parts,
+)
+from cobotwire.protocol.table import FrameFormat
+
+# Bytes of a finding that are shown on its line.
+SHOWN = 16
+
+Format = Callable[[Item], str]
+
+
+def one_line(reader: FrameReader, colour: bool) -> Format:
+    """Return a formatter: offset, kind, bytes and meaning."""
+    meaning = lru_cache(REMEMBERED)(lambda data: " | ".join(map(_reading, reader.read(data))))
+
+    def format(item: Item) -> str:
+        if isinstance(item, Frame):
+            kind, text, label_colour = "frame", meaning(item.data), "green"
+        else:
+            kind, text = item.kind, item.describe()
+            label_colour = "red" if isinstance(item, Unrecognised) else "yellow"
+        label = click.style(f"{kind:<14}", fg=label_colour) if colour else f"{kind:<14}"
+        return f"{item.offset:>8}  {label}  {_first_bytes(item)}  {text}{_pieces(item)}"
+
+    return format
+
+
+def _reading(reading: Reading) -> str:
+    if reading.message is None:
+        return f"as a {reading.direction}: {reading.error}"
+    return f"{reading.direction}: {format_message(reading.message)}"
+
+
+def _first_bytes(item: Item) -> str:
+    data = item.data
+    if isinstance(item, Frame) or len(data) <= SHOWN:
+        return as_hex(data)
+    return f"{as_hex(data[:SHOWN])} ... {len(data)} bytes"
+
+
+def _pieces(item: Item) -> str:
+    if isinstance(item, Frame):
+        return ""
+    around = f" (in {len(item.spans)} pieces)" if len(item.spans) > 1 else ""
+    return around + (" (continued)" if item.continued else "")
+
+
+def byte_by_byte(reader: FrameReader, frame: FrameFormat) -> Format:
+    """Return a formatter: each byte of a frame on a line; noise, and why it is not a frame."""
+
+    def format(item: Item) -> str:
+        readings = reader.read(item.data)
+        if isinstance(item, Frame):
+            lines = [f"frame   {as_hex(item.data)}"]
+            for reading in readings:
+                lines.append(f"  {_reading(reading)}")
+                lines += _parts(frame, item.data, reading)
+            return "\n".join(lines)
+        lines = [f"noise   {as_hex(item.data)}   {item.reason}", f"  {item.describe()}"]
+        lines += [f"  {_reading(reading)}" for reading in readings if reading.error is not None]
+        return "\n".join(lines)
+
+    return format
+
+
+def _parts(frame: FrameFormat, data: bytes, reading: Reading) -> list[str]:
+    if reading.message is None:
+        return []
+    return [
+        f"    {part.offset:>3}  {as_hex(part.data):<6} {part.name:<14} {part.meaning}"
+        for part in frame_parts(frame, data, reading.message)
+    ]
+
+
+def as_object(reader: FrameReader, item: Item) -> dict[str, Any]:
+    """Return a frame or finding as a JSON object."""
+    readings = reader.read(item.data)
+    common = {"offset": item.offset, "data": as_hex(item.data)}
+    described = {"readings": [_reading_object(reading) for reading in readings]}
+    if isinstance(item, Frame):
+        legal = any(reading.message for reading in readings)
+        return {"kind": "frame", **common, "legal": legal, **described}
+    noise = {"kind": "noise", **common, "legal": False, "reason": item.reason}
+    return {**noise, **described, **_finding_object(item)}
+
+
+def _finding_object(finding: Finding) -> dict[str, Any]:
+    facts = {
+        name: as_hex(fact) if isinstance(fact, bytes) else fact
+        for name, fact in finding.facts.items()
+    }
+    return {
+        "finding": finding.kind,
+        "text": finding.describe(),
+        "facts": facts,
+        "pieces": [[span.offset, len(span.data)] for span in finding.spans],
+        "continued": finding.continued,
+    }
+
+
+def _reading_object(reading: Reading) -> dict[str, Any]:
+    if reading.message is None:
+        return {"direction": reading.direction, "error": str(reading.error)}
+    message = reading.message
+    fields = {name: as_json_value(value) for name, value in message.fields.items()}
+    return {"direction": reading.direction, "command": message.command.name, "fields": fields}

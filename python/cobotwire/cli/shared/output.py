@@ -1,0 +1,58 @@
+"""Print lines, and format values, for people and as JSON."""
+
+from __future__ import annotations
+
+import os
+import sys
+from enum import IntEnum
+from typing import Any
+
+import click
+from rich.console import Console
+
+WIDTH_OF_FILES = 200
+
+
+def print_line(line: str) -> None:
+    """Print a line at once; do nothing if the reader of the output has closed it."""
+    try:
+        click.echo(line)
+    except BrokenPipeError:
+        discard_output()
+
+
+def discard_output() -> None:
+    """Redirect standard output to nowhere, so that no later write or flush fails."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
+
+
+def plain_console() -> Console:
+    """Return a console that prints text as it is: ``[word]`` and ``:word:`` are not markup."""
+    console = Console(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal:
+        # Long lines are not broken, for grep and the like.
+        console.width = WIDTH_OF_FILES
+    return console
+
+
+def as_hex(data: bytes) -> str:
+    """Return bytes as pairs of hex digits."""
+    return data.hex(" ").upper()
+
+
+def as_json_value(value: Any) -> Any:
+    """Return a result as JSON knows it: named tuples become objects, enum members names."""
+    if hasattr(value, "_asdict"):
+        return {name: as_json_value(part) for name, part in value._asdict().items()}
+    if isinstance(value, IntEnum):
+        return value.name
+    return list(value) if isinstance(value, tuple) else value
+
+
+def format_result(value: Any) -> str:
+    """Return a result on one line, for people."""
+    if hasattr(value, "_asdict"):
+        return "  ".join(f"{name}={part}" for name, part in value._asdict().items())
+    return value.name if isinstance(value, IntEnum) else str(value)

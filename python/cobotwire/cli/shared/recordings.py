@@ -1,0 +1,41 @@
+"""Open recordings, and warn if they are incomplete."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+import click
+
+from cobotwire.capture import CaptureReader, Direction, is_capture, read
+from cobotwire.capture.byte_source import hex_arguments
+
+ARROWS: dict[Direction, str] = {"sent": ">", "received": "<", "unknown": "?"}
+
+interface_option = click.option(
+    "--interface",
+    type=int,
+    default=0,
+    show_default=True,
+    help="Which interface, if the recording has several.",
+)
+
+
+def recording_named(arguments: Sequence[str]) -> CaptureReader | None:
+    """Return the recording that the single argument names; None if it is something else."""
+    # Bytes in hex are not looked up as files, and reading from a pipe would consume its start.
+    single = len(arguments) == 1 and hex_arguments(arguments) is None
+    if not single or not os.path.isfile(arguments[0]):
+        return None
+    try:
+        with open(arguments[0], "rb") as file:
+            first = file.read(12)
+    except OSError:
+        return None
+    return read(arguments[0]) if is_capture(first) else None
+
+
+def warn_if_incomplete(capture: CaptureReader) -> None:
+    """Print to standard error what is missing at the end of a recording."""
+    if capture.incomplete:
+        click.echo(f"cobotwire: {capture.incomplete}", err=True)

@@ -1,0 +1,40 @@
+"""Serve a port until a signal ends it."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from types import FrameType
+
+import click
+
+from cobotwire.cli.shared.output import print_line
+from cobotwire.simulator.server import Server
+
+
+def serve(
+    server: Server, first_line: str | None = None, between: Sequence[Callable[[], None]] = ()
+) -> None:
+    """Print the port (or ``first_line``), and serve it until Ctrl-C or SIGTERM.
+
+    The functions in ``between`` are called now and then, between two requests.
+    """
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        # If ending hangs, for example on a full output pipe, the next signal kills the process.
+        signal.signal(number, signal.SIG_DFL)
+
+    # The wakeup descriptor ends the server, not the handler: Python runs handlers only after
+    # select() has returned, and a signal just before select() does not make it return.
+    signal.set_wakeup_fd(server.stopper)
+    signal.signal(signal.SIGINT, stop)
+    signal.signal(signal.SIGTERM, stop)
+    print_line(server.url if first_line is None else first_line)
+    if sys.stdout.isatty():
+        click.echo(f"Try: cobotwire call get_angles --port {server.url}   (Ctrl-C ends)", err=True)
+    try:
+        server.serve(between)
+    finally:
+        signal.set_wakeup_fd(-1)
+        server.close()

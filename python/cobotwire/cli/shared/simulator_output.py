@@ -1,0 +1,89 @@
+"""Format what a simulated arm receives and replies: as lines, or as JSON.
+
+A ``client`` is a number; None if there is only one client.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from cobotwire.cli.shared.output import as_hex, as_json_value
+from cobotwire.codec.interface import Noise
+from cobotwire.diagnose.explain import format_message
+from cobotwire.session.device import DeviceEvent, MalformedRequest, RequestReceived
+from cobotwire.simulator.arm import Note
+from cobotwire.simulator.faults import AppliedFault
+
+
+class Lines:
+    """Formats a line for people."""
+
+    def serving(self, url: str) -> str:
+        """Format the first line: the port to open."""
+        return url
+
+    def event(self, client: int | None, event: DeviceEvent, reply: bytes) -> str:
+        """Format what the arm received, and its reply."""
+        if isinstance(event, Noise):
+            return self._line(client, "noise", f"{as_hex(event.data)}   {event.reason}")
+        if isinstance(event, RequestReceived):
+            replied = f"   reply {as_hex(reply)}" if reply else ""
+            text = f"{as_hex(event.frame.data)}   {format_message(event.message)}{replied}"
+            return self._line(client, "received", text)
+        if isinstance(event, MalformedRequest):
+            return self._line(client, "rejected", f"{as_hex(event.frame.data)}   {event.error}")
+        fields = ", ".join(f"{name}={value!r}" for name, value in event.fields.items())
+        return self._line(client, "text", f"of {event.command.name}: {fields}")
+
+    def fault(self, client: int | None, done: AppliedFault) -> str:
+        """Format a fault that a scenario injected."""
+        return self._line(client, "fault", str(done))
+
+    def note(self, note: Note) -> str:
+        """Format why the arm ignored a request."""
+        return self._line(None, "note", f"{note.command}: {note.text}")
+
+    def _line(self, client: int | None, kind: str, text: str) -> str:
+        line = f"{kind:<8} {text}"
+        return line if client is None else f"{client:>3} {line}"
+
+
+class JsonLines:
+    """Formats a JSON object per line."""
+
+    def serving(self, url: str) -> str:
+        """Format the first line: the port to open."""
+        return self._object(None, {"event": "serving", "url": url})
+
+    def event(self, client: int | None, event: DeviceEvent, reply: bytes) -> str:
+        """Format what the arm received, and its reply."""
+        return self._object(client, self._event(event, reply))
+
+    def _event(self, event: DeviceEvent, reply: bytes) -> dict[str, Any]:
+        if isinstance(event, Noise):
+            return {"event": "noise", "data": as_hex(event.data), "reason": event.reason}
+        if isinstance(event, RequestReceived):
+            fields = {name: as_json_value(value) for name, value in event.message.fields.items()}
+            return {
+                "event": "received",
+                "data": as_hex(event.frame.data),
+                "command": event.message.command.name,
+                "fields": fields,
+                **({"reply": as_hex(reply)} if reply else {}),
+            }
+        if isinstance(event, MalformedRequest):
+            data = as_hex(event.frame.data)
+            return {"event": "rejected", "data": data, "error": str(event.error)}
+        return {"event": "text", "command": event.command.name, "fields": event.fields}
+
+    def fault(self, client: int | None, done: AppliedFault) -> str:
+        """Format a fault that a scenario injected."""
+        return self._object(client, {"event": "fault", **done._asdict()})
+
+    def note(self, note: Note) -> str:
+        """Format why the arm ignored a request."""
+        return self._object(None, {"event": "note", **note._asdict()})
+
+    def _object(self, client: int | None, content: dict[str, Any]) -> str:
+        return json.dumps(content if client is None else {"client": client, **content})

@@ -1,0 +1,6 @@
+"""The clients: thin loops between a link and the conversation; ``aio`` is the one for asyncio."""
+
+from cobotwire.client.blocking import Client
+from cobotwire.session import Traffic
+
+__all__ = ["Client", "Traffic"]

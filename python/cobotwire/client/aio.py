@@ -1,0 +1,152 @@
+"""The asyncio client."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from cobotwire import codec as codecs
+from cobotwire.client.aio_connection import AsyncConnection
+from cobotwire.client.opening import check_seconds, settings
+from cobotwire.client.traffic import TrafficListener
+from cobotwire.protocol.messages import Request, Result
+from cobotwire.protocol.table import Table
+from cobotwire.session import Exchange, RetryPolicy
+from cobotwire.session.request import RequestEncoder, result_of
+from cobotwire.transport import Transport
+
+if TYPE_CHECKING:
+    from cobotwire.client.aio_streaming import AsyncStream
+    from cobotwire.protocol.limits import Limits
+
+
+class AsyncClient:
+    """An arm at the other end of a transport, for asyncio; see :class:`cobotwire.client.Client`.
+
+    ``async with`` or :meth:`open` opens it, and it belongs to the event loop that runs then. Many
+    tasks may share one arm. A call that is cancelled leaves it usable.
+    """
+
+    table: ClassVar[Table]
+
+    def __init__(
+        self,
+        port: str | Transport,
+        *,
+        baudrate: int | None = None,
+        timeout: float | None = None,
+        retry: RetryPolicy | None = None,
+        limits: Limits | None = None,
+        codec: codecs.CodecName | None = None,
+        trace: TrafficListener | None = None,
+    ) -> None:
+        """Note what to open; :meth:`open` opens it. The blocking client takes the same arguments.
+
+        Raises:
+            UsageError: an argument is not allowed.
+        """
+        self._settings = settings(self.table, timeout, retry, codec, limits)
+        self.codec = self._settings.codec.name
+        self._encoder = RequestEncoder(self._settings.codec)
+        self._connection = AsyncConnection(
+            port,
+            self.table.baudrate if baudrate is None else baudrate,
+            Exchange(self._settings.codec),
+            trace,
+        )
+
+    # unasync: off
+    async def open(self) -> None:
+        """Open the port, unless it is open.
+
+        Raises:
+            UsageError: the port or baud rate is not allowed.
+            LinkError: the port does not exist, or cannot be opened.
+        """
+        await self._connection.open()
+
+    # unasync: on
+    async def close(self) -> None:
+        """Close the transport. The arm is sent nothing. Closing twice is harmless."""
+        self._connection.close()
+
+    async def __aenter__(self) -> Self:
+        await self.open()  # unasync: off
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        await self.close()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} on {self._connection.url}, {self.codec} codec>"
+
+    def add_traffic_listener(self, listener: TrafficListener) -> Callable[[], None]:
+        """Call ``listener`` with everything that passes the connection from now on, as it passes.
+
+        It runs on the event loop: it must be quick, and must not raise.
+
+        Returns:
+            A function that removes the listener.
+        """
+        return self._connection.listeners.add(listener)
+
+    async def listen(self, seconds: float) -> None:
+        """Read for some seconds what comes without a request; traffic listeners get it.
+
+        Raises:
+            LinkError: the transport is gone.
+        """
+        await self._connection.listen(seconds)
+
+    def stream(
+        self, *requests: Request[Any], rate: float, timeout: float | None = None
+    ) -> AsyncStream:
+        """Sample the results of queries at a rate.
+
+            async for sample in arm.stream(GetAngles(), GetEncoder(2), rate=20):
+                angles, encoder = sample[GetAngles()], sample[GetEncoder(2)]
+
+        Requests are sent only when the loop wants a sample, so a slow loop misses samples and piles
+        up none. The stream's ``report`` counts what is missed; nothing is made up for. Each request
+        is sent once, since the next slot sends it again anyway. After a request without a reply the
+        next one like it may have to wait: see ``RetryPolicy.grace``.
+
+        Args:
+            requests: messages of commands of safety class query.
+            rate: samples a second, above 0 and up to 1000.
+            timeout: seconds that each request has; default: as in other calls.
+
+        Returns:
+            The stream. Iterating raises LinkError when the transport is gone, and nothing else.
+
+        Raises:
+            UsageError: an argument is not allowed, or is not a query; nothing was sent.
+        """
+        # Imported here: few programs stream, and all of them import this.
+        from cobotwire.client.aio_streaming import AsyncStream
+
+        return AsyncStream(self._connection, self._settings.for_stream(timeout), requests, rate)
+
+    async def _call(self, request: Request[Result], longest: float | None = None) -> Result:
+        """Send a request, wait for its reply, and return the reply's result.
+
+        ``longest`` limits the usual deadline, in seconds.
+        """
+        encoded = self._encoder.encode_request(request)
+        _, wait, retry = self._settings
+        if longest is not None:
+            wait = self._settings.at_most(longest, encoded.command)
+        done = await self._connection.request(encoded, retry, wait)
+        return result_of(request, done.result())
+
+    async def _send(self, request: Request[None], ack_within: float | None = None) -> None:
+        """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says."""
+        if ack_within is not None:
+            check_seconds("ack_within", ack_within)
+        await self._connection.send(self._encoder.encode_request(request), ack_within)

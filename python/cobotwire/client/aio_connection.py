@@ -1,0 +1,222 @@
+"""One transport on an event loop, shared by the tasks of the loop."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from functools import partial
+
+from cobotwire.client.opening import check_port, open_port
+from cobotwire.client.traffic import TrafficListener, TrafficListeners
+from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
+from cobotwire.transport import Transport
+from cobotwire.transport.aio import attach
+from cobotwire.transport.interface import AsyncTransport
+from cobotwire.transport.timing import times_of
+
+# A timer that goes off this early or late is left as it is.
+TIMER_SLACK = 0.0005
+
+
+class AsyncConnection:
+    """An exchange over a transport; every method is called in the thread of one event loop."""
+
+    now = staticmethod(time.monotonic)
+    sleep = staticmethod(asyncio.sleep)
+
+    def __init__(
+        self,
+        port: str | Transport,
+        baudrate: int,
+        exchange: Exchange,
+        trace: TrafficListener | None,
+    ) -> None:
+        """Note what to open; :meth:`open` opens it.
+
+        Raises:
+            UsageError: the port is not allowed, or is a transport with a clock of its own.
+        """
+        check_port(port)
+        if not times_of(port).real:
+            raise UsageError("port", port, "a transport in real time; an event loop has no other")
+        self._port = port
+        self._baudrate = baudrate
+        self.url = port if isinstance(port, str) else port.url
+        self.listeners = TrafficListeners(trace, self.url)
+        self._exchange = exchange
+        self._attached: AsyncTransport | None = None
+        self._lost: LinkError | None = None
+        self._timer: asyncio.TimerHandle | None = None
+        self._timer_at = 0.0
+
+    async def open(self) -> None:
+        """Open the port, unless it is open.
+
+        Raises:
+            UsageError: the port or baud rate is not allowed.
+            LinkError: the port does not exist, or cannot be opened.
+        """
+        if self._attached is not None:
+            return
+        self._loop = asyncio.get_running_loop()
+        # Connecting may take a while: a thread does it, and the loop goes on.
+        work = self._loop.run_in_executor(None, open_port, self._port, self._baudrate)
+        try:
+            transport = await asyncio.shield(work)
+        except asyncio.CancelledError:
+            work.add_done_callback(_close_unwanted)
+            raise
+        self._attached = attach(transport, self._turn)
+
+    async def send(self, request: EncodedRequest, ack_within: float | None) -> None:
+        """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement."""
+        transport = self._transport()
+        data, pending = self._exchange.send_one_way(request, self.now(), ack_within)
+        try:
+            await self._write(transport, data)
+            self.listeners.sent(data)
+            self._turn()
+            if pending is not None:
+                await self._await(pending)
+                pending.result()
+        finally:
+            if pending is not None:
+                self._exchange.give_up(pending)
+
+    async def request(
+        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
+    ) -> PendingRequest:
+        """Send a request and wait until it is done.
+
+        Raises:
+            LinkError: the connection is not open.
+        """
+        self._transport()
+        pending = self._exchange.submit(request, self.now(), policy, wait)
+        try:
+            self._turn()
+            await self._await(pending)
+        finally:
+            # A call that was cancelled leaves everything ready for the next one.
+            if not pending.done:
+                self._exchange.give_up(pending)
+                self._turn()
+        return pending
+
+    async def listen(self, seconds: float) -> None:
+        """Wait while the loop reads what comes without a request, and reports it to listeners.
+
+        Raises:
+            LinkError: the transport is gone.
+        """
+        self._transport()
+        until = self.now() + seconds
+        while (left := until - self.now()) > 0:
+            if self._lost is not None:
+                raise LinkError(self._lost.url, self._lost.detail)
+            await asyncio.sleep(min(left, 0.05))
+
+    def close(self) -> None:
+        """Close the transport; calls that wait get a LinkError. Closing twice is harmless."""
+        if self._attached is not None:
+            self._attached.close()
+            self._lose(LinkError(self.url, "it is closed"))
+
+    def _transport(self) -> AsyncTransport:
+        if self._attached is None:
+            raise LinkError(self.url, "it is not open: use `async with`, or await open()")
+        return self._attached
+
+    async def _await(self, pending: Pending) -> None:
+        if not pending.done:
+            over: asyncio.Future[None] = self._loop.create_future()
+            pending.when_done(partial(_wake, over))
+            await over
+
+    async def _write(self, transport: AsyncTransport, data: bytes) -> None:
+        if self._lost is not None:
+            raise LinkError(self._lost.url, self._lost.detail)
+        over: asyncio.Future[None] = self._loop.create_future()
+        if not transport.write(data, partial(_written, over)):
+            await over
+
+    def _turn(self) -> None:
+        """Take what has come, let time pass, send the request that is next, and set the timer."""
+        exchange = self._exchange
+        try:
+            data = b"" if self._lost is not None else self._transport().read()
+        except LinkError as error:
+            self.listeners.lost(error)
+            self._lose(error)
+            return
+        now = self.now()
+        events = exchange.receive(data, now) if data else []
+        events += exchange.wake(now)
+        if self._lost is not None:
+            exchange.fail(self._lost)
+        elif exchange.has_outgoing(now):
+            self._send_request(now, drained=not data)
+        idle = exchange.idle_seconds(now)
+        if idle is not None:
+            self._wake_at(now + idle)
+        if events:
+            self.listeners.received(events, now)
+
+    def _send_request(self, now: float, drained: bool) -> None:
+        data = self._exchange.outgoing(now, drained)
+        if not data:
+            return
+        try:
+            self._transport().write(data, self._request_written)
+        except LinkError as error:
+            self._exchange.fail_waiting(error)
+            return
+        self.listeners.sent(data)
+
+    def _request_written(self, error: LinkError | None) -> None:
+        if error is not None:
+            self._exchange.fail_waiting(error)
+            self._turn()
+
+    def _wake_at(self, moment: float) -> None:
+        if self._timer is not None:
+            if self._timer_at <= moment + TIMER_SLACK:
+                # It goes off early enough, and is set again then.
+                return
+            self._timer.cancel()
+        self._timer_at = moment
+        self._timer = self._loop.call_later(moment - self.now(), self._time_passed)
+
+    def _time_passed(self) -> None:
+        self._timer = None
+        self._turn()
+
+    def _lose(self, error: LinkError) -> None:
+        """End every request: the transport is gone."""
+        if self._lost is None:
+            self._lost = error
+            self._transport().close()
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        self._exchange.fail(self._lost)
+
+
+def _close_unwanted(work: asyncio.Future[Transport]) -> None:
+    if not work.cancelled() and work.exception() is None:
+        work.result().close()
+
+
+def _wake(over: asyncio.Future[None]) -> None:
+    if not over.done():
+        over.set_result(None)
+
+
+def _written(over: asyncio.Future[None], error: LinkError | None) -> None:
+    if over.done():
+        return
+    if error is None:
+        over.set_result(None)
+    else:
+        over.set_exception(error)

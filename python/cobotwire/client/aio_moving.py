@@ -1,0 +1,135 @@
+"""Motions that are waited for."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any
+
+from cobotwire.client.aio import AsyncClient
+from cobotwire.client.opening import check_seconds
+from cobotwire.protocol.errors import CobotwireError, ReplyTimeout
+from cobotwire.session.motion import (
+    MOTION_SECONDS,
+    Outcome,
+    Pause,
+    Query,
+    kind_of,
+    until_reached,
+)
+
+
+class AsyncMovingClient(AsyncClient):
+    """Moves the arm and waits until it is there, by commands to which the edition gives a role.
+
+    Cancelling a call sends ``stop`` before CancelledError goes on. The protocol is not an emergency
+    stop: a frame can be lost.
+    """
+
+    async def move_angles(
+        self,
+        angles: Sequence[float],
+        speed: int,
+        *,
+        wait: bool = True,
+        timeout: float = MOTION_SECONDS,
+    ) -> None:
+        """Move all joints to angles, and wait until they are there.
+
+        Args:
+            angles: the target, in degrees, base first.
+            speed: percent of the fastest.
+            wait: False returns when the request is sent.
+            timeout: seconds to wait at most.
+
+        Raises:
+            UsageError: an argument is not allowed; nothing was sent.
+            LinkError: the transport is gone.
+            MotionTimeout: the arm is not there in time, or stands still short of the target.
+        """
+        name = self.table.in_role("joint targets").name
+        await self._move(name, (angles, speed), "ANGLES", wait, timeout)
+
+    async def move_coords(
+        self,
+        coords: Sequence[float],
+        speed: int,
+        mode: int | None = None,
+        *,
+        wait: bool = True,
+        timeout: float = MOTION_SECONDS,
+    ) -> None:
+        """Move the end of the arm to coordinates, and wait until it is there.
+
+        Args:
+            coords: the target: x, y, z in millimetres, rx, ry, rz in degrees.
+            speed: percent of the fastest.
+            mode: the path, as the edition's ``send_coords`` takes it; some editions need none.
+            wait: False returns when the request is sent.
+            timeout: seconds to wait at most.
+
+        Raises:
+            UsageError: an argument is not allowed; nothing was sent.
+            LinkError: the transport is gone.
+            MotionTimeout: the arm is not there in time, or stands still short of the target.
+        """
+        name = self.table.in_role("coordinate targets").name
+        values = (coords, speed) if mode is None else (coords, speed, mode)
+        await self._move(name, values, "COORDS", wait, timeout)
+
+    async def wait_until_reached(
+        self, target: Sequence[float], kind: int = 0, *, timeout: float = MOTION_SECONDS
+    ) -> None:
+        """Wait until the arm is at a target to which it was sent.
+
+        Args:
+            target: angles in degrees, or coordinates in millimetres and degrees.
+            kind: what the target is: a member of the edition's ``TargetKind``.
+            timeout: seconds to wait at most.
+
+        Raises:
+            UsageError: an argument is not allowed; nothing was sent.
+            LinkError: the transport is gone.
+            MotionTimeout: the arm is not there in time, or stands still short of the target.
+        """
+        check_seconds("timeout", timeout)
+        try:
+            await self._wait(target, kind, timeout)
+        except asyncio.CancelledError:
+            await self._stop()
+            raise
+
+    async def _move(
+        self, name: str, values: tuple[Any, ...], label: str, wait: bool, timeout: float
+    ) -> None:
+        check_seconds("timeout", timeout)
+        try:
+            await self._connection.send(self._encoder.encode(name, values), None)
+            if wait:
+                await self._wait(values[0], kind_of(self.table, label), timeout)
+        except asyncio.CancelledError:
+            await self._stop()
+            raise
+
+    async def _wait(self, target: Sequence[float], kind: int, timeout: float) -> None:
+        steps = until_reached(self.table, target, kind, timeout, self._connection.now())
+        step = next(steps)
+        with suppress(StopIteration):
+            while True:
+                outcome = await self._take(step)
+                step = steps.send(outcome)
+
+    async def _take(self, step: Query | Pause) -> Outcome:
+        now, result = self._connection.now, None
+        if isinstance(step, Pause):
+            await self._connection.sleep(max(0.0, step.until - now()))
+        else:
+            with suppress(ReplyTimeout):
+                result = await self._call(step.request, step.longest)
+        return Outcome(now(), result)
+
+    async def _stop(self) -> None:
+        # The interrupt is reported; an error of sending `stop` would hide it.
+        with suppress(CobotwireError):
+            await self._send(self.table.in_role("stop").request_type())

@@ -1,0 +1,214 @@
+"""One transport that many threads share.
+
+Writing is separate from reading. A thread that sends a one-way request writes it at once. Of the
+threads that wait for replies, one reads for all: it feeds the exchange, sends the next request and
+wakes the others; when its own reply has come, another takes over. So a lone caller reads its own
+reply without a switch of threads, and a one-way request never waits for another thread's reply.
+
+Ctrl-C may come anywhere. Locks are taken by ``with`` and held for moments; which thread reads is a
+plain number that this thread finds again; those that wait look at it now and then. So nothing stays
+locked.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+
+from cobotwire.client.opening import open_port
+from cobotwire.client.traffic import TrafficListener, TrafficListeners
+from cobotwire.protocol.errors import LinkError
+from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
+from cobotwire.session.exchange import DRAIN_SECONDS
+from cobotwire.transport import Transport
+from cobotwire.transport.timing import times_of
+
+# The longest that the reading thread waits before it checks whether others have queued a request.
+SLICE_SECONDS = 0.02
+# The longest that the others wait before they check whether a thread reads.
+CHECK_SECONDS = 0.05
+
+
+class Connection:
+    """An exchange over a transport; every method may be called from any thread."""
+
+    def __init__(
+        self,
+        port: str | Transport,
+        baudrate: int,
+        exchange: Exchange,
+        trace: TrafficListener | None,
+    ) -> None:
+        """Open the port, unless it is an open transport.
+
+        Raises:
+            UsageError: the port or baud rate is not allowed.
+            LinkError: the port does not exist, or cannot be opened.
+        """
+        self._transport = open_port(port, baudrate)
+        self.url = self._transport.url
+        self.now, self.sleep, _ = times_of(self._transport)
+        self.listeners = TrafficListeners(trace, self.url, self.now)
+        self._exchange = exchange
+        # Held around every step of the exchange.
+        self._state = threading.Lock()
+        # Held while a frame is written, so that frames do not mix. Taken before the other one.
+        self._writing = threading.Lock()
+        self._reader: int | None = None
+        self._followers: list[threading.Lock] = []
+
+    def send(self, request: EncodedRequest, ack_within: float | None) -> None:
+        """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement."""
+        with self._writing:
+            with self._state:
+                now = self.now()
+                data, pending = self._exchange.send_one_way(request, now, ack_within)
+            self._transport.write(data)
+        self.listeners.sent(data)
+        if pending is not None:
+            self._await(pending, SLICE_SECONDS)
+            pending.result()
+        elif self._leads():
+            try:
+                self._drain(now + DRAIN_SECONDS)
+            finally:
+                self._resign()
+
+    def request(
+        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
+    ) -> PendingRequest:
+        """Send a request and wait until it is done.
+
+        Raises:
+            LinkError: the transport is gone.
+        """
+        with self._state:
+            pending = self._exchange.submit(request, self.now(), policy, wait)
+        # What has come already is read first, without waiting.
+        self._await(pending, 0.0)
+        return pending
+
+    def listen(self, seconds: float) -> None:
+        """Read what comes without a request, and report it to the traffic listeners.
+
+        Raises:
+            LinkError: the transport is gone.
+        """
+        until = self.now() + seconds
+        while (left := until - self.now()) > 0:
+            if self._leads():
+                try:
+                    self._turn(min(left, SLICE_SECONDS))
+                finally:
+                    self._resign()
+            else:
+                # In real time, whatever the transport's: another thread is waited for.
+                time.sleep(min(left, CHECK_SECONDS))
+
+    def close(self) -> None:
+        """Close the transport. The arm is sent nothing. Closing twice is harmless."""
+        self._transport.close()
+
+    def _await(self, pending: Pending, longest: float) -> None:
+        try:
+            while not pending.done:
+                if self._leads():
+                    self._turn(longest)
+                    longest = SLICE_SECONDS
+                else:
+                    self._follow(pending)
+        finally:
+            # Ctrl-C and a vanished transport leave everything ready for the next call.
+            if not pending.done:
+                with self._state:
+                    self._exchange.give_up(pending)
+            self._resign()
+
+    def _leads(self) -> bool:
+        """Return whether this thread reads for all; it does from now on if no other one does."""
+        me = threading.get_ident()
+        if self._reader != me:
+            with self._state:
+                if self._reader is None:
+                    self._reader = me
+        return self._reader == me
+
+    def _resign(self) -> None:
+        if self._reader == threading.get_ident():
+            self._reader = None
+            self._wake_followers()
+
+    def _turn(self, longest: float) -> None:
+        """Read once, let time pass, and send the request that is next."""
+        exchange = self._exchange
+        if longest:
+            with self._state:
+                idle = exchange.idle_seconds(self.now())
+            if idle is not None and idle < longest:
+                longest = idle
+        try:
+            data = self._transport.read(longest)
+        except LinkError as error:
+            self._lose(error)
+            raise
+        now = self.now()
+        with self._state:
+            # What has come is received before time passes, or it would count as late.
+            events = exchange.receive(data, now) if data else []
+            events += exchange.wake(now)
+            outgoing = exchange.has_outgoing(now)
+        if outgoing:
+            self._send_request(drained=not data)
+        if events:
+            self._wake_followers()
+            self.listeners.received(events, now)
+
+    def _send_request(self, drained: bool) -> None:
+        with self._writing:
+            with self._state:
+                data = self._exchange.outgoing(self.now(), drained)
+            if not data:
+                return
+            try:
+                self._transport.write(data)
+            except LinkError as error:
+                with self._state:
+                    self._exchange.fail_waiting(error)
+                return
+        self.listeners.sent(data)
+
+    def _drain(self, until: float) -> None:
+        """Read what has come, so that no buffer overflows while only one-way requests are sent."""
+        while data := self._transport.read(0):
+            now = self.now()
+            with self._state:
+                events = self._exchange.receive(data, now)
+            self.listeners.received(events, now)
+            if now >= until:
+                return
+
+    def _lose(self, error: LinkError) -> None:
+        """End every request: the transport is gone."""
+        with self._state:
+            self._exchange.fail(error)
+        self._wake_followers()
+        self.listeners.lost(error)
+
+    def _follow(self, pending: Pending) -> None:
+        """Wait until the reading thread has something, or none reads."""
+        baton = threading.Lock()
+        baton.acquire()
+        with self._state:
+            if pending.done or self._reader is None:
+                return
+            self._followers.append(baton)
+        # Not without end: whatever becomes of the reading thread, this one checks again.
+        baton.acquire(timeout=CHECK_SECONDS)
+
+    def _wake_followers(self) -> None:
+        if not self._followers:
+            return
+        with self._state:
+            batons, self._followers = self._followers, []
+        for baton in batons:
+            baton.release()

@@ -1,0 +1,96 @@
+"""The arguments that both clients take when they are opened, and how their ports are opened."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command, Table
+from cobotwire.session import RetryPolicy
+from cobotwire.transport import Transport, open_transport
+
+if TYPE_CHECKING:
+    from cobotwire.protocol.limits import Limits
+
+
+class Settings(NamedTuple):
+    """How a client sends requests; ``timeout`` is in seconds, None: what the edition says."""
+
+    codec: Codec
+    timeout: float | None
+    retry: RetryPolicy
+
+    def at_most(self, longest: float, command: Command) -> float:
+        """Return the deadline of a command in seconds, but ``longest`` at most."""
+        usual = command.deadline_ms / 1000 if self.timeout is None else self.timeout
+        return min(longest, usual)
+
+    def for_stream(self, timeout: float | None) -> Settings:
+        """Return the settings for a stream, which sends each request once per slot.
+
+        Raises:
+            UsageError: the timeout is not allowed.
+        """
+        check_seconds("timeout", timeout)
+        retry = replace(self.retry, attempts=1)
+        return self._replace(retry=retry, timeout=self.timeout if timeout is None else timeout)
+
+
+def settings(
+    table: Table,
+    timeout: float | None,
+    retry: RetryPolicy | None,
+    codec: codecs.CodecName | None,
+    limits: Limits | None,
+) -> Settings:
+    """Check a client's arguments and load its codec.
+
+    Raises:
+        UsageError: an argument is not allowed.
+    """
+    check_seconds("timeout", timeout)
+    if retry is not None and not isinstance(retry, RetryPolicy):
+        raise UsageError("retry", retry, "a RetryPolicy")
+    if limits is not None:
+        # Imported here: few programs have limits of their own, and all of them import this.
+        from cobotwire.protocol.limits import Limits, limited
+
+        if not isinstance(limits, Limits):
+            raise UsageError("limits", limits, "Limits")
+        table = limited(table, limits)
+    return Settings(codecs.load(table, codec), timeout, retry or RetryPolicy())
+
+
+def check_seconds(argument: str, value: float | None) -> None:
+    """Check a time limit; None is one as well.
+
+    Raises:
+        UsageError: it is not a number of seconds above 0 and below 3600.
+    """
+    right = isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < 3600
+    if value is not None and not right:
+        raise UsageError(argument, value, "seconds above 0 and below 3600")
+
+
+def check_port(port: str | Transport) -> None:
+    """Check that a port is a name, a URL or an open transport.
+
+    Raises:
+        UsageError: it is none of them.
+    """
+    if not isinstance(port, str | Transport):
+        raise UsageError("port", port, "the name of a serial port, a URL, or a transport")
+
+
+def open_port(port: str | Transport, baudrate: int) -> Transport:
+    """Open a port by name or URL; return an open transport as it is.
+
+    Raises:
+        UsageError: the port, URL or baud rate is not allowed.
+        LinkError: the port does not exist, or cannot be opened.
+    """
+    check_port(port)
+    return open_transport(port, baudrate) if isinstance(port, str) else port

@@ -1,0 +1,108 @@
+"""Deliver an arm's replies to the client: after a delay and, on request, with faults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from cobotwire.codec.interface import Codec
+from cobotwire.conformance.client.history import REMEMBERED, Received
+from cobotwire.protocol.errors import UsageError
+from cobotwire.simulator.faults import (
+    Duplicated,
+    Fault,
+    Late,
+    Lost,
+    Merged,
+    Scenario,
+    ServoLeak,
+    Split,
+)
+
+# Longer than most clients wait, but shorter than the longest delay in the field notes.
+LATE_SECONDS = 0.6
+PAUSE_SECONDS = 0.05
+# A merged reply waits for the next one, however long that takes.
+A_DAY = 86400.0
+
+# The faults of replies by name. ``every`` and ``first`` select the replies.
+FAULTS: Mapping[str, Callable[[int, int], Fault]] = {
+    "lost": lambda every, first: Lost(every=every, first=first),
+    "late": lambda every, first: Late(every=every, first=first, seconds=LATE_SECONDS),
+    "split": lambda every, first: Split(every=every, first=first, seconds=PAUSE_SECONDS),
+    "merged": lambda every, first: Merged(every=every, first=first, at_most_seconds=A_DAY),
+    "noise": lambda every, first: ServoLeak(every=every, first=first, packets=("status",)),
+    "twice": lambda every, first: Duplicated(every=every, first=first),
+}
+
+
+def faulty_replies(delay: float, names: Sequence[str] = (), every: int = 3) -> Scenario:
+    """Return a scenario that delays each reply by ``delay`` seconds and damages some.
+
+    Every ``every``-th reply has one of the faults ``names``, which take turns.
+
+    Raises:
+        UsageError: a name is not a fault's name, or ``every`` is below 1.
+    """
+    for name in names:
+        if name not in FAULTS:
+            raise UsageError("misbehave", name, f"some of {', '.join(FAULTS)}")
+    if every < 1:
+        raise UsageError("every", every, "a whole number from 1")
+    period = every * len(names)
+    faults = [FAULTS[name](period, every * turn) for turn, name in enumerate(names, 1)]
+    delays = [Late(seconds=delay)] if delay else []
+    return Scenario(name="replies of the referee", faults=(*delays, *faults))
+
+
+class _KnownReply:
+    """The peer that the faults wrap: it returns the reply that the arm has computed."""
+
+    wait = None
+
+    def __init__(self) -> None:
+        self.reply = b""
+
+    def receive(self, data: bytes) -> bytes:
+        """Return the reply to the request."""
+        return self.reply
+
+    def flush(self) -> bytes:
+        """Return nothing: an arm never sends anything by itself."""
+        return b""
+
+
+class Delivery:
+    """Sends the arm's replies to the client, with the faults of a scenario."""
+
+    def __init__(self, scenario: Scenario, codec: Codec, clock: Callable[[], float]) -> None:
+        """Start the scenario; ``clock`` gives the time in seconds since the run began."""
+        self._clock = clock
+        self._arm = _KnownReply()
+        self._count = 0
+        self._awaiting: dict[int, Received] = {}
+        self._faulty = scenario.wrap(self._arm, codec, clock=clock, on_reply=self._replied)
+
+    @property
+    def wait(self) -> float | None:
+        """Seconds until :meth:`due` returns something; None: nothing is planned."""
+        return self._faulty.wait
+
+    def plan(self, request: Received) -> bytes:
+        """Plan the reply to a request, if there is one; return what is due by now."""
+        if not request.reply:
+            return b""
+        self._arm.reply = request.reply
+        self._awaiting[self._count] = request
+        # Lost replies are never reported.
+        self._awaiting.pop(self._count - REMEMBERED, None)
+        self._count += 1
+        return self._faulty.receive(request.data)
+
+    def due(self) -> bytes:
+        """Return what is due by now."""
+        return self._faulty.flush()
+
+    def _replied(self, number: int) -> None:
+        request = self._awaiting.pop(number, None)
+        if request is not None:
+            request.replied_at = self._clock()

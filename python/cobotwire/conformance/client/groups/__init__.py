@@ -1,0 +1,1 @@
+"""The test cases for what a client sends, one small function a group."""

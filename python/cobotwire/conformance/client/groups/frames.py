@@ -1,0 +1,116 @@
+"""A client sends whole, legal frames, one after the other, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from cobotwire.codec.interface import Codec, NoiseReason
+from cobotwire.conformance.client.history import History, Received
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.conformance.tally import Observation
+from cobotwire.protocol.errors import ProtocolError
+
+FRAMING = "docs/framing.md"
+
+LENGTH = TestCase("frame-length", "LEN is legal for the command.", FRAMING)
+ID = TestCase("frame-id", "The id belongs to a command of the edition.", FRAMING)
+FOOTER = TestCase("frame-footer", "A frame ends with its footer, or the right check.", FRAMING)
+ADDRESS = TestCase("frame-address", "The address byte is one that the edition has.", FRAMING)
+WHOLE = TestCase("frame-whole", "A frame is sent whole, without a pause.", FRAMING)
+STRAY = TestCase("stray-bytes", "No byte lies outside a frame.", FRAMING)
+INTERLEAVED = TestCase(
+    "interleaved-write", "No frame is written into another one.", "field notes: two writers"
+)
+TEXT_FOLLOWS = TestCase(
+    "text-follows", "The text of a request follows it at once.", "spec: request text"
+)
+
+# For each reason of noise: the test case that the bytes fail, and a description of them.
+BY_REASON: Mapping[NoiseReason, tuple[TestCase, str]] = {
+    "bad-length": (LENGTH, "a header with a LEN that its command cannot have"),
+    "unknown-id": (ID, "a header with an id that the edition lacks"),
+    "bad-check": (FOOTER, "a frame with a wrong footer or check"),
+    "bad-address": (ADDRESS, "a header with an address that the edition lacks"),
+    "truncated": (WHOLE, "a frame that broke off"),
+    "no-header": (STRAY, "bytes outside any frame"),
+}
+
+
+def _framing(history: History, now: Received) -> Iterator[Observation]:
+    """Judge noise by the reason why its bytes are not a frame."""
+    if now.noise is None:
+        yield from (Observation(case) for case, _ in BY_REASON.values())
+        return
+    case, what = BY_REASON[now.noise.reason]
+    if case is not STRAY or not _explained(history):
+        yield Observation(case, f"{what}: {now.data.hex(' ').upper()}")
+
+
+def _explained(history: History) -> bool:
+    """Return whether stray bytes are a request's text or the remainder of a broken frame."""
+    last = history.last
+    return history.missing_text() is not None or (last is not None and last.noise is not None)
+
+
+def _interleaving(history: History, now: Received) -> Iterator[Observation]:
+    """Report an interleaved write if removing one legal frame leaves another one."""
+    complaint = ""
+    if now.noise is not None:
+        recent = _recent_bytes(history, now)
+        pairs = (pair for at in range(len(recent)) for pair in _pairs(history.codec, recent[at:]))
+        outer, inner = next(pairs, (b"", b""))
+        if inner:
+            complaint = f"{inner.hex(' ').upper()} was written into {outer.hex(' ').upper()}"
+    yield Observation(INTERLEAVED, complaint)
+
+
+def _recent_bytes(history: History, now: Received) -> bytes:
+    """Return the most recent bytes, up to the length of two frames."""
+    data = now.data
+    frame = history.codec.table.frame
+    most = 2 * (frame.overhead + frame.maximum_length)
+    for entry in history.since(now.at - 1.0):
+        data = entry.data + data
+        if len(data) > most:
+            break
+    return data[-most:]
+
+
+def _pairs(codec: Codec, data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yield each pair of an outer and an inner frame that together make up ``data``."""
+    frame = codec.table.frame
+    if not data.startswith(frame.header):
+        return
+    for at in range(1, len(data) - frame.overhead):
+        if data[at : at + len(frame.header)] != frame.header:
+            continue
+        end = at + frame.overhead + data[at + frame.length_at]
+        outer, inner = data[:at] + data[end:], data[at:end]
+        if end < len(data) and _legal(codec, inner) and _legal(codec, outer):
+            yield outer, inner
+
+
+def _legal(codec: Codec, data: bytes) -> bool:
+    try:
+        codec.decode("request", data)
+    except ProtocolError:
+        return False
+    return True
+
+
+def missing_text(request: Received) -> Observation:
+    """Return the failure of a request without the text that must follow it."""
+    complaint = f"{request.name} lacks the text after it, or the text is illegible"
+    return Observation(TEXT_FOLLOWS, complaint, request.name)
+
+
+def _texts(history: History, now: Received) -> Iterator[Observation]:
+    """Judge a frame that comes where a text is due."""
+    due = history.missing_text()
+    if now.is_frame and due is not None:
+        yield missing_text(due)
+
+
+FRAMES = Group("frames", (LENGTH, ID, FOOTER, ADDRESS, WHOLE, STRAY), _framing)
+INTERLEAVED_WRITES = Group("interleaved writes", (INTERLEAVED,), _interleaving)
+TEXTS = Group("texts", (TEXT_FOLLOWS,), _texts)

@@ -1,0 +1,77 @@
+"""A client sends one request at a time, and repeats it only after its reply could have come."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire.conformance.client.history import History, Received
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.conformance.tally import Observation
+
+NOTES = "field notes: a reply comes within about 30 ms or never"
+# The longest observed delay of a reply, in seconds.
+LATEST = 0.727
+
+AWAITED = TestCase(
+    "reply-awaited",
+    "While a request awaits its reply, no other request with a reply is sent.",
+    NOTES,
+)
+GIVEN_TIME = TestCase(
+    "reply-given-time", "A request is not repeated before its reply can have come.", NOTES
+)
+LATE_EXPECTED = TestCase(
+    "late-reply-expected",
+    "No request is sent while a late reply could be mistaken for its reply.",
+    "field notes: a reply was seen 727 ms after its request",
+)
+
+
+def _waiting(history: History, now: Received) -> Iterator[Observation]:
+    """Judge a request that comes while another one still awaits its reply.
+
+    Frames carry no sequence numbers, so a reply cannot be assigned to one of two outstanding
+    requests. One-way requests are legal at any time, because a stop must not wait.
+    """
+    if not now.awaits_reply:
+        return
+    awaited = given_time = ""
+    for other in history.outstanding(now.at - history.patience):
+        after = f"{(now.at - other.at) * 1000:.1f} ms"
+        if other.data == now.data:
+            given_time = given_time or f"sent again after {after}"
+        else:
+            awaited = awaited or f"sent {after} after {other.name}, which still awaited its reply"
+    yield Observation(AWAITED, awaited)
+    yield Observation(GIVEN_TIME, given_time)
+
+
+def _late_replies(history: History, now: Received) -> Iterator[Observation]:
+    """Judge a request whose reply could be the late reply to another request."""
+    if not now.awaits_reply:
+        return
+    complaint = ""
+    for other in history.outstanding(now.at - LATEST):
+        after = now.at - other.at
+        if after >= history.patience and other.data != now.data and _alike(other, now):
+            sent = other.data.hex(" ").upper()
+            complaint = (
+                f"sent {1000 * after:.0f} ms after {sent}; a late reply to that would look the same"
+            )
+            break
+    yield Observation(LATE_EXPECTED, complaint)
+
+
+def _alike(other: Received, now: Received) -> bool:
+    """Return whether no echo distinguishes the replies to two requests.
+
+    An echo counts only if every variant of the reply has it: older firmware omits it.
+    """
+    if other.command is None or now.command is None or other.command.id != now.command.id:
+        return False
+    echoes = [any(field.echo for field in v.fields) for v in now.command.reply]
+    return not echoes or not all(echoes)
+
+
+WAITING = Group("waiting", (AWAITED, GIVEN_TIME), _waiting)
+LATE_REPLIES = Group("late replies", (LATE_EXPECTED,), _late_replies)

@@ -1,0 +1,41 @@
+"""A client sends only values that their fields allow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire.conformance.client.history import History, Received
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.conformance.tally import Observation
+from cobotwire.protocol.table import Field, Table
+
+TABLE = "the edition's table"
+RANGE = TestCase("value-range", "A number is within the range of its field.", TABLE)
+LISTED = TestCase("value-listed", "A value of a closed list is one of the list.", TABLE)
+
+
+def _values(history: History, now: Received) -> Iterator[Observation]:
+    """Judge a frame that is legal except for a value; a wrong scale often shows here."""
+    if now.error is not None:
+        field = _field_at(history.codec.table, now.data, now.error.offset)
+        listed = field is not None and bool(field.choices)
+        yield Observation(LISTED if listed else RANGE, str(now.error))
+    elif now.is_frame:
+        yield from (Observation(RANGE), Observation(LISTED))
+
+
+def _field_at(table: Table, data: bytes, offset: int) -> Field | None:
+    """Return the field at an offset of a frame."""
+    frame = table.frame
+    size = len(data) - frame.overhead - 1 - frame.check_size
+    for command in table.commands:
+        for variant in command.request if command.id == data[frame.overhead] else ():
+            at = frame.overhead + 1
+            for field in variant.fields if variant.size == size else ():
+                if at <= offset < at + field.size:
+                    return field
+                at += field.size
+    return None
+
+
+VALUES = Group("values", (RANGE, LISTED), _values)

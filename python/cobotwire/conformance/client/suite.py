@@ -1,0 +1,27 @@
+"""The test cases for clients, in the order in which each request is judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from cobotwire.conformance.client.groups import frames, resending, timing, values
+from cobotwire.conformance.client.history import History, Received
+from cobotwire.conformance.client.script import SCRIPT
+from cobotwire.conformance.suite import Group, Suite
+from cobotwire.conformance.tally import Observation
+
+# Judges something that was received by what was received before.
+Judge = Callable[[History, Received], Iterator[Observation]]
+
+# What needs no script: these bodies judge everything that is received.
+WITHOUT_SCRIPT: tuple[Group[Judge], ...] = (
+    frames.FRAMES,
+    frames.INTERLEAVED_WRITES,
+    frames.TEXTS,
+    resending.RESENDING,
+    resending.POWER,
+    timing.WAITING,
+    timing.LATE_REPLIES,
+    values.VALUES,
+)
+SUITE: Suite[Judge | None] = Suite("client", (*WITHOUT_SCRIPT, SCRIPT))

@@ -1,0 +1,1 @@
+"""The questions to every codec of an edition, derived from the edition's table."""

@@ -1,0 +1,187 @@
+"""Questions about single messages: values to bytes and back, and what must be rejected."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from cobotwire.codec.interface import Codec
+from cobotwire.conformance.codec.named import encode_named, plain_fields
+from cobotwire.conformance.codec.questions.question import Json, Question
+from cobotwire.conformance.codec.questions.samples import (
+    Sample,
+    illegal_samples,
+    named_values,
+    ordinary,
+    samples,
+)
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import Command, Direction, Field, Number, Table, Variant
+
+DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
+SOURCE = "docs/codec-protocol.md"
+ENCODE_BYTES = TestCase(
+    "encode-bytes",
+    "Values are encoded to exactly these bytes, rounded to the nearest step.",
+    SOURCE,
+)
+ENCODE_REJECTS = TestCase(
+    "encode-rejects", "A value that the field does not allow is rejected.", SOURCE
+)
+DECODE_VALUES = TestCase(
+    "decode-values", "A legal frame is decoded to the values that it holds.", SOURCE
+)
+DECODE_REJECTS = TestCase(
+    "decode-rejects", "A frame that is not legal, or holds an illegal value, is rejected.", SOURCE
+)
+REJECTION_REASON = TestCase("rejection-reason", "A rejection names its reason and byte.", SOURCE)
+
+
+class CommandVariant(NamedTuple):
+    """One variant of one message; ``label`` names it in questions."""
+
+    command: Command
+    direction: Direction
+    variant: Variant
+    label: str
+
+
+def variants_of(table: Table) -> Iterator[CommandVariant]:
+    """Yield every variant of every framed message of an edition."""
+    for command in table.commands:
+        for direction in DIRECTIONS:
+            variants = command.variants(direction)
+            for index, variant in enumerate(variants):
+                suffix = f".{index + 1}" if len(variants) > 1 else ""
+                yield CommandVariant(
+                    command, direction, variant, f"{command.name}/{direction}{suffix}"
+                )
+
+
+def frame_of(table: Table, id: int, data: bytes) -> bytes:
+    """Return a whole frame around data bytes, legal or not."""
+    frame = table.frame
+    body = frame.header + bytes(frame.addresses[:1]) + bytes([frame.length(len(data)), id]) + data
+    return body + frame.end(body)
+
+
+def ordinary_frame(table: Table, variant: CommandVariant, turn: int = 0) -> bytes:
+    """Return the frame of a variant with ordinary values, which differ by ``turn``."""
+    return frame_of(
+        table, variant.command.id, variant.variant.pack(ordinary(variant.variant, turn=turn))
+    )
+
+
+def _encoding(codec: Codec) -> Iterator[Question]:
+    """Yield questions with ordinary values, corner values and values between two steps."""
+    for variant in variants_of(codec.table):
+        for sample in samples(variant.variant):
+            values = named_values(variant.variant, sample.raw_values)
+            yield _encode(codec, variant, sample.name, values)
+        for name, values in _between_steps(variant):
+            yield _encode(codec, variant, name, values)
+
+
+def _rejected_values(codec: Codec) -> Iterator[Question]:
+    """Yield values that must be rejected, though the wire could carry most of them."""
+    for variant in variants_of(codec.table):
+        for sample, _, _ in illegal_samples(variant.variant):
+            yield _encode(
+                codec, variant, sample.name, named_values(variant.variant, sample.raw_values)
+            )
+        for name, values in _wrong_counts(variant):
+            yield _encode(codec, variant, name, values)
+
+
+def _encode(codec: Codec, variant: CommandVariant, name: str, values: Json) -> Question:
+    command, direction = variant.command.name, variant.direction
+    ask = {"do": "encode", "direction": direction, "command": command, "fields": values}
+    try:
+        expect: Json = {"bytes": hexed(encode_named(codec, command, direction, values))}
+        case = ENCODE_BYTES
+    except UsageError as error:
+        expect, case = {"rejected": "bad-value", "why": str(error)}, ENCODE_REJECTS
+    return Question(f"{case.id}/{variant.label}/{name}", case, command, ask, expect)
+
+
+def _between_steps(variant: CommandVariant) -> Iterator[tuple[str, Json]]:
+    """Yield values to be rounded: to the nearest step, ties to the even one, within the bounds."""
+    base = ordinary(variant.variant)
+    values = named_values(variant.variant, base)
+    for field in variant.variant.fields:
+        case = variant.variant.raw_case(field, base)
+        assert case is not None, "an ordinary selector has a case"
+        number = case.numbers[0]
+        if not number.scaled or field.choices:
+            continue
+        for steps in _fractions(number):
+            value: Any = steps * number.multiply / number.divide
+            if field.many:
+                value = [value, *values[field.name][1:]]
+            yield f"{field.name}={steps}-steps", {**values, field.name: value}
+
+
+def _fractions(number: Number) -> list[float]:
+    low, high = number.minimum, number.maximum
+    wished = [0.4, 0.6, -0.4, -0.6, 1.5, 2.5, -1.5, -2.5, 28.999999999999996, 100.3]
+    return [steps for steps in wished if low <= steps <= high] + [high + 0.4, low - 0.4]
+
+
+def _wrong_counts(variant: CommandVariant) -> Iterator[tuple[str, Json]]:
+    values = named_values(variant.variant, ordinary(variant.variant))
+    for field in _rows(variant.variant):
+        row = values[field.name]
+        yield f"{field.name}-one-short", {**values, field.name: row[:-1]}
+        yield f"{field.name}-one-more", {**values, field.name: [*row, row[-1]]}
+
+
+def _rows(variant: Variant) -> list[Field]:
+    return [field for field in variant.fields if field.many]
+
+
+def _decoding(codec: Codec) -> Iterator[Question]:
+    """Yield legal frames with ordinary values and with their corners."""
+    for variant in variants_of(codec.table):
+        for sample in samples(variant.variant):
+            yield _of_sample(codec, variant, sample)
+
+
+def _rejected_numbers(codec: Codec) -> Iterator[Question]:
+    """Yield frames that hold a number which the edition does not allow."""
+    for variant in variants_of(codec.table):
+        for sample, _, _ in illegal_samples(variant.variant):
+            yield _of_sample(codec, variant, sample)
+
+
+def _of_sample(codec: Codec, variant: CommandVariant, sample: Sample) -> Question:
+    data = frame_of(codec.table, variant.command.id, variant.variant.pack(sample.raw_values))
+    return decode(
+        codec, variant.direction, variant.command.name, f"{variant.label}/{sample.name}", data
+    )
+
+
+def decode(codec: Codec, direction: Direction, of: str, name: str, data: bytes) -> Question:
+    """Return the question that decodes bytes; an empty ``of`` leaves the command open."""
+    ask: Json = {"do": "decode", "direction": direction, "bytes": hexed(data)}
+    if of:
+        ask["command"] = of
+    try:
+        message = codec.decode(direction, data, of=of or None)
+        expect: Json = {"command": message.command.name, "fields": plain_fields(message)}
+        case = DECODE_VALUES
+    except ProtocolError as error:
+        expect = {"rejected": error.reason, "offset": error.offset, "why": str(error)}
+        case = DECODE_REJECTS
+    return Question(f"{case.id}/{name}", case, of, ask, expect)
+
+
+def hexed(data: bytes) -> str:
+    """Return bytes as the line protocol writes them."""
+    return data.hex().upper()
+
+
+ENCODING = Group("encoding", (ENCODE_BYTES, ENCODE_REJECTS), _encoding)
+REJECTED_VALUES = Group("rejected values", (ENCODE_REJECTS, ENCODE_BYTES), _rejected_values)
+DECODING = Group("decoding", (DECODE_VALUES,), _decoding)
+REJECTED_NUMBERS = Group("rejected numbers", (DECODE_REJECTS, REJECTION_REASON), _rejected_numbers)

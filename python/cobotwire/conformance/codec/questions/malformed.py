@@ -1,0 +1,97 @@
+"""Questions about bytes that are not a legal frame, or that several commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire.codec.interface import Codec
+from cobotwire.conformance.codec.questions.frames import (
+    DECODE_REJECTS,
+    DECODE_VALUES,
+    DIRECTIONS,
+    REJECTION_REASON,
+    CommandVariant,
+    decode,
+    frame_of,
+    ordinary_frame,
+    variants_of,
+)
+from cobotwire.conformance.codec.questions.question import Question
+from cobotwire.conformance.suite import Group
+from cobotwire.protocol.table import Table
+
+
+def _damaged(codec: Codec) -> Iterator[Question]:
+    """Yield each message with a wrong byte outside its data, cut short, and too long."""
+    for variant in variants_of(codec.table):
+        for name, data in damages(codec.table, ordinary_frame(codec.table, variant)):
+            place = f"{variant.label}/{name}"
+            yield decode(codec, variant.direction, variant.command.name, place, data)
+
+
+def damages(table: Table, whole: bytes) -> Iterator[tuple[str, bytes]]:
+    """Yield the ways in which a frame can be broken, except for its values."""
+    at, end = table.frame.length_at, len(whole) - table.frame.check_size
+    for index in range(len(table.frame.header)):
+        yield f"header-{index}", _with(whole, index, whole[index] ^ 1)
+    for step in (-2, -1, 1, 2):
+        yield f"length{step:+d}", _with(whole, at, (whole[at] + step) & 0xFF)
+    for index in range(end, len(whole)):
+        for byte in (whole[index] ^ 1, 0, 0xFE, 0xFF):
+            if byte != whole[index]:
+                yield f"check-{index - end}-{byte:02X}", _with(whole, index, byte)
+    for size in range(len(whole)):
+        yield f"cut-at-{size}", whole[:size]
+    yield "one-more", whole + b"\x00"
+    yield "footer-twice", whole + whole[-1:]
+    yield "twice", whole + whole
+    yield "byte-in-front", b"\x00" + whole
+    yield "header-byte-in-front", whole[:1] + whole
+    if table.frame.addresses:
+        yield "address", _with(whole, at - 1, _other_byte(table.frame.addresses))
+
+
+def _other_byte(taken: tuple[int, ...]) -> int:
+    return next(byte for byte in range(256) if byte not in taken)
+
+
+def _with(data: bytes, index: int, byte: int) -> bytes:
+    return data[:index] + bytes([byte]) + data[index + 1 :]
+
+
+def _every_id(codec: Codec) -> Iterator[Question]:
+    """Yield every id in both directions, with and without data: most are not legal."""
+    for direction in DIRECTIONS:
+        for id in range(256):
+            for data in (b"", b"\x01", bytes(12)):
+                place = f"any/{direction}/id-{id:02X}-data-{len(data)}"
+                yield decode(codec, direction, "", place, frame_of(codec.table, id, data))
+
+
+def _shared_ids(codec: Codec) -> Iterator[Question]:
+    """Yield each message without the name of its command."""
+    for variant in variants_of(codec.table):
+        for turn in (0, 7):
+            data = ordinary_frame(codec.table, variant, turn)
+            yield decode(codec, variant.direction, "", f"any/{variant.label}/unnamed-{turn}", data)
+
+
+def _other_commands(codec: Codec) -> Iterator[Question]:
+    """Yield each message under the name of a command with another id: it must be rejected."""
+    variants = list(variants_of(codec.table))
+    for variant in variants:
+        other = next(o for o in variants if _has_other_id(variant, o))
+        data = ordinary_frame(codec.table, variant)
+        place = f"{variant.label}/as-{other.command.name}"
+        yield decode(codec, variant.direction, other.command.name, place, data)
+
+
+def _has_other_id(variant: CommandVariant, other: CommandVariant) -> bool:
+    return other.direction == variant.direction and other.command.id != variant.command.id
+
+
+REJECTS = (DECODE_REJECTS, REJECTION_REASON)
+DAMAGED = Group("damaged frames", REJECTS, _damaged)
+EVERY_ID = Group("every id", (DECODE_VALUES, *REJECTS), _every_id)
+SHARED_IDS = Group("shared ids", (DECODE_VALUES, *REJECTS), _shared_ids)
+OTHER_COMMANDS = Group("other commands", REJECTS, _other_commands)

@@ -1,0 +1,31 @@
+"""A question to a codec and its right answer; both as the line protocol writes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from cobotwire.conformance.suite import TestCase
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """One question of ``docs/codec-protocol.md`` with the right answer.
+
+    ``name`` is unique and stable: files of expected failures use it. ``case`` is the test case
+    that the answer is judged by. ``ask`` lacks the ``id``. ``expect`` holds one of ``bytes``,
+    ``fields``, ``rejected``, ``events``.
+    """
+
+    name: str
+    case: TestCase
+    command: str
+    ask: Json
+    expect: Json
+
+    @property
+    def needs(self) -> str:
+        """The ability that it requires, as the greeting names it: ``decode reply``."""
+        return f"{self.ask['do']} {self.ask['direction']}"

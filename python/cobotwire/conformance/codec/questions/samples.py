@@ -1,0 +1,163 @@
+"""Samples of messages: ordinary raw values for the fields, and each of their corner values.
+
+A sample holds a raw value for every number of a variant. In an ordinary sample all of them differ,
+as far as the ranges allow, so that a wrong order, sign or scale shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from cobotwire.protocol.table import Field, Number, Variant
+
+RawValues = tuple[tuple[int, ...], ...]
+
+# Steps from the bottom of a range; odd, so that bytes and decimal places of neighbours differ.
+_STRIDE = 0x0125
+
+
+class Sample(NamedTuple):
+    """Raw values by field and element; ``name`` says what is special about them."""
+
+    name: str
+    raw_values: RawValues
+
+
+def ordinary(variant: Variant, picked: dict[int, int] | None = None, turn: int = 0) -> RawValues:
+    """Return ordinary raw values, with those of ``picked`` in the fields at its indices."""
+    raw_values: list[tuple[int, ...]] = [()] * len(variant.fields)
+    count = turn
+    for index in sorted(range(len(variant.fields)), key=lambda i: variant.fields[i].selector >= 0):
+        field = variant.fields[index]
+        if picked and index in picked:
+            raw_values[index] = (picked[index],)
+            continue
+        case = variant.raw_case(field, tuple(raw_values))
+        assert case is not None, "an ordinary selector has a case"
+        row = []
+        for number in case.numbers:
+            count += 1
+            row.append(_ordinary(field, number, count))
+        raw_values[index] = tuple(row)
+    return tuple(raw_values)
+
+
+def _ordinary(field: Field, number: Number, count: int) -> int:
+    if field.choices:
+        return field.choices[count % len(field.choices)]
+    span = number.maximum - number.minimum + 1
+    middle = number.minimum + span // 3
+    return number.minimum + (middle - number.minimum + count * _STRIDE) % span
+
+
+def plainest(variant: Variant) -> RawValues:
+    """Return zeros, or the nearest legal values: every implementation accepts them."""
+    return tuple(
+        tuple(_near_zero(field, number) for number in field.cases[0].numbers)
+        for field in variant.fields
+    )
+
+
+def _near_zero(field: Field, number: Number) -> int:
+    return field.choices[0] if field.choices else number.clamp(0)
+
+
+def samples(variant: Variant) -> Iterator[Sample]:
+    """Yield a sample for every case of every selector, and for every corner value in it."""
+    seen: set[RawValues] = set()
+    for name, picked in _picks(variant):
+        for sample in _corners(variant, name, picked):
+            if sample.raw_values not in seen:
+                seen.add(sample.raw_values)
+                yield sample
+
+
+def _picks(variant: Variant) -> Iterator[tuple[str, dict[int, int]]]:
+    """Yield the values of each selector; one at a time, since no message has two that interact."""
+    selectors = sorted({field.selector for field in variant.fields if field.selector >= 0})
+    if not selectors:
+        yield "", {}
+    for index in selectors:
+        field = variant.fields[index]
+        for raw in _all_of(field):
+            if any(raw in case.when for f in variant.fields for case in f.cases):
+                yield f"{field.name}={raw}-", {index: raw}
+
+
+def _all_of(field: Field) -> tuple[int, ...]:
+    number = field.cases[0].numbers[0]
+    return field.choices or tuple(range(number.minimum, number.maximum + 1))
+
+
+def _corners(variant: Variant, name: str, picked: dict[int, int]) -> Iterator[Sample]:
+    base = ordinary(variant, picked)
+    yield Sample(f"{name}ordinary", base)
+    yield Sample(f"{name}ordinary-again", ordinary(variant, picked, turn=7))
+    for index, field in enumerate(variant.fields):
+        case = variant.raw_case(field, base)
+        assert case is not None, "an ordinary selector has a case"
+        for element, number in enumerate(case.numbers):
+            for raw in legal(field, number) if index not in picked else ():
+                place = _place(field, number, element)
+                yield Sample(f"{name}{place}={raw}", with_one(base, index, element, raw))
+
+
+def illegal_samples(variant: Variant) -> Iterator[tuple[Sample, int, int]]:
+    """Yield ordinary samples with one raw value that fits the wire but is illegal in its field.
+
+    Each sample comes with the index of the field and the index of the element.
+    """
+    for name, picked in _picks(variant):
+        base = ordinary(variant, picked)
+        for index, field in enumerate(variant.fields):
+            case = variant.raw_case(field, base)
+            assert case is not None, "an ordinary selector has a case"
+            for element, number in enumerate(case.numbers):
+                for raw in beyond(field, number):
+                    place = _place(field, number, element)
+                    wrong = with_one(base, index, element, raw)
+                    yield Sample(f"{name}{place}={raw}", wrong), index, element
+
+
+def with_one(raw_values: RawValues, index: int, element: int, raw: int) -> RawValues:
+    """Return the same raw values with another one in one place."""
+    row = (*raw_values[index][:element], raw, *raw_values[index][element + 1 :])
+    return (*raw_values[:index], row, *raw_values[index + 1 :])
+
+
+def legal(field: Field, number: Number) -> list[int]:
+    """Return legal corner values: ends, zero and its neighbours, the numbers at the sign change."""
+    if field.choices:
+        return list(field.choices)
+    top = 256**number.width
+    low, high = number.minimum, number.maximum
+    turn = (number.signed_at, number.signed_at - 1, number.signed_at + 1 - top)
+    wished = {low, low + 1, high - 1, high, -1, 0, 1, 2, 127, 128, 255, 256, -256, *turn}
+    return sorted(raw for raw in wished if low <= raw <= high)
+
+
+def beyond(field: Field, number: Number) -> list[int]:
+    """Return the values next to the legal ones, and the ends of what the wire can carry."""
+    lowest, highest = number.raw_range
+    if field.choices:
+        near = {c + step for c in field.choices for step in (-1, 1)} - set(field.choices)
+        wished = {*near, lowest, highest} - set(field.choices)
+    else:
+        wished = {number.minimum - 1, number.maximum + 1, lowest, highest}
+        wished -= set(range(number.minimum, number.maximum + 1))
+    return sorted(raw for raw in wished if lowest <= raw <= highest)
+
+
+def named_values(variant: Variant, raw_values: RawValues) -> dict[str, Any]:
+    """Return the physical values by field name, as JSON values."""
+    given: dict[str, Any] = {}
+    for field, row in zip(variant.fields, raw_values):
+        case = variant.raw_case(field, raw_values) or field.cases[0]
+        values = [number.physical(raw) for number, raw in zip(case.numbers, row)]
+        given[field.name] = values if field.many else values[0]
+    return given
+
+
+def _place(field: Field, number: Number, element: int) -> str:
+    return f"{field.name}.{number.name or element}" if field.many else field.name

@@ -1,0 +1,101 @@
+"""What comes after a request that changes something: nothing, an acknowledgement, or its reply."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.response import Response
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.table import Command
+
+# What an acknowledgement reports: done.
+DONE = 1
+
+
+def _is_silent(command: Command) -> bool:
+    return not command.reply and command.text is None
+
+
+def _may_be_acknowledged(command: Command) -> bool:
+    return command.ack
+
+
+def _is_replied_to(command: Command) -> bool:
+    return command.answers
+
+
+SILENT = TestCase("one-way-silent", "A one-way request is not replied to.", applies=_is_silent)
+ACKNOWLEDGED = TestCase(
+    "acknowledgement",
+    "At most one acknowledgement comes; it is legal and reports 1: done.",
+    applies=_may_be_acknowledged,
+)
+REPLIED = TestCase(
+    "change-replied",
+    "A change that has a reply is replied to once, legally and in time.",
+    applies=_is_replied_to,
+)
+ALIKE = TestCase(
+    "acknowledgements-alike",
+    "An arm that acknowledges some commands acknowledges all that it may.",
+)
+# The test cases for what comes after any change.
+AFTER_CHANGE = (SILENT, ACKNOWLEDGED)
+AFTER_CHANGE_OR_REPLY = (*AFTER_CHANGE, REPLIED)
+
+
+def request_change(
+    probe: Probe, command: Command, values: Sequence[Any], text: Mapping[str, str] | None = None
+) -> Response:
+    """Send a request that changes something, and judge what comes."""
+    response = probe.device.request(command, values, text)
+    call = probe.device.requester.describe(response.request)
+    if command.answers:
+        _judge_reply(probe, response, call)
+    elif command.ack:
+        _judge_acknowledgement(probe, response, call)
+    else:
+        silent = not response.replies and not response.unexpected
+        probe.expect(SILENT, silent, f"{call}: expected silence; came {response.summary}")
+    return response
+
+
+def _judge_reply(probe: Probe, response: Response, call: str) -> None:
+    device, deadline = probe.device, response.request.command.deadline_ms
+    device.requester.listen(response, device.connection.now, device.timing.silence)
+    reason = f"{call}: expected one legal reply; came {response.summary}"
+    probe.expect(REPLIED, response.only_valid, reason)
+    if response.replies:
+        took = 1000 * response.replies[0].seconds
+        reason = f"{call}: expected the reply within {deadline} ms; it took {took:.0f} ms"
+        probe.expect(REPLIED, took <= deadline, reason)
+
+
+def _judge_acknowledgement(probe: Probe, response: Response, call: str) -> None:
+    name = response.request.command.name
+    probe.device.acknowledged.setdefault(name, bool(response.replies))
+    at_most_one = len(response.replies) <= 1 and not response.unexpected
+    done = all(
+        reply.error is None and all(value == DONE for value in reply.fields.values())
+        for reply in response.replies
+    )
+    reason = f"{call}: expected one acknowledgement, 1, or none; came {response.summary}"
+    probe.expect(ACKNOWLEDGED, at_most_one and done, reason)
+
+
+def _all_acknowledged(probe: Probe) -> None:
+    """Compare all changes that were sent until now."""
+    if not any(command.ack for command in probe.device.table.commands):
+        probe.drop(ALIKE)
+    acknowledged = probe.device.acknowledged
+    silent = [name for name, came in acknowledged.items() if not came]
+    if len(acknowledged) < 2:
+        raise NotSupported("fewer than two changes were sent")
+    reason = f"some commands were acknowledged, but not {', '.join(silent)}"
+    probe.expect(ALIKE, not silent or len(silent) == len(acknowledged), reason)
+
+
+ALL_ACKNOWLEDGED = Group("all acknowledged", (ALIKE,), _all_acknowledged)

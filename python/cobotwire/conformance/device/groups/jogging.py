@@ -1,0 +1,232 @@
+"""Motion of one joint or axis: by a step, to a coordinate, or until a stop; the others stay."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
+from cobotwire.conformance.device.groups.motion import ARRIVES, STOPS, UNDER_WAY, resume
+from cobotwire.conformance.device.mover import POSES, Mover
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.suite import Group
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command, Field, Number, Table
+
+# A step by unit: far more than a tick, but still near.
+DISTANCES = {"degree": 4.0, "millimetre": 8.0}
+# How far the other joints or axes may stray. The end follows joints that rest on ticks.
+STRAYS = {"degree": 0.6, "millimetre": 2.5}
+# Slow enough to be stopped near the start, in percent of the fastest.
+SLOW = 20
+
+
+def _shape(command: Command) -> tuple[Field, Field] | None:
+    """Return the fields of a motion for its part and its distance or direction; else None."""
+    if command.safety != "motion" or command.role or command.read_by or command.answers:
+        return None
+    fields = command.request[0].fields
+    if len(fields) != 3 or any(field.many for field in fields):
+        return None
+    part, travel, speed = fields
+    return (part, travel) if speed.cases[0].numbers[0].unit == "percent" else None
+
+
+def _is_step(table: Table, command: Command) -> bool:
+    """Return whether a command moves one part by a distance."""
+    shape = _shape(command)
+    return shape is not None and shape[1].cases[0].numbers[0].scaled
+
+
+def _is_jog(table: Table, command: Command) -> bool:
+    """Return whether a command moves one part in one of two directions."""
+    shape = _shape(command)
+    return shape is not None and len(shape[1].choices) == 2
+
+
+def _moves_one_axis(table: Table, command: Command) -> bool:
+    """Return whether a command moves the arm's end to a coordinate of one axis."""
+    return command.role == "coordinate target"
+
+
+def _to_coordinates(probe: Probe) -> None:
+    """Move the end a short distance along or about each axis; the other coordinates stay."""
+    _nearby(probe, probe.command.request[0].fields[0], absolute=True)
+
+
+def _step(probe: Probe) -> None:
+    """Move each part by a step, up and down."""
+    _nearby(probe, _parts(probe)[0], absolute=False)
+
+
+def _nearby(probe: Probe, part: Field, *, absolute: bool) -> None:
+    """Move each part a short distance up and down.
+
+    An arm may reject what it cannot reach: a direction in which it moves from none of the poses
+    counts as out of reach. An arm that moves in no direction fails.
+    """
+    mover = Mover(probe)
+    stays = [
+        _stays(probe, mover, part, chosen, sign, absolute=absolute)
+        for chosen in _choices(part)
+        for sign in (1, -1)
+    ]
+    reason = f"{probe.command.name}: the arm moved from none of {len(POSES)} poses"
+    probe.expect(ARRIVES, not all(stays), reason)
+
+
+def _stays(
+    probe: Probe, mover: Mover, part: Field, chosen: int, sign: int, *, absolute: bool
+) -> bool:
+    """Move a part one way, from pose to pose, until it moves; return whether it never does."""
+    for which in range(len(POSES)):
+        mover.go(mover.pose(which))
+        before, numbers = _where(probe, part)
+        at = _place(part, chosen, numbers)
+        distance = sign * DISTANCES[numbers[at].unit]
+        target = round(before[at] + distance, 2)
+        try:
+            request_change(
+                probe, probe.command, (chosen, target if absolute else distance, mover.speed)
+            )
+        except UsageError:
+            # The edition does not allow it there; another pose is nearer to the middle.
+            continue
+        mover.wait()
+        after, _ = _where(probe, part)
+        if _off(numbers, before, after):
+            wrong = _off(numbers, [*before[:at], target, *before[at + 1 :]], after)
+            call = f"{probe.command.name}({part.name}={chosen}), {distance} {numbers[at].unit}"
+            probe.expect(ARRIVES, not wrong, f"{call} from there: {'; '.join(wrong)}")
+            return False
+    return True
+
+
+def _jogs(probe: Probe) -> None:
+    """Jog each part both ways and stop; as with steps, some may be out of reach."""
+    mover, (part, way) = Mover(probe), _parts(probe)
+    goes = [
+        _jog(probe, mover, part, chosen, direction)
+        for chosen in _choices(part)
+        for direction in way.choices
+    ]
+    reason = f"{probe.command.name}: the arm moved from none of {len(POSES)} poses"
+    probe.expect(ARRIVES, any(goes), reason)
+
+
+def _jog(probe: Probe, mover: Mover, part: Field, chosen: int, direction: int) -> bool:
+    """Jog a part in a direction, from pose to pose, until it moves; return whether it does."""
+    for which in range(len(POSES)):
+        mover.go(mover.pose(which))
+        before, numbers = _where(probe, part)
+        request_change(probe, probe.command, (chosen, direction, min(SLOW, mover.speed)))
+        mover.rest(4 * UNDER_WAY)
+        after = _stopped(probe, mover, part)
+        moved = [now - then for now, then in zip(after, before)]
+        if any(abs(by) > STRAYS[number.unit] for by, number in zip(moved, numbers)):
+            way = probe.command.request[0].fields[1]
+            wrong = _not_so(part, chosen, way, direction, numbers, moved)
+            call = f"{probe.command.name}({part.name}={chosen}, {direction})"
+            reason = f"{call}: expected {wrong}; it moved by {_short(moved)}"
+            probe.expect(ARRIVES, not wrong, reason)
+            return True
+    return False
+
+
+def _stopped(probe: Probe, mover: Mover, part: Field) -> Sequence[float]:
+    """Stop, and return where the arm is then; expect that it stays there."""
+    bare = (
+        c for c in probe.device.table.commands if c.safety == "motion" and not c.request[0].fields
+    )
+    ending = next((c for c in bare if c.family == probe.command.family), None)
+    if ending is None:
+        _halt(probe)
+    else:
+        probe.device.request(ending)
+    mover.rest(2 * UNDER_WAY)
+    stopped, numbers = _where(probe, part)
+    mover.rest(4 * UNDER_WAY)
+    later, _ = _where(probe, part)
+    moved = any(abs(a - b) > STRAYS[n.unit] for a, b, n in zip(stopped, later, numbers))
+    _halt(probe)
+    resume(probe)
+    probe.expect(STOPS, not moved, f"after a stop: at {stopped}, then at {later}")
+    return stopped
+
+
+def _halt(probe: Probe) -> None:
+    stop = probe.device.command("stop")
+    if stop is not None:
+        probe.device.request(stop)
+
+
+def _not_so(
+    part: Field,
+    chosen: int,
+    way: Field,
+    direction: int,
+    numbers: tuple[Number, ...],
+    moved: Sequence[float],
+) -> str:
+    """Describe the motion that was expected; empty if it happened."""
+    far = [abs(by) > STRAYS[number.unit] for by, number in zip(moved, numbers)]
+    label = part.labels[part.choices.index(chosen)].lower() if part.labels else ""
+    if label and label not in [number.name for number in numbers]:
+        turns = [number.unit == "degree" for number in numbers]
+        right = any(far) and not any(f for f, turn in zip(far, turns) if not turn)
+        return "" if right else "the end to turn in place"
+    at = _place(part, chosen, numbers)
+    if not far[at] or any(far[:at]) or any(far[at + 1 :]):
+        return f"only {numbers[at].name} to move"
+    # Jogging forward increases a coordinate; for a joint the edition defines only "clockwise".
+    forward = "FORWARD" in way.labels and way.choices[way.labels.index("FORWARD")] == direction
+    if "FORWARD" in way.labels and (moved[at] > 0) is not forward:
+        return f"{numbers[at].name} to {'grow' if forward else 'fall'}"
+    return ""
+
+
+def _short(moved: Sequence[float]) -> str:
+    return ", ".join(f"{by:.2f}" for by in moved)
+
+
+def _off(numbers: tuple[Number, ...], wanted: Sequence[float], came: Sequence[float]) -> list[str]:
+    return [
+        f"{number.name}: expected {want:.2f}, is {have:.2f} {number.unit}"
+        for number, want, have in zip(numbers, wanted, came)
+        if abs(want - have) > STRAYS[number.unit]
+    ]
+
+
+def _parts(probe: Probe) -> tuple[Field, Field]:
+    shape = _shape(probe.command)
+    assert shape is not None
+    return shape
+
+
+def _choices(part: Field) -> Sequence[int]:
+    number = part.cases[0].numbers[0]
+    return part.choices or range(number.minimum, number.maximum + 1)
+
+
+def _where(probe: Probe, part: Field) -> tuple[Sequence[float], tuple[Number, ...]]:
+    """Return the position of the joints or of the end, whichever has the part; and its numbers."""
+    query = probe.device.command("coordinates" if part.choices else "joints")
+    fields = None if query is None else probe.device.read(query)
+    if query is None or fields is None:
+        raise NotSupported("no query reports where the arm is")
+    return next(iter(fields.values())), query.reply[0].fields[0].cases[0].numbers
+
+
+def _place(part: Field, chosen: int, numbers: tuple[Number, ...]) -> int:
+    """Return which of the numbers a part is: by its label, or counted from one."""
+    names = [number.name for number in numbers]
+    labels = [label.lower() for label in part.labels]
+    label = labels[part.choices.index(chosen)] if labels else ""
+    return names.index(label) if label in names else chosen - 1
+
+
+COORDINATES = Group(
+    "single coordinates", (ARRIVES, *AFTER_CHANGE), _to_coordinates, _moves_one_axis
+)
+STEPS = Group("steps", (ARRIVES, *AFTER_CHANGE), _step, _is_step)
+JOGS = Group("jogs", (ARRIVES, STOPS, *AFTER_CHANGE), _jogs, _is_jog)

@@ -1,0 +1,206 @@
+"""The arm ignores or rejects a malformed request, and replies to the next legal one.
+
+Only queries are damaged: whatever the firmware makes of them, nothing changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire.conformance.device.groups.queries import is_query
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.response import Response
+from cobotwire.conformance.device.samples import arguments
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.table import Command, FrameFormat, Table
+from cobotwire.session.request import EncodedRequest
+
+MALFORMED = frozenset({"malformed"})
+# A packet of the servo bus, a header that leads nowhere, text, and half a frame.
+NOISES = ("ff ff 01 04 02 38 02 be", "fe fe", "63 6d 64 0d 0a", "fe fe fe 30")
+
+WRONG_LENGTH = TestCase("wrong-length", "A request with a wrong LEN is not replied to.")
+WRONG_FOOTER = TestCase("wrong-footer", "A request with a wrong footer is not replied to.")
+CUT = TestCase("cut-request", "A request that breaks off is given up when the line is silent.")
+OUT_OF_RANGE = TestCase("out-of-range", "A request with a value that is not allowed is ignored.")
+UNKNOWN_ID = TestCase("unknown-id", "A request with an id that the edition lacks is ignored.")
+NOISE_BEFORE = TestCase("noise-before", "A request after noise is replied to.")
+TOGETHER = TestCase("two-in-one-write", "Requests in one write are all replied to, in order.")
+PIECES = TestCase(
+    "request-in-pieces", "A request in pieces with pauses is replied to like a whole one."
+)
+RECOVERS = TestCase("recovers", "After a malformed request, the next good one is replied to.")
+
+
+def _is_framed_query(table: Table, command: Command) -> bool:
+    return is_query(table, command) and bool(command.reply)
+
+
+def _damaged(probe: Probe) -> None:
+    """Send requests with a wrong LEN or footer, and requests that break off."""
+    request = _sample(probe)
+    for case, what, data in _damages(probe.device.table.frame, request.frame):
+        _expect_no_reply(probe, case, request, what, data)
+        _expect_recovery(probe, request, what)
+
+
+def _sample(probe: Probe) -> EncodedRequest:
+    """Return the request to damage: the first sample."""
+    values = arguments(probe.command.request[0], probe.device.known())[0]
+    return probe.device.requester.prepare(probe.command, values)
+
+
+def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, bytes]]:
+    """Yield a request damaged in each way: the test case, what it is, its bytes."""
+    at = frame.length_at
+    longer = data[:at] + bytes([data[at] + 1]) + data[at + 1 :]
+    yield WRONG_LENGTH, "LEN one too large", longer
+    yield WRONG_LENGTH, "LEN one too small", data[:at] + bytes([data[at] - 1]) + data[at + 1 :]
+    end = len(data) - frame.check_size
+    more = longer[:end] + b"\x00" + longer[end:]
+    if frame.check == "footer":
+        yield WRONG_LENGTH, "one data byte too many, and LEN with it", more
+    yield WRONG_FOOTER, "a wrong footer", data[:-1] + bytes([data[-1] ^ 0xFF])
+    yield CUT, "broken off before the footer", data[:-1]
+    yield CUT, "broken off after LEN", data[: at + 1]
+
+
+def _expect_no_reply(
+    probe: Probe, case: TestCase, request: EncodedRequest, what: str, data: bytes
+) -> None:
+    """Send a malformed request; the firmware may send an error text, but no reply."""
+    device = probe.device
+    at = device.table.frame.length_at
+    half = data[at] + at + 1 > len(data)
+    seconds = device.timing.idle if half else device.timing.silence
+    response = device.requester.send_bytes(request, data, what, seconds)
+    silent = not response.replies and not response.unexpected
+    probe.expect(case, silent, f"{what}: expected no reply; came {response.summary}")
+
+
+def _expect_recovery(probe: Probe, request: EncodedRequest, what: str) -> None:
+    response = probe.device.count(probe.device.requester.send(request))
+    _expect_one_reply(probe, RECOVERS, response, f"the good request after {what}")
+
+
+def _expect_one_reply(probe: Probe, case: TestCase, response: Response, what: str) -> None:
+    reason = f"{what}: expected one legal reply; came {response.summary}"
+    probe.expect(case, response.only_valid, reason)
+
+
+def _can_be_out_of_range(table: Table, command: Command) -> bool:
+    """Return whether bytes can express arguments that the edition does not allow."""
+    return _is_framed_query(table, command) and any(
+        _forbidden(field.choices, number.minimum, number.maximum, number.width)
+        for field in command.request[0].fields
+        for number in field.cases[0].numbers
+    )
+
+
+def _out_of_range(probe: Probe) -> None:
+    """Send arguments that the edition does not allow."""
+    request = _sample(probe)
+    for what, data in _wrong_values(probe.device.table, probe.command, request.frame):
+        _expect_no_reply(probe, OUT_OF_RANGE, request, what, data)
+        _expect_recovery(probe, request, what)
+
+
+def _wrong_values(table: Table, command: Command, data: bytes) -> Iterator[tuple[str, bytes]]:
+    """Yield a request with a number outside each field's range or list, if bytes can hold it."""
+    if table.frame.check != "footer":
+        return
+    at = table.frame.length_at + 2
+    for field in command.request[0].fields:
+        for number in field.cases[0].numbers:
+            for value in _forbidden(field.choices, number.minimum, number.maximum, number.width):
+                wrong = value.to_bytes(number.width, number.order)
+                name = f"{field.name}.{number.name}" if number.name else field.name
+                yield f"{name} = {value}", data[:at] + wrong + data[at + number.width :]
+            at += number.width
+
+
+def _forbidden(choices: tuple[int, ...], low: int, high: int, width: int) -> list[int]:
+    """Return unsigned values that are illegal, whichever way the firmware reads their sign."""
+    if low < 0:
+        return []
+    allowed = set(choices) or range(low, high + 1)
+    near = {low - 1, high + 1, 256**width - 1, *(choice + 1 for choice in choices)}
+    return sorted(value for value in near if 0 <= value < 256**width and value not in allowed)
+
+
+def _crowded(probe: Probe) -> None:
+    """Send legal requests after noise, in pieces, and several at once."""
+    device, request = probe.device, _sample(probe)
+    for noise in NOISES:
+        data = bytes.fromhex(noise) + request.frame
+        response = device.count(device.requester.send_instead(request, data, "noise and a request"))
+        _expect_one_reply(probe, NOISE_BEFORE, response, f"the request after {noise.upper()}")
+    _in_pieces(probe, request)
+    _together(probe, request)
+
+
+def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
+    """Send one byte at a time."""
+    device, frame = probe.device, request.frame
+    for at in range(len(frame) - 1):
+        piece, pause = frame[at : at + 1], device.timing.pause
+        response = device.requester.send_bytes(request, piece, "a piece", pause)
+        probe.expect(PIECES, not response.replies, f"half a request: came {response.summary}")
+    response = device.count(device.requester.send_instead(request, frame[-1:], "the last piece"))
+    _expect_one_reply(probe, PIECES, response, "the request in pieces")
+
+
+def _together(probe: Probe, request: EncodedRequest) -> None:
+    """Send two requests in one write, and three."""
+    device = probe.device
+    for count in (2, 3):
+        data, what = request.frame * count, f"{count} requests"
+        response = device.count(device.requester.send_instead(request, data, what))
+        if len(response.replies) < count:
+            deadline = request.command.deadline_ms / 1000
+            device.requester.listen(response, device.connection.now, deadline)
+        legal = [reply for reply in response.replies if response.accepts(reply)]
+        complete = len(legal) == len(response.replies) == count and not response.unexpected
+        reason = f"{what}: expected {count} replies; came {response.summary}"
+        probe.expect(TOGETHER, complete, reason)
+
+
+def _unknown_ids(probe: Probe) -> None:
+    """Send ids that the edition lacks, with and without data."""
+    table = probe.device.table
+    carrier = next(
+        c for c in table.commands if _is_framed_query(table, c) and not c.request[0].fields
+    )
+    request = probe.device.requester.prepare(carrier, ())
+    if table.frame.check != "footer":
+        return
+    for id in _free_ids(table):
+        for data in (b"", b"\x01"):
+            length = bytes([table.frame.length(len(data))])
+            address = bytes(table.frame.addresses[:1])
+            frame = table.frame.header + address + length + bytes([id]) + data + table.frame.footer
+            _expect_no_reply(probe, UNKNOWN_ID, request, f"the unknown id {id:02X}", frame)
+    _expect_recovery(probe, request, "unknown ids")
+
+
+def _free_ids(table: Table) -> list[int]:
+    """Return some ids that no command has: the ends, and some between."""
+    known = {command.id for command in table.commands}
+    free = [id for id in range(256) if id not in known]
+    return free[:1] + free[1:-1:24] + free[-1:]
+
+
+DAMAGED = Group(
+    "damaged requests",
+    (WRONG_LENGTH, WRONG_FOOTER, CUT, RECOVERS),
+    _damaged,
+    _is_framed_query,
+    MALFORMED,
+)
+FORBIDDEN = Group(
+    "forbidden values", (OUT_OF_RANGE, RECOVERS), _out_of_range, _can_be_out_of_range, MALFORMED
+)
+CROWDED = Group(
+    "crowded requests", (NOISE_BEFORE, TOGETHER, PIECES), _crowded, _is_framed_query, MALFORMED
+)
+UNKNOWN_IDS = Group("unknown ids", (UNKNOWN_ID, RECOVERS), _unknown_ids, permission=MALFORMED)

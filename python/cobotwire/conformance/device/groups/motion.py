@@ -1,0 +1,147 @@
+"""Motion inside the workspace: the arm arrives, reports it, stops, and stays."""
+
+from __future__ import annotations
+
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
+from cobotwire.conformance.device.mover import ANGLE_TOLERANCE, Mover, Pose, off_by
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.read_back import Setting, Values, settings_of
+from cobotwire.conformance.suite import Group, Selects, TestCase
+from cobotwire.protocol.table import Command, Role, Table
+from cobotwire.session.motion import kind_of
+
+ARRIVES = TestCase("arrives", "The arm goes where it was sent, and its other joints stay.")
+REACHED = TestCase("reached", "The arm reports that it is where it was sent, and nowhere else.")
+MOVING = TestCase("moving", "The arm reports that it moves while it does, and not at rest.")
+STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.")
+
+# The tolerance between sent and read values, by unit: one tick, and the end's motion within it.
+NEAR = {"degree": ANGLE_TOLERANCE, "millimetre": 1.5, "tick": 1.0, "percent": 1.0}
+# After this time, in seconds, the arm reports that it moves and has not arrived yet.
+UNDER_WAY = 0.1
+
+
+def _has(role: Role) -> Selects:
+    return lambda table, command: command.role == role
+
+
+def _to_poses(probe: Probe) -> None:
+    """Move all joints at once, from pose to pose."""
+    mover = Mover(probe)
+    for which in (0, 1):
+        pose, other = mover.pose(which), mover.pose(1 - which)
+        mover.go(other)
+        request_change(probe, probe.command, (pose, mover.speed))
+        _expect_moving(probe, mover, True)
+        mover.wait()
+        wrong = off_by(mover.angles(), pose)
+        probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
+        _expect_moving(probe, mover, False)
+        _expect_reached(probe, pose, True)
+        _expect_reached(probe, other, False)
+
+
+def _to_angles(probe: Probe) -> None:
+    """Move one joint after the other; the rest stay."""
+    mover = Mover(probe)
+    expected, target = mover.pose(0), mover.pose(1)
+    mover.go(expected)
+    for at, angle in enumerate(target):
+        request_change(probe, probe.command, (at + 1, angle, mover.speed))
+        mover.wait()
+        expected = (*expected[:at], angle, *expected[at + 1 :])
+        wrong = off_by(mover.angles(), expected)
+        call = f"{probe.command.name}(joint {at + 1}, {angle} degree)"
+        probe.expect(ARRIVES, not wrong, f"{call}: {'; '.join(wrong)}")
+
+
+def is_replayed(table: Table, command: Command) -> bool:
+    """Return whether a query reports the target of a motion."""
+    sent = command.role in ("", "coordinate targets")
+    return command.safety == "motion" and sent and bool(settings_of(table, command))
+
+
+def _replays(probe: Probe) -> None:
+    """Send what was read at another pose: the arm returns there, and reads the same."""
+    mover = Mover(probe)
+    for motion in settings_of(probe.device.table, probe.command):
+        for key in motion.keys:
+            for target in _targets(probe, mover, motion, key):
+                _replay(probe, mover, motion, key, target)
+
+
+def _targets(probe: Probe, mover: Mover, motion: Setting, key: Values) -> list[Values]:
+    """Return what is read at the first pose; or samples, if it is the same at the second."""
+    found = []
+    for which in (0, 1):
+        mover.go(mover.pose(which))
+        fields = probe.device.read(motion.query, motion.query_arguments(key))
+        if fields is None:
+            raise NotSupported(f"{motion.query.name} reports nothing")
+        found.append(motion.reported(fields))
+    return found[:1] if found[0] != found[1] else motion.samples(key, found[0])
+
+
+def _replay(probe: Probe, mover: Mover, motion: Setting, key: Values, target: Values) -> None:
+    values, _ = motion.request({**motion.rest(mover.speed), **key}, target)
+    request_change(probe, probe.command, values)
+    mover.settle(lambda: probe.device.read(motion.query, motion.query_arguments(key)))
+    fields = probe.device.read(motion.query, motion.query_arguments(key))
+    got = None if fields is None else motion.reported(fields)
+    wrong = motion.differences(target, got, NEAR)
+    probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
+
+
+def _stops(probe: Probe) -> None:
+    """Stop on the way: the arm is short of its target, and stays there."""
+    mover = Mover(probe)
+    mover.go(mover.pose(0))
+    probe.device.request(mover.targets, (mover.pose(1), 1))
+    mover.rest(UNDER_WAY)
+    request_change(probe, probe.command, ())
+    _expect_moving(probe, mover, False)
+    stopped = mover.angles()
+    mover.rest(4 * UNDER_WAY)
+    wrong = off_by(mover.angles(), stopped)
+    probe.expect(STOPS, not wrong, f"after {probe.command.name}: {'; '.join(wrong)}")
+    short = bool(off_by(stopped, mover.pose(1)))
+    probe.expect(STOPS, short, f"{probe.command.name}: expected the arm to stop on its way")
+    resume(probe)
+
+
+def resume(probe: Probe) -> None:
+    """Resume motion: after a stop, some firmware ignores motion requests until then."""
+    for query in probe.device.table.commands:
+        going = probe.device.setter(query, 0)
+        if going is not None and going.safety == "motion" and query.safety == "query":
+            probe.device.request(going)
+
+
+def _expect_moving(probe: Probe, mover: Mover, moves: bool) -> None:
+    query = probe.device.command("moving")
+    if query is not None:
+        if moves:
+            mover.rest(UNDER_WAY)
+        reported = probe.device.is_set(query)
+        reason = f"{query.name}: expected {moves}; came {_came(reported)}"
+        probe.expect(MOVING, reported is moves, reason)
+
+
+def _expect_reached(probe: Probe, pose: Pose, there: bool) -> None:
+    query = probe.device.command("reached")
+    if query is not None:
+        fields = probe.device.read(query, (pose, kind_of(probe.device.table, "ANGLES")))
+        reported = None if fields is None else any(fields.values())
+        reason = f"{query.name}{pose}: expected {there}; came {_came(reported)}"
+        probe.expect(REACHED, reported is there, reason)
+
+
+def _came(reported: bool | None) -> str:
+    return "no valid reply" if reported is None else str(reported)
+
+
+POSES = Group("poses", (ARRIVES, REACHED, MOVING, *AFTER_CHANGE), _to_poses, _has("joint targets"))
+JOINTS = Group("single joints", (ARRIVES, *AFTER_CHANGE), _to_angles, _has("joint target"))
+REPLAYS = Group("replays", (ARRIVES, *AFTER_CHANGE), _replays, is_replayed)
+STOPPING = Group("stops", (STOPS, MOVING, *AFTER_CHANGE), _stops, _has("stop"))

@@ -1,0 +1,64 @@
+"""What happens to a target if the next one comes while the arm is on its way."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
+from cobotwire.conformance.device.groups.switching import EFFECT
+from cobotwire.conformance.device.mover import Mover
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.suite import Group
+from cobotwire.protocol.table import Command, Table
+
+# The names of the two modes.
+QUEUED, NEWEST = "INTERPOLATION", "REFRESH"
+# How far apart the targets are, how far the arm must go to show its direction, both in degrees,
+# and how long that may take, in seconds.
+WAY, SHOWN, LONGEST = 8.0, 1.0, 10.0
+POLL = 0.02
+
+
+def _chooses_mode(table: Table, command: Command) -> bool:
+    """Return whether a setting chooses between the two modes."""
+    fields = command.request[0].fields
+    return command.safety == "setting" and len(fields) == 1 and fields[0].labels == (QUEUED, NEWEST)
+
+
+def _next_target(probe: Probe) -> None:
+    """Send joint 1 up and at once down: it goes up first if targets are queued."""
+    mover, mode = Mover(probe), probe.command.request[0].fields[0]
+    # The mode that the edition names first is its default.
+    default = partial(probe.device.request, probe.command, (mode.choices[0],))
+    probe.device.restore_after_body[probe.command.name] = default
+    pose = mover.pose(2)
+    up, down = ((pose[0] + way, *pose[1:]) for way in (WAY, -WAY))
+    for label in (NEWEST, QUEUED):
+        request_change(probe, probe.command, (mode.choices[mode.labels.index(label)],))
+        mover.go(pose)
+        for target in (up, down):
+            probe.device.request(mover.targets, (target, mover.speed))
+        went_up = _first_motion(mover, pose[0]) > 0
+        mover.wait()
+        reason = f"{label}: expected joint 1 to go {'up' if label == QUEUED else 'down'} first"
+        probe.expect(EFFECT, went_up is (label == QUEUED), reason)
+
+
+def _first_motion(mover: Mover, start: float) -> float:
+    """Return how far joint 1 is from its start, in degrees, as soon as it has left it."""
+    until = mover.device.connection.now + LONGEST
+    while mover.device.connection.now < until:
+        way = mover.angles()[0] - start
+        if abs(way) > SHOWN:
+            return way
+        mover.rest(POLL)
+    return 0.0
+
+
+NEXT_TARGET = Group(
+    "next target",
+    (EFFECT, *AFTER_CHANGE),
+    _next_target,
+    _chooses_mode,
+    frozenset({"motion", "irreversible"}),
+)

@@ -1,0 +1,99 @@
+"""Commands that switch what a query reports, and commands that no query reads back."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
+from cobotwire.conformance.device.groups.motion import resume
+from cobotwire.conformance.device.mover import give_power
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.read_back import has_fixed_effect, settings_of
+from cobotwire.conformance.device.samples import gentle, harmless
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.table import Command, Table
+
+EFFECT = TestCase("effect", "The query reports the state that the command has set.")
+
+# How long a switch may take to show, and how often it is read, in seconds.
+SHOWS = 2.0
+POLL = 0.05
+
+
+def _is_switch(table: Table, command: Command) -> bool:
+    """Return whether a query reports the fixed effect of a command, and it can be reverted."""
+    return has_fixed_effect(command) and command.safety != "persistent write"
+
+
+def _switch(probe: Probe) -> None:
+    """Set the opposite state, then the command's own, then restore the old one."""
+    command, device = probe.command, probe.device
+    assert command.read_by is not None
+    if command.safety == "power":
+        give_power(device)
+    query = device.table.command(command.read_by.query)
+    name, wanted = command.read_by.fields[0]
+    fields = device.read(query)
+    if fields is None:
+        raise NotSupported(f"{query.name} reports nothing")
+    before = int(fields[name])
+    back = device.setter(query, 1 - int(wanted)) if wanted in (0, 1) else None
+    if back is None and before != wanted and "irreversible" not in device.permissions.classes:
+        raise NotSupported("no command switches it back: that needs the permission irreversible")
+    undo = back if before != wanted else command
+    if undo is not None:
+        device.restore_after_body[command.name] = partial(_send, probe, undo)
+    if back is not None and before == wanted:
+        _send(probe, back)
+    _send(probe, command)
+    value = _await(probe, query, name, int(wanted))
+    reason = f"{command.name}: expected {query.name} to report {wanted}; came {value}"
+    probe.expect(EFFECT, value == wanted, reason)
+
+
+def _send(probe: Probe, command: Command) -> None:
+    """Send a command for each joint that it accepts."""
+    for values in harmless(command):
+        request_change(probe, command, values)
+
+
+def _await(probe: Probe, query: Command, name: str, wanted: int) -> int | None:
+    """Poll a query until it reports ``wanted`` or the time is over; return its last value."""
+    connection = probe.device.connection
+    end = connection.now + SHOWS
+    while True:
+        fields = probe.device.read(query)
+        value = None if fields is None else int(fields[name])
+        if value == wanted or connection.now >= end:
+            return value
+        connection.clock.sleep(POLL)
+
+
+def _is_unread(table: Table, command: Command) -> bool:
+    """Return whether no query reads back what a command does, and no command restores it."""
+    return (
+        command.safety != "query"
+        and not command.role
+        and not _is_switch(table, command)
+        and not settings_of(table, command)
+        and not (command.read_by is not None and command.safety == "persistent write")
+    )
+
+
+def _send_unread(probe: Probe) -> None:
+    """Send the command once, with the mildest arguments, and judge what comes."""
+    command = probe.command
+    text = command.request_text
+    words = None if text is None else dict.fromkeys(text.fields, "cobot")
+    request_change(probe, command, gentle(command.request[-1]), words)
+    stop = probe.device.command("stop")
+    if command.safety == "motion" and stop is not None:
+        probe.device.request(stop)
+        resume(probe)
+
+
+SWITCHES = Group("switches", (EFFECT, *AFTER_CHANGE_OR_REPLY), _switch, _is_switch)
+UNREAD = Group(
+    "unread commands", AFTER_CHANGE_OR_REPLY, _send_unread, _is_unread, frozenset({"irreversible"})
+)

@@ -1,0 +1,186 @@
+"""A setting and the query that reads it back: what is sent, and what must be reported."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cobotwire.conformance.device.samples import (
+    Limits,
+    arguments,
+    gentle,
+    numbers_of,
+    revealing,
+)
+from cobotwire.protocol.table import Command, Field, Number, Table, Variant
+
+Values = dict[str, Any]
+# Texts that differ in every place, of characters that a name may have.
+TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
+# Both values are multiples of the wire's step, so only floating-point errors are tolerated.
+EXACT = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One variant of a command, and the variant of the query that reports what it has set.
+
+    ``pairs`` are the reply's fields with the arguments that they report; ``keys`` the arguments
+    that choose what is read, such as a joint.
+    """
+
+    command: Command
+    variant: Variant
+    query: Command
+    query_variant: Variant
+    pairs: tuple[tuple[str, str], ...]
+
+    @property
+    def keys(self) -> list[Values]:
+        """What can be set: each joint, pin or register in turn."""
+        fields = {field.name: field for field in self.variant.fields}
+        variant = Variant(tuple(fields[field.name] for field in self.query_variant.fields))
+        names = [field.name for field in variant.fields]
+        return [dict(zip(names, values)) for values in arguments(variant, limits=self.limits)]
+
+    @property
+    def limits(self) -> Limits:
+        """The limits of the arguments whose legal numbers are not all harmless."""
+        names = {field.name for field in self.variant.fields}
+        for samples in self.command.samples:
+            if {name for name, _ in samples} <= names:
+                return dict(samples)
+        return {}
+
+    def query_arguments(self, key: Values) -> list[Any]:
+        """Return the arguments of the query for a key."""
+        return [key[field.name] for field in self.query_variant.fields]
+
+    def reported(self, fields: Mapping[str, Any]) -> Values:
+        """Return what a reply reports, by the names of the setting's arguments."""
+        return {argument: fields[name] for name, argument in self.pairs}
+
+    def request(self, key: Values, values: Values) -> tuple[list[Any], Values]:
+        """Return the arguments and the text of the request that sets ``values``."""
+        if self.command.request_text is not None:
+            return [], values
+        return [{**key, **values}[field.name] for field in self.variant.fields], {}
+
+    def samples(self, key: Values, old: Values) -> list[Values]:
+        """Return values that reveal mistakes: ends, both signs, and a difference in each byte."""
+        names = [argument for _, argument in self.pairs]
+        if self.command.request_text is not None:
+            return [dict(zip(names, texts)) for texts in TEXTS]
+        fields = [self._field(name) for name in names]
+        if len(fields) == 1 and fields[0].choices:
+            return [{names[0]: value} for value in fields[0].choices]
+        rows = [list(zip(self._numbers(name, key), self._reported_as(name))) for name in names]
+        present = [_row(old[name]) for name in names]
+        return [
+            {name: row if field.many else row[0] for name, field, row in zip(names, fields, sample)}
+            for sample in revealing(rows, present)
+        ]
+
+    def rest(self, speed: int) -> Values:
+        """Return the other arguments: speeds as given, else the values that do the least."""
+        set_here = {argument for _, argument in self.pairs}
+        mild = dict(zip((field.name for field in self.variant.fields), gentle(self.variant)))
+        speeds = {f.name: speed for f in self.variant.fields if _is_speed(f) and not f.many}
+        return {name: value for name, value in {**mild, **speeds}.items() if name not in set_here}
+
+    def differences(
+        self, wanted: Values, got: Values | None, near: Mapping[str, float] | None = None
+    ) -> list[str]:
+        """Describe each part that is not as wanted, with both values.
+
+        ``near`` holds the tolerance by unit.
+        """
+        if got is None:
+            return ["nothing was reported"]
+        found = []
+        for _, name in self.pairs:
+            for at, (want, have) in enumerate(zip(_row(wanted[name]), _row(got[name]))):
+                most = (near or {}).get(self._unit(name, at), EXACT)
+                if want != have and not (_number(want) and abs(want - have) <= most):
+                    found.append(f"{self._label(name, at)}: set {want}, read {have}")
+        return found
+
+    def _label(self, name: str, at: int) -> str:
+        """Return the name of a field and its part, with the unit."""
+        if self.command.request_text is not None:
+            return name
+        number = self._field(name).cases[0].numbers[at]
+        part = f"{name}.{number.name}" if number.name else name
+        return f"{part} ({number.unit})" if number.unit else part
+
+    def _unit(self, name: str, at: int) -> str:
+        text = self.command.request_text is not None
+        return "" if text else self._field(name).cases[0].numbers[at].unit
+
+    def _field(self, name: str) -> Field:
+        return next(field for field in self.variant.fields if field.name == name)
+
+    def _numbers(self, name: str, key: Values) -> tuple[Number, ...]:
+        places = {field.name: at for at, field in enumerate(self.variant.fields)}
+        selected = {places[argument]: value for argument, value in key.items()}
+        return numbers_of(self._field(name), selected)
+
+    def _reported_as(self, name: str) -> tuple[Number, ...]:
+        reported = next(reported for reported, argument in self.pairs if argument == name)
+        rows = [
+            field.cases[0].numbers
+            for variant in self.query.reply
+            for field in variant.fields
+            if field.name == reported
+        ]
+        # A reply may have a narrow and a wide variant; the arm uses the one with enough room.
+        return max(rows, key=lambda numbers: numbers[0].maximum)
+
+
+def settings_of(table: Table, command: Command) -> list[Setting]:
+    """Return the variants of a command that a query reads back; none if its effect is fixed."""
+    back = command.read_by
+    if back is None or has_fixed_effect(command):
+        return []
+    query = table.command(back.query)
+    found = []
+    for variant in command.request:
+        query_variant = _query_variant(query, variant)
+        pairs = _pairs(command, variant, query)
+        if query_variant is not None and pairs:
+            found.append(Setting(command, variant, query, query_variant, pairs))
+    return found
+
+
+def has_fixed_effect(command: Command) -> bool:
+    """Return whether a query reports a fixed value after a command, such as power on."""
+    back = command.read_by
+    return back is not None and any(not isinstance(value, str) for _, value in back.fields)
+
+
+def _query_variant(query: Command, variant: Variant) -> Variant | None:
+    """Return the fullest variant of the query with all its arguments among the setting's."""
+    names = {field.name for field in variant.fields}
+    fitting = [f for f in query.request if {field.name for field in f.fields} <= names]
+    return max(fitting, key=lambda f: len(f.fields), default=None)
+
+
+def _pairs(command: Command, variant: Variant, query: Command) -> tuple[tuple[str, str], ...]:
+    assert command.read_by is not None
+    if command.read_by.fields:
+        return tuple((name, str(argument)) for name, argument in command.read_by.fields)
+    reported = {f.name for reply in query.reply for f in reply.fields if not f.echo}
+    return tuple((f.name, f.name) for f in variant.fields if f.name in reported)
+
+
+def _row(value: Any) -> tuple[Any, ...]:
+    return tuple(value) if isinstance(value, tuple | list) else (value,)
+
+
+def _is_speed(field: Field) -> bool:
+    return field.cases[0].numbers[0].unit == "percent"
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float)

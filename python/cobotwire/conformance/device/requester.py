@@ -1,0 +1,165 @@
+"""Sends requests to the device and sorts what comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from cobotwire.codec.interface import Codec, Event, Frame
+from cobotwire.conformance.device.connection import DeviceConnection
+from cobotwire.conformance.device.response import Reply, Response
+from cobotwire.diagnose import Diagnoser, Finding
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Command, TextReply
+from cobotwire.session.request import EncodedRequest, RequestEncoder, as_call
+from cobotwire.session.text import TextCollector
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """How long the tester listens, in seconds.
+
+    ``linger`` after a reply, for a second one; ``silence`` where no reply is due; ``grace`` after
+    a deadline, for late replies (delays of up to 727 ms were observed); ``idle`` until an arm gives
+    up half a request; ``pause`` between the pieces of a request.
+    """
+
+    linger: float = 0.004
+    silence: float = 0.03
+    grace: float = 0.3
+    idle: float = 0.25
+    pause: float = 0.01
+
+
+class Requester:
+    """Sends requests of one edition on one connection, and returns what came after each."""
+
+    def __init__(self, connection: DeviceConnection, codec: Codec, timing: Timing) -> None:
+        self._connection = connection
+        self._codec = codec
+        self._timing = timing
+        self._requests = RequestEncoder(codec)
+        self._framer = codec.framer("reply")
+        self._diagnoser = Diagnoser(codec)
+
+    def prepare(
+        self, command: Command, values: Sequence[Any], text: Mapping[str, str] | None = None
+    ) -> EncodedRequest:
+        """Validate and encode a request.
+
+        Raises:
+            UsageError: the edition does not allow the arguments.
+        """
+        return self._requests.encode(command.name, values, text)
+
+    def describe(self, request: EncodedRequest) -> str:
+        """Return a request as a person writes it: ``get_encoder(joint=1)``."""
+        return as_call(request, self._codec)
+
+    def send(self, request: EncodedRequest) -> Response:
+        """Send a request, and listen until its reply has come or cannot come any more."""
+        return self.send_instead(request, request.frame, self.describe(request))
+
+    def send_instead(self, request: EncodedRequest, data: bytes, note: str) -> Response:
+        """Send ``data`` instead of a request's frame, and listen as if for its reply."""
+        self._connection.send(data, note)
+        if request.text:
+            self._connection.send(request.text, "the text of the request")
+        start = self._connection.now
+        response = Response(request)
+        if request.command.text is not None:
+            self._await_text(response, request.command.text, start)
+        elif request.command.answers:
+            self._await_reply(response, start)
+        self.listen(response, start, self._after(response))
+        return response
+
+    def send_bytes(
+        self, request: EncodedRequest, data: bytes, note: str, seconds: float
+    ) -> Response:
+        """Send ``data``, to which no reply is due, and listen for ``seconds``."""
+        self._connection.send(data, note)
+        response = Response(request)
+        self.listen(response, self._connection.now, seconds)
+        return response
+
+    def listen(self, response: Response, start: float, seconds: float) -> None:
+        """Listen until nothing has come for ``seconds``, and classify all that came."""
+        end = self._connection.now + max(self._timing.grace, 4 * seconds)
+        while self._connection.now < end and (data := self._connection.receive(seconds)):
+            self._sort(response, self._framer.feed(data), start)
+        self._sort(response, self._framer.flush(), start)
+        self._keep(response, self._diagnoser.flush())
+
+    def _after(self, response: Response) -> float:
+        """Return how long to listen for a second reply, a late one, or one that is not due."""
+        if response.replies:
+            return self._timing.linger
+        replies = response.request.command.answers
+        return self._timing.grace if replies else self._timing.silence
+
+    def _await_reply(self, response: Response, start: float) -> None:
+        end = start + response.request.command.deadline_ms / 1000
+        while not response.replies and (left := end - self._connection.now) > 0:
+            self._sort(response, self._framer.feed(self._connection.receive(left)), start)
+
+    def _await_text(self, response: Response, variant: TextReply, start: float) -> None:
+        """Receive until the line is silent: text has no frame that would end it."""
+        end = start + response.request.command.deadline_ms / 1000
+        received, first = b"", 0.0
+        while data := self._connection.receive(
+            variant.silence_ms / 1000 if received else end - self._connection.now
+        ):
+            first = first or self._connection.now - start
+            received += data
+        self._read_text(response, variant, received, first)
+
+    def _read_text(
+        self, response: Response, variant: TextReply, received: bytes, seconds: float
+    ) -> None:
+        """Find the text in what was received; the rest is frames and noise like any other."""
+        begins = received.find(variant.prefixes[0].encode("ascii"))
+        if begins < 0:
+            self._sort(response, self._framer.feed(received), self._connection.now)
+            return
+        text, rest = _first_line(received[begins:])
+        collector = TextCollector(variant)
+        collector.add(text, 0.0)
+        try:
+            reply = Reply(seconds, text, None, None, collector.decode())
+        except ProtocolError as error:
+            reply = Reply(seconds, text, None, error, {})
+        response.replies.append(reply)
+        others = self._framer.feed(received[:begins] + rest)
+        self._sort(response, others, self._connection.now)
+
+    def _sort(self, response: Response, events: list[Event], start: float) -> None:
+        """Keep frames at once, and feed all events to the diagnoser: noise may need later bytes."""
+        command = response.request.command
+        for event in events:
+            if not isinstance(event, Frame):
+                continue
+            if event.command == command.id and command.reply:
+                response.replies.append(self._read(event, self._connection.now - start, command))
+            else:
+                response.others.append(event)
+        self._keep(response, self._diagnoser.feed(events))
+
+    def _keep(self, response: Response, items: Sequence[Frame | Finding]) -> None:
+        response.findings.extend(item for item in items if isinstance(item, Finding))
+
+    def _read(self, frame: Frame, seconds: float, command: Command) -> Reply:
+        try:
+            message = frame.decode("reply", of=command.name)
+        except ProtocolError as error:
+            return Reply(seconds, frame.data, None, error, {})
+        return Reply(seconds, frame.data, message, None, message.fields)
+
+
+def _first_line(text: bytes) -> tuple[bytes, bytes]:
+    """Return a text up to the end of its line, and what follows."""
+    ends = [at for at in map(text.find, (b"\n", b"\xff", b"\xfe")) if at >= 0]
+    at = min(ends, default=len(text))
+    end = at + 1 if text[at : at + 1] == b"\n" else at
+    return text[:end], text[end:]

@@ -1,0 +1,96 @@
+"""What came after a request: replies, frames that were not requested, noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from cobotwire.codec.interface import DecodedMessage, Frame
+from cobotwire.diagnose import CommandError, DamagedFrame, Finding, Nuls, ServoPacket, Text
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.session.matching import repeats_arguments
+from cobotwire.session.request import EncodedRequest
+
+# What a healthy arm's line carries besides frames: packets of the servo bus, the firmware's text.
+NOISE = (ServoPacket, Text, CommandError)
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """A frame with the request's id, ``seconds`` after the request; or the text that replies to it.
+
+    ``message`` is None if the edition does not allow the frame; ``error`` then says why.
+    """
+
+    seconds: float
+    data: bytes
+    message: DecodedMessage | None
+    error: ProtocolError | None
+    fields: dict[str, Any]
+
+
+@dataclass(slots=True)
+class Response:
+    """Everything that was received between a request and the next one."""
+
+    request: EncodedRequest
+    replies: list[Reply] = field(default_factory=list)
+    others: list[Frame] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+
+    @property
+    def noise(self) -> list[Finding]:
+        """What a healthy arm's line carries besides frames."""
+        return [finding for finding in self.findings if _is_noise(finding)]
+
+    @property
+    def unexpected(self) -> list[str]:
+        """What was not requested and is not explained as noise, in words."""
+        found = [f"the frame {shown(frame.data)}" for frame in self.others]
+        return found + [
+            f"{finding.kind} {shown(finding.data)}"
+            for finding in self.findings
+            if not _is_noise(finding)
+        ]
+
+    @property
+    def damaged(self) -> list[DamagedFrame]:
+        """What begins like a frame with the request's id and is not a legal frame."""
+        return [
+            finding
+            for finding in self.findings
+            if isinstance(finding, DamagedFrame) and finding.id in (None, self.request.command.id)
+        ]
+
+    @property
+    def valid(self) -> Reply | None:
+        """The first legal reply with the right echo."""
+        return next((reply for reply in self.replies if self.accepts(reply)), None)
+
+    @property
+    def only_valid(self) -> bool:
+        """Whether one valid reply came, and nothing unexpected."""
+        return len(self.replies) == 1 and self.valid is not None and not self.unexpected
+
+    def accepts(self, reply: Reply) -> bool:
+        """Return whether a reply is legal and repeats the arguments."""
+        if reply.error is not None:
+            return False
+        return reply.message is None or repeats_arguments(reply.message, self.request)
+
+    @property
+    def summary(self) -> str:
+        """What came, in words."""
+        parts = [shown(reply.data) for reply in self.replies] + self.unexpected
+        parts += [f"noise {shown(finding.data)}" for finding in self.noise]
+        return "; ".join(parts) or "nothing"
+
+
+def shown(data: bytes, most: int = 40) -> str:
+    """Return bytes as hex, shortened if they are many."""
+    text = data[:most].hex(" ").upper()
+    return text if len(data) <= most else f"{text} ... ({len(data)} bytes)"
+
+
+def _is_noise(finding: Finding) -> bool:
+    return isinstance(finding, NOISE) or (isinstance(finding, Nuls) and not finding.reboot)

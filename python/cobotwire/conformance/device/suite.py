@@ -1,0 +1,51 @@
+"""The test cases for devices, in the order of a run."""
+
+from __future__ import annotations
+
+from cobotwire.conformance.device.groups import (
+    agreement,
+    calibration,
+    changes,
+    gripping,
+    holding,
+    jogging,
+    malformed,
+    motion,
+    queries,
+    queueing,
+    settings,
+    switching,
+)
+from cobotwire.conformance.device.probe import Body
+from cobotwire.conformance.suite import Suite
+
+SUITE: Suite[Body] = Suite(
+    "device",
+    (
+        queries.QUERIES,
+        malformed.DAMAGED,
+        malformed.FORBIDDEN,
+        malformed.CROWDED,
+        malformed.UNKNOWN_IDS,
+        settings.SETTINGS,
+        motion.POSES,
+        motion.JOINTS,
+        motion.REPLAYS,
+        motion.STOPPING,
+        # After the motions, because unread commands leave the gripper in another state.
+        switching.SWITCHES,
+        switching.UNREAD,
+        holding.HOLDING,
+        jogging.STEPS,
+        jogging.JOGS,
+        jogging.COORDINATES,
+        gripping.GRIPPER_MOVES,
+        gripping.GRIPPER_OPENS,
+        queueing.NEXT_TARGET,
+        agreement.AGREEMENT,
+        agreement.CALCULATION,
+        calibration.CALIBRATION,
+        # Last, because it compares all acknowledgements of the run.
+        changes.ALL_ACKNOWLEDGED,
+    ),
+)

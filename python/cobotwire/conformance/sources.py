@@ -1,0 +1,16 @@
+"""Where an edition's spec defines each command; loaded only when a report cites it."""
+
+from __future__ import annotations
+
+from cobotwire import editions
+from cobotwire.protocol.loading import load_places
+
+
+def spec_lines(edition: str) -> dict[str, str]:
+    """Return where the spec defines each command; empty if the edition does not state it."""
+    package = editions.load(edition)
+    name = getattr(package, "__name__", "")
+    try:
+        return load_places(name)
+    except (KeyError, OSError):
+        return {}

@@ -1,0 +1,70 @@
+"""Test cases, and the suite that lists them in an explicit order; the same for every subject."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from cobotwire.conformance.report import Kind
+
+if TYPE_CHECKING:
+    # Every pytest run imports this module with the plugin, and must not load the tables' records.
+    from cobotwire.protocol.table import Command, Table
+
+# Exercises or judges the test cases of a group; each kind of subject has its own type.
+Body = TypeVar("Body", covariant=True)
+
+Selects = Callable[["Table", "Command"], bool]
+
+
+def every_command(command: Command) -> bool:
+    """Return True: by default, a test case applies to every command."""
+    return True
+
+
+@dataclass(frozen=True, slots=True)
+class TestCase:
+    """One requirement of the protocol, on which a run gives a verdict for each command.
+
+    ``id`` is stable, because reports are compared by it. ``purpose`` states the requirement in one
+    sentence. ``source`` says where it comes from; a line of the spec, where there is one, replaces
+    it in reports. ``applies`` selects the commands on which it can be judged.
+    """
+
+    # pytest would take the class for a class of tests.
+    __test__ = False
+
+    id: str
+    purpose: str
+    source: str = ""
+    applies: Callable[[Command], bool] = every_command
+
+
+@dataclass(frozen=True, slots=True)
+class Group(Generic[Body]):
+    """Test cases that one body exercises or judges together.
+
+    ``selects`` picks the commands that the body runs for; without it the body runs once, for the
+    line as a whole. ``permission`` is needed in addition to the permission for the command's
+    safety class.
+    """
+
+    name: str
+    cases: tuple[TestCase, ...]
+    body: Body
+    selects: Selects | None = None
+    permission: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Suite(Generic[Body]):
+    """All test cases for one kind of subject; groups run in this order."""
+
+    kind: Kind
+    groups: tuple[Group[Body], ...]
+
+    @property
+    def cases(self) -> tuple[TestCase, ...]:
+        """Every test case once, in the order of the groups."""
+        return tuple(dict.fromkeys(case for group in self.groups for case in group.cases))

@@ -1,0 +1,77 @@
+"""Count the frames, noise and findings of streams."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any
+
+from cobotwire.codec.interface import Frame, Framer
+from cobotwire.diagnose.diagnoser import Item
+from cobotwire.diagnose.explain import FrameReader
+from cobotwire.diagnose.summary import Summary
+
+
+class StreamCounts:
+    """Counts what streams hold; its memory does not grow with them.
+
+    Attributes:
+        framers: the framers of the counted streams; their counters are part of the result.
+        frames: the number of frames by id and name of the command.
+        findings: the findings, counted by kind.
+    """
+
+    def __init__(self) -> None:
+        self.framers: list[Framer] = []
+        self.frames: Counter[str] = Counter()
+        self.findings = Summary()
+        self._illegal = 0
+
+    @property
+    def only_legal(self) -> bool:
+        """Return whether there was nothing but legal frames."""
+        return not self.noise and not self._illegal
+
+    @property
+    def noise(self) -> Counter[str]:
+        """Return the bytes of noise by the framer's reason."""
+        noise: Counter[str] = Counter()
+        for framer in self.framers:
+            noise.update(framer.counters.noise)
+        return noise
+
+    @property
+    def bytes(self) -> int:
+        """Return the number of bytes."""
+        return sum(framer.counters.bytes for framer in self.framers)
+
+    @property
+    def resyncs(self) -> int:
+        """Return how often a frame followed noise."""
+        return sum(framer.counters.resyncs for framer in self.framers)
+
+    def add(self, items: Iterable[Item], reader: FrameReader) -> None:
+        """Count frames by name, and findings by kind."""
+        for item in items:
+            if isinstance(item, Frame):
+                self._add_frame(item, reader)
+            else:
+                self.findings.add(item)
+
+    def _add_frame(self, frame: Frame, reader: FrameReader) -> None:
+        readings = reader.read(frame.data)
+        message = readings[0].message if readings else None
+        self._illegal += message is None
+        name = "illegal value or unknown id" if message is None else message.command.name
+        self.frames[f"0x{frame.command:02X} {name}"] += 1
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return all counts by name."""
+        return {
+            "bytes": self.bytes,
+            "frames": dict(self.frames),
+            "noise": dict(self.noise),
+            "findings": dict(self.findings.kinds),
+            "resyncs": self.resyncs,
+            "diagnosis": str(self.findings),
+        }

@@ -1,0 +1,123 @@
+"""Say what each byte of a frame means, or why bytes are not a legal frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import groupby
+from typing import Any, NamedTuple
+
+from cobotwire.codec.interface import Codec, DecodedMessage
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.frame_index import FrameIndex
+from cobotwire.protocol.table import Direction, Field, FrameFormat, Number
+
+DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
+# A polled arm repeats itself: the readings of this many different frames are kept.
+REMEMBERED = 4096
+
+
+class Part(NamedTuple):
+    """A run of bytes inside a frame, and what it means."""
+
+    offset: int
+    data: bytes
+    name: str
+    meaning: str
+
+
+class Reading(NamedTuple):
+    """One way to read a frame: as a message, or the reason why it cannot be read this way."""
+
+    direction: Direction
+    message: DecodedMessage | None
+    error: ProtocolError | None
+
+
+class FrameReader:
+    """Reads frames in each direction that they fit; remembers the last readings."""
+
+    def __init__(self, codec: Codec, directions: tuple[Direction, ...] = DIRECTIONS) -> None:
+        self._codec, self._directions = codec, directions
+        self._indexes = [FrameIndex(codec.table, direction) for direction in directions]
+        self.read = lru_cache(REMEMBERED)(self._read)
+
+    def _read(self, data: bytes) -> tuple[Reading, ...]:
+        """Return the messages that ``data`` can be; if there are none, the reasons why not.
+
+        Bytes that do not start with the header of a frame have no readings.
+        """
+        frame = self._codec.table.frame
+        if not data.startswith(frame.header):
+            return ()
+        start = data[frame.length_at : frame.length_at + 2]
+        fitting = [i.direction for i in self._indexes if len(start) == 2 and i.find(*start[::-1])]
+        found = tuple(self._read_as(d, data) for d in fitting or self._directions)
+        messages = tuple(reading for reading in found if reading.message is not None)
+        # A bad value in one direction says more than a LEN that does not fit the other.
+        bad_values = tuple(
+            r for r in found if r.error is not None and r.error.reason == "bad-value"
+        )
+        return messages or bad_values or found
+
+    def _read_as(self, direction: Direction, data: bytes) -> Reading:
+        try:
+            return Reading(direction, self._codec.decode(direction, data), None)
+        except ProtocolError as error:
+            return Reading(direction, None, error)
+
+
+def frame_parts(frame: FrameFormat, data: bytes, message: DecodedMessage) -> Iterator[Part]:
+    """Yield every byte of a legal frame with its meaning, in order."""
+    start = frame.length_at
+    yield Part(0, data[: len(frame.header)], "header", "a frame starts here")
+    if message.address is not None:
+        yield Part(start - 1, data[start - 1 : start], "address", str(message.address))
+    length = data[start]
+    yield Part(start, data[start : start + 1], "LEN", f"{length}: {length} bytes follow")
+    command = message.command
+    yield Part(start + 1, data[start + 1 : start + 2], "CMD", f"{command.name}: {command.title}")
+    offset = frame.overhead + 1
+    for field, value in zip(message.variant.fields, message.values):
+        for number, single in _numbers(message, field, value):
+            name = f"{field.name} {number.name}".strip()
+            chunk = data[offset : offset + number.width]
+            yield Part(offset, chunk, name, format_value(field, number, single))
+            offset += number.width
+    end = "footer" if frame.check == "footer" else "check"
+    yield Part(offset, data[offset:], end, "the frame ends here")
+
+
+def _numbers(message: DecodedMessage, field: Field, value: Any) -> Iterator[tuple[Number, Any]]:
+    case = message.variant.case(field, message.values)
+    yield from zip(case.numbers, value if field.many else (value,))
+
+
+def format_value(field: Field, number: Number, value: Any) -> str:
+    """Return one value with its unit or label."""
+    if field.kind == "flag":
+        return "yes" if value else "no"
+    if field.labels:
+        return f"{field.labels[field.choices.index(value)]} ({value})"
+    unit = f" {number.unit}" if number.unit else ""
+    return f"{value:g}{unit}" if isinstance(value, float) else f"{value}{unit}"
+
+
+def format_message(message: DecodedMessage) -> str:
+    """Return a message on one line: a request like a call, a reply with an arrow before it."""
+    values = []
+    for field, value in zip(message.variant.fields, message.values):
+        numbers = _numbers(message, field, value)
+        text = _format_tuple(numbers) if field.many else format_value(field, *next(numbers))
+        values.append(f"{field.name}={text}")
+    arrow = "" if message.direction == "request" else "-> "
+    return f"{arrow}{message.command.name}({', '.join(values)})"
+
+
+def _format_tuple(numbers: Iterator[tuple[Number, Any]]) -> str:
+    """Return a tuple that names each unit once: ``(0, 0, 50 millimetre; 0, 0, 0 degree)``."""
+    groups = []
+    for unit, group in groupby(numbers, key=lambda pair: pair[0].unit):
+        values = ", ".join(f"{value:g}" for _, value in group)
+        groups.append(f"{values} {unit}".strip())
+    return f"({'; '.join(groups)})"

@@ -1,0 +1,113 @@
+"""Sample joints and coordinates of an arm, together with the state of its port."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from cobotwire.client import Client
+from cobotwire.codec.interface import Codec
+from cobotwire.inspect.traffic_listener import DiagnosingListener
+from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
+from cobotwire.protocol.table import Command, Role
+
+# The rate is that of the last samples, this many.
+WINDOW = 10
+FASTEST = 1000.0
+ROLES: tuple[Role, ...] = ("joints", "coordinates")
+
+
+class Observation(NamedTuple):
+    """The state of the arm and its port at one time.
+
+    Attributes:
+        time: seconds from the beginning.
+        values: the results by command name; None if there was no legal reply.
+        rate: samples a second over the last few; 0 for the first.
+        unanswered: requests without a legal reply, so far.
+        late: replies that came after their deadline, so far.
+        noise: bytes of noise, so far.
+        diagnosis: what that noise is, in a sentence.
+        error: the last error of this sample; empty if there was none.
+    """
+
+    time: float
+    values: dict[str, Any]
+    rate: float
+    unanswered: int
+    late: int
+    noise: int
+    diagnosis: str
+    error: str
+
+
+class Monitor:
+    """Samples the joints and coordinates of an arm, and listens to the port in between.
+
+    A sample with a missing reply is part of the result, so that the user sees that the arm is
+    silent; a client's ``stream`` skips it.
+    """
+
+    def __init__(self, arm: Client, codec: Codec, rate: float) -> None:
+        """Take at most ``rate`` samples a second.
+
+        Raises:
+            UsageError: the rate is not allowed.
+        """
+        if not 0 < rate <= FASTEST:
+            raise UsageError("rate", rate, f"above 0, up to {FASTEST:g}")
+        self._arm, self._rate = arm, rate
+        commands = codec.table.commands
+        self._commands = [c for role in ROLES for c in commands if c.role == role]
+        self._listener = DiagnosingListener(codec)
+        self._unanswered = 0
+        self._error = ""
+
+    def samples(self, count: int | None = None) -> Iterator[Observation]:
+        """Yield ``count`` samples, or samples without end.
+
+        Raises:
+            LinkError: the port went away.
+        """
+        remove_listener = self._arm.add_traffic_listener(self._listener)
+        times: deque[float] = deque(maxlen=WINDOW)
+        started = due = time.monotonic()
+        taken = 0
+        try:
+            while count is None or taken < count:
+                times.append(time.monotonic())
+                yield self._sample(started, times)
+                taken += 1
+                # Missed samples are not made up for: the arm is busy enough.
+                due = max(due + 1 / self._rate, time.monotonic())
+                if taken != count:
+                    self._arm.listen(max(0.0, due - time.monotonic()))
+        finally:
+            remove_listener()
+
+    def _sample(self, started: float, times: deque[float]) -> Observation:
+        self._error = ""
+        values = {command.name: self._query(command) for command in self._commands}
+        span = times[-1] - times[0]
+        listener = self._listener
+        listener.flush()
+        return Observation(
+            time=times[-1] - started,
+            values=values,
+            rate=(len(times) - 1) / span if span else 0.0,
+            unanswered=self._unanswered,
+            late=listener.late,
+            noise=listener.noise,
+            diagnosis=str(listener.findings),
+            error=self._error,
+        )
+
+    def _query(self, command: Command) -> Any:
+        try:
+            return getattr(self._arm, command.name)()
+        except (ReplyTimeout, ProtocolError) as error:
+            self._unanswered += 1
+            self._error = str(error)
+            return None

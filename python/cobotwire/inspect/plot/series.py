@@ -1,0 +1,122 @@
+"""Collect what is drawn: joints, coordinates, frames, noise and reply times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from cobotwire.capture import Packet
+from cobotwire.capture.streams import cut
+from cobotwire.codec.interface import Codec, Event, Frame, Noise
+from cobotwire.inspect.plot.reply_times import Pairing, ReplyTimes
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import Role
+
+ROLES: tuple[Role, ...] = ("joints", "coordinates")
+
+
+@dataclass
+class Track:
+    """The replies to one query: their places on the axis, and the numbers of each."""
+
+    at: list[float] = field(default_factory=list)
+    rows: list[tuple[float, ...]] = field(default_factory=list)
+
+
+@dataclass
+class Series:
+    """What a recording or a stream of bytes holds, along an axis.
+
+    Attributes:
+        axis: ``seconds`` since the first packet, or ``bytes`` for a stream without times.
+        end: the end of the axis.
+        tracks: joints in degrees, coordinates in millimetres and degrees; may be empty.
+        frames: the place of each received frame.
+        noise: the place and the size in bytes of each received span of noise.
+        reply_times: the times between requests and replies; None without times.
+    """
+
+    axis: Literal["seconds", "bytes"]
+    end: float = 0.0
+    tracks: dict[Role, Track] = field(default_factory=lambda: {role: Track() for role in ROLES})
+    frames: list[float] = field(default_factory=list)
+    noise: list[tuple[float, int]] = field(default_factory=list)
+    reply_times: ReplyTimes | None = None
+
+
+def series_of_packets(packets: Iterable[Packet], codec: Codec) -> Series:
+    """Collect the series of the packets of one interface.
+
+    Raises:
+        UsageError: there are no packets.
+    """
+    collector = _Collector(Series("seconds"), codec)
+    pairing = Pairing(codec.table)
+    # Packets of unknown direction are taken for replies: those are what is drawn.
+    for stream, events, _ in cut(packets, lambda interface: codec, "reply"):
+        if collector.start_ns is None:
+            collector.start_ns = stream.start_ns
+        for event in events:
+            time_ns = stream.time_of(event.offset + len(event.data) - 1)
+            at = (time_ns - collector.start_ns) / 1e9
+            collector.series.end = max(collector.series.end, at)
+            if stream.direction != "sent":
+                collector.add(event, at)
+            if isinstance(event, Frame):
+                pair = pairing.sent if stream.direction == "sent" else pairing.received
+                pair(at, event.command)
+    if collector.start_ns is None:
+        raise UsageError("FILE", message="the recording holds no packets")
+    collector.series.reply_times = pairing.finish()
+    return collector.series
+
+
+def series_of_bytes(blocks: Iterable[bytes], codec: Codec) -> Series:
+    """Collect the series of the raw bytes that an arm sent.
+
+    Raises:
+        UsageError: there are no bytes.
+    """
+    collector = _Collector(Series("bytes"), codec)
+    framer = codec.framer("reply")
+    for block in blocks:
+        for event in framer.feed(block):
+            collector.add(event, event.offset)
+    for event in framer.flush():
+        collector.add(event, event.offset)
+    if not framer.counters.bytes:
+        raise UsageError("FILE", message="the file is empty")
+    collector.series.end = framer.counters.bytes
+    return collector.series
+
+
+class _Collector:
+    """Adds received frames and noise to a series."""
+
+    def __init__(self, series: Series, codec: Codec) -> None:
+        self.series = series
+        self.start_ns: int | None = None
+        self._tracks = {
+            command.id: series.tracks[command.role]
+            for command in codec.table.commands
+            if command.role in ROLES
+        }
+
+    def add(self, event: Event, at: float) -> None:
+        if isinstance(event, Noise):
+            self.series.noise.append((at, len(event.data)))
+            return
+        self.series.frames.append(at)
+        track = self._tracks.get(event.command)
+        if track is not None:
+            self._add_values(track, event, at)
+
+    def _add_values(self, track: Track, frame: Frame, at: float) -> None:
+        try:
+            [values] = frame.message.fields.values()
+        except (ProtocolError, ValueError):
+            # A reply with values that the edition does not allow is not a position.
+            return
+        track.at.append(at)
+        track.rows.append(tuple(values))

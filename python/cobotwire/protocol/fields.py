@@ -1,0 +1,224 @@
+"""The data bytes of a message: numbers, fields and variants, with the rules for reading them.
+
+A *raw value* is what a number holds after its sign rule. A *physical value* is that in units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Literal
+
+from cobotwire.protocol.errors import UsageError
+
+FieldKind = Literal["number", "flag", "enum"]
+# The raw values of a message, by field and element.
+RawRows = Sequence[Sequence[int]]
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """One number on the wire: ``width`` bytes, a sign rule, and a scale as an exact rational.
+
+    The bytes are an unsigned integer ``u``. The raw value is ``u - 256**width`` if
+    ``u > signed_at``, else ``u``. The physical value is ``raw * multiply / divide``, a float; where
+    ``multiply == divide == 1`` it is the raw value itself, an ``int``.
+    ``minimum`` and ``maximum`` bound the raw value.
+    """
+
+    name: str
+    width: int
+    order: Literal["big", "little"]
+    signed_at: int
+    multiply: int
+    divide: int
+    minimum: int
+    maximum: int
+    unit: str
+
+    @property
+    def scaled(self) -> bool:
+        """Whether the physical value is a float (True) or the raw value itself (False)."""
+        return not self.multiply == self.divide == 1
+
+    @property
+    def raw_range(self) -> tuple[int, int]:
+        """The lowest and the highest raw value that the bytes can hold."""
+        top = 256**self.width - 1
+        return (0 if self.signed_at >= top else self.signed_at - top), min(self.signed_at, top)
+
+    def unpack(self, data: bytes, offset: int = 0) -> int:
+        """Return the raw value that stands at ``offset``."""
+        unsigned = int.from_bytes(data[offset : offset + self.width], self.order)
+        return unsigned - 256**self.width if unsigned > self.signed_at else unsigned
+
+    def pack(self, raw: int) -> bytes:
+        """Return the bytes of a raw value; of one that does not fit, the lowest ``width`` bytes."""
+        return (raw % (1 << 8 * self.width)).to_bytes(self.width, self.order)
+
+    def physical(self, raw: int) -> int | float:
+        """Return the physical value of a raw value."""
+        return raw * self.multiply / self.divide if self.scaled else raw
+
+    def exact(self, raw: int) -> Fraction:
+        """Return the physical value of a raw value without rounding."""
+        return Fraction(raw * self.multiply, self.divide)
+
+    def steps(self, physical: float) -> float:
+        """Return the raw value of a physical value before it is rounded.
+
+        The arithmetic is IEEE double, step by step, so that all codecs encode the same bytes.
+        """
+        return physical * self.divide / self.multiply
+
+    def raw(self, physical: float) -> int:
+        """Return the raw value nearest to a physical value; of two, the even one."""
+        return round(self.steps(physical)) if self.scaled else int(physical)
+
+    def clamp(self, raw: int) -> int:
+        """Return the raw value between the bounds that is nearest to ``raw``."""
+        return min(max(raw, self.minimum), self.maximum)
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """How a field reads while its selector holds one of ``when``; ``()`` if it has no selector."""
+
+    when: tuple[int, ...]
+    numbers: tuple[Number, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One argument of a request or one part of a reply.
+
+    ``many`` fields are tuples with one element for each number. ``choices`` lists all legal raw
+    values (``()``: every value between minimum and maximum); ``labels`` names them for people.
+    If ``selector`` is not -1, it is the index of another field of the variant: the raw value of
+    that field picks the case. All cases of a field take the same number of bytes.
+    """
+
+    name: str
+    kind: FieldKind
+    cases: tuple[Case, ...]
+    doc: str
+    many: bool = False
+    choices: tuple[int, ...] = ()
+    labels: tuple[str, ...] = ()
+    selector: int = -1
+    echo: bool = False
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return sum([number.width for number in self.cases[0].numbers])
+
+    @property
+    def numbers(self) -> tuple[Number, ...]:
+        """The numbers of all cases."""
+        return tuple(number for case in self.cases for number in case.numbers)
+
+    @property
+    def raw_range(self) -> tuple[int, int]:
+        """The lowest and the highest raw value that the field allows in any case."""
+        numbers = self.numbers
+        return (
+            min(self.choices or [number.minimum for number in numbers]),
+            max(self.choices or [number.maximum for number in numbers]),
+        )
+
+    def case(self, selected: int | None) -> Case | None:
+        """Return the case that applies while the selector holds the raw value ``selected``.
+
+        A field without a selector has one case, which always applies. None: no case applies.
+        """
+        if self.selector < 0:
+            return self.cases[0]
+        for case in self.cases:
+            if selected in case.when:
+                return case
+        return None
+
+    def allows(self, number: Number, raw: int) -> bool:
+        """Return whether one of the field's numbers may hold a raw value."""
+        if self.choices:
+            return raw in self.choices
+        return number.minimum <= raw <= number.maximum
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """The data bytes of one variant of a message."""
+
+    fields: tuple[Field, ...]
+
+    @property
+    def size(self) -> int:
+        """Data bytes on the wire, without header, LEN, command id and check."""
+        return sum([field.size for field in self.fields])
+
+    def case(self, field: Field, values: Sequence[Any]) -> Case:
+        """Return the case of a field in a message with these physical values.
+
+        Raises:
+            UsageError: no case applies to the value of the selector.
+        """
+        if field.selector < 0:
+            return field.cases[0]
+        value = values[field.selector]
+        selector = self.fields[field.selector].cases[0].numbers[0]
+        case = field.case(selector.raw(value))
+        if case is None:
+            raise self._unselected(field, value)
+        return case
+
+    def raw_case(self, field: Field, rows: RawRows) -> Case | None:
+        """Return the case of a field in a message with these raw values; None: none applies."""
+        return field.case(None if field.selector < 0 else rows[field.selector][0])
+
+    def start(self, index: int) -> int:
+        """Return where the field at ``index`` starts in the data bytes."""
+        return sum([field.size for field in self.fields[:index]])
+
+    def unpack(self, data: bytes) -> list[tuple[int, ...]]:
+        """Return the raw values in the data bytes of a message, a tuple for each field.
+
+        Raises:
+            UsageError: no case of a field applies to the value of its selector.
+        """
+        rows: list[tuple[int, ...]] = []
+        for index, field in enumerate(self.fields):
+            at, row = self.start(index), []
+            for number in self._case_in(field, data).numbers:
+                row.append(number.unpack(data, at))
+                at += number.width
+            rows.append(tuple(row))
+        return rows
+
+    def pack(self, rows: RawRows) -> bytes:
+        """Return the data bytes of raw values, whether or not the fields allow them.
+
+        A field reads as its first case if none applies.
+        """
+        return b"".join(
+            [
+                number.pack(raw)
+                for field, row in zip(self.fields, rows)
+                for number, raw in zip((self.raw_case(field, rows) or field.cases[0]).numbers, row)
+            ]
+        )
+
+    def _case_in(self, field: Field, data: bytes) -> Case:
+        if field.selector < 0:
+            return field.cases[0]
+        number = self.fields[field.selector].cases[0].numbers[0]
+        selected = number.unpack(data, self.start(field.selector))
+        case = field.case(selected)
+        if case is None:
+            raise self._unselected(field, selected)
+        return case
+
+    def _unselected(self, field: Field, selected: Any) -> UsageError:
+        legal = ", ".join([str(when) for case in field.cases for when in case.when])
+        return UsageError(self.fields[field.selector].name, selected, f"one of {legal}")

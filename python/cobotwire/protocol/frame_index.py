@@ -1,0 +1,52 @@
+"""The legal frames of one direction: which messages a command id and a LEN can stand for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cobotwire.protocol.table import Command, Direction, Table, Variant
+
+
+class MessageVariant(NamedTuple):
+    """One variant of a command's message in one direction."""
+
+    command: Command
+    direction: Direction
+    variant_index: int
+
+    @property
+    def variant(self) -> Variant:
+        """Its data bytes."""
+        return self.command.variants(self.direction)[self.variant_index]
+
+
+class FrameIndex:
+    """The messages of an edition in one direction, found by command id and LEN.
+
+    Attributes:
+        lengths: every LEN that a frame of this direction can have.
+    """
+
+    def __init__(self, table: Table, direction: Direction) -> None:
+        self.table = table
+        self.direction: Direction = direction
+        self._found: dict[tuple[int, int], list[MessageVariant]] = {}
+        for command in table.commands:
+            for index, variant in enumerate(command.variants(direction)):
+                key = command.id, table.frame.length(variant.size)
+                # Commands may share an id and a LEN. They are tried in the order of the table.
+                self._found.setdefault(key, []).append(MessageVariant(command, direction, index))
+        self._ids = {id for id, _ in self._found}
+        self.lengths = {length for _, length in self._found}
+
+    def find(self, id: int, length: int) -> list[MessageVariant]:
+        """Return the messages with that command id and LEN; none if such a frame is illegal."""
+        return self._found.get((id, length), [])
+
+    def has(self, id: int) -> bool:
+        """Return whether any message of this direction has that command id."""
+        return id in self._ids
+
+    def lengths_of(self, id: int) -> list[int]:
+        """Return every LEN that is legal with that command id, ascending."""
+        return sorted(length for other, length in self._found if other == id)

@@ -1,0 +1,139 @@
+"""Limits of targets, narrower or wider than the edition's: a table made from a table.
+
+The edition's own limits are the ranges of its request fields, and the codec checks them before a
+byte is sent. Other limits are the same table with other ranges, so nothing else has to check.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import ceil, floor, isfinite
+
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Case, Command, Field, Number, Role, Table, Variant
+
+Range = tuple[float, float]
+Ranges = Sequence[Range | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Where the arm may be sent: the lowest and the highest target of each part.
+
+    None keeps the edition's limit of a part, or of all parts. Only targets are limited. A command
+    that moves the arm by a distance (``jog_increment``), or until it is stopped, is not.
+
+    Attributes:
+        joints: degrees, a range for each joint, base first.
+        coords: millimetres for x, y, z, then degrees for rx, ry, rz.
+        wider: allows ranges beyond the edition's, as far as the wire can carry them.
+    """
+
+    joints: Ranges | None = None
+    coords: Ranges | None = None
+    wider: bool = False
+
+
+def limited(table: Table, limits: Limits) -> Table:
+    """Return the same edition with other limits.
+
+    Raises:
+        UsageError: a range is not a pair of numbers, or is wider than the edition's (with
+            ``wider``: than the wire can carry), or the edition has no such targets.
+    """
+    rules: dict[str, _Rule] = {}
+    if limits.joints is not None:
+        rule = _Rule("joints", limits.joints, table.in_role("joint targets"), limits.wider)
+        rules |= {"joint targets": rule, "joint target": rule}
+    if limits.coords is not None:
+        rule = _Rule("coords", limits.coords, table.in_role("coordinate targets"), limits.wider)
+        rules |= {"coordinate targets": rule, "coordinate target": rule}
+    commands = (
+        _command(command, rules[command.role]) if command.role in rules else command
+        for command in table.commands
+    )
+    return replace(table, commands=tuple(commands))
+
+
+class _Rule:
+    """The given ranges, and the names of the parts that they limit."""
+
+    def __init__(self, what: str, ranges: Ranges, row: Command, wider: bool) -> None:
+        self._what = what
+        self._wider = wider
+        self.names = [number.name for number in row.request[0].fields[0].cases[0].numbers]
+        allowed = f"{len(self.names)} ranges"
+        if isinstance(ranges, str) or not isinstance(ranges, Sequence):
+            raise UsageError(f"limits.{what}", ranges, allowed)
+        if len(ranges) != len(self.names):
+            raise UsageError(f"len(limits.{what})", len(ranges), allowed)
+        self._ranges = [self._checked(part, given) for part, given in enumerate(ranges)]
+
+    def number(self, part: int, number: Number) -> Number:
+        """Return a number of a target with the limits of its part."""
+        given = self._ranges[part]
+        if given is None:
+            return number
+        # Rounded inwards, so that no raw value outside the range is allowed.
+        lowest, highest = ceil(_raw(number, given[0])), floor(_raw(number, given[1]))
+        inside = number.raw_range if self._wider else (number.minimum, number.maximum)
+        if lowest < inside[0] or highest > inside[1] or lowest > highest:
+            low, high = (float(number.exact(bound)) for bound in inside)
+            why = (
+                "what the wire carries" if self._wider else "the edition's; wider=True allows more"
+            )
+            allowed = f"a range inside {low:g}..{high:g} {number.unit}, {why}"
+            raise UsageError(f"limits.{self._what}[{part}]", given, allowed)
+        return replace(number, minimum=lowest, maximum=highest)
+
+    def _checked(self, part: int, given: object) -> Range | None:
+        if given is None:
+            return None
+        pair = list(given) if isinstance(given, Sequence) and not isinstance(given, str) else []
+        if len(pair) == 2 and all(map(_is_number, pair)) and pair[0] <= pair[1]:
+            return pair[0], pair[1]
+        raise UsageError(f"limits.{self._what}[{part}]", given, "a pair (lowest, highest), or None")
+
+
+def _command(command: Command, rule: _Rule) -> Command:
+    narrow = _row if command.role in _ROWS else _single
+    return replace(command, request=tuple(narrow(variant, rule) for variant in command.request))
+
+
+_ROWS: tuple[Role, ...] = ("joint targets", "coordinate targets")
+
+
+def _row(variant: Variant, rule: _Rule) -> Variant:
+    """Limit a variant whose first field holds the targets of all parts."""
+    row, *rest = variant.fields
+    numbers = (rule.number(part, number) for part, number in enumerate(row.cases[0].numbers))
+    return Variant((replace(row, cases=(Case((), tuple(numbers)),)), *rest))
+
+
+def _single(variant: Variant, rule: _Rule) -> Variant:
+    """Limit a variant whose first field picks the part and whose second field is its target."""
+    picker, target, *rest = variant.fields
+    cases = []
+    for part, name in enumerate(rule.names):
+        value = _value_of(picker, name, part)
+        case = target.case(value)
+        assert case is not None, f"{name} has a case"
+        cases.append(Case((value,), (rule.number(part, case.numbers[0]),)))
+    return Variant((picker, replace(target, cases=tuple(cases), selector=0), *rest))
+
+
+def _value_of(picker: Field, name: str, part: int) -> int:
+    """Return the number that picks a part: that of its label, or counted from one."""
+    labels = [label.lower() for label in picker.labels]
+    return picker.choices[labels.index(name)] if name in labels else part + 1
+
+
+def _raw(number: Number, value: float) -> Fraction:
+    """Return the exact raw value of a decimal number as it was written: 0.1 is a tenth."""
+    return Fraction(str(value)) / number.exact(1)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)

@@ -1,0 +1,193 @@
+"""Load an edition's table from the ``edition.json`` that the generator wrote into its package."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import Any
+
+from cobotwire.protocol.table import (
+    Case,
+    Command,
+    Field,
+    FrameFormat,
+    Number,
+    ReadBack,
+    Table,
+    TextReply,
+    TextRequest,
+    Variant,
+)
+
+Record = dict[str, Any]
+VERSION = 2
+
+
+def load_table(package: str) -> Table:
+    """Return the table of a generated package, by the package's full name.
+
+    Raises:
+        ValueError: another version of cobotwire-gen made the package.
+    """
+    document = _document(package)
+    edition, frame = document["edition"], document["frame"]
+    reader = _Reader(document, package)
+    return Table(
+        edition["name"],
+        edition["title"],
+        edition["joints"],
+        frame["baudrate"],
+        FrameFormat(
+            bytes.fromhex(frame["header"]),
+            bytes.fromhex(frame.get("footer", "")),
+            frame["maximum_length"],
+            frame["check"],
+            tuple([value for _, value, _ in frame.get("addresses", ())]),
+        ),
+        tuple([reader.command(record) for record in document["commands"]]),
+    )
+
+
+def load_places(package: str) -> dict[str, str]:
+    """Return where the spec states each command: ``file:line``, and where a delta changed it."""
+    return {record["name"]: record["place"] for record in _document(package)["commands"]}
+
+
+def _document(package: str) -> Record:
+    """Return a package's ``edition.json``, also from inside a zip file."""
+    module = sys.modules[package]
+    path = os.path.join(os.path.dirname(str(module.__file__)), "edition.json")
+    loader: Any = module.__spec__ and module.__spec__.loader
+    document: Record = json.loads(loader.get_data(path))
+    if document["version"] != VERSION:
+        raise ValueError(
+            f"{path} has version {document['version']} of the format, not {VERSION}; "
+            "generate the package again"
+        )
+    return document
+
+
+class _Reader:
+    """Turns the document's records into the table's; equal parts are made once."""
+
+    def __init__(self, document: Record, package: str) -> None:
+        self._package = package
+        self._wires = {wire["name"]: wire for wire in document["wires"]}
+        self._types: dict[str, Record] = {}
+        self._numbers: dict[str, tuple[Number, ...]] = {}
+        for type in document["types"]:
+            self._types[type["name"]] = type
+        self._deadline = document["frame"]["deadline_ms"]
+
+    def command(self, record: Record) -> Command:
+        get = record.get
+        text, request_text, read_by = get("text"), get("request_text"), get("read_by")
+        return Command(
+            record["id"],
+            record["name"],
+            record["title"],
+            get("doc", ""),
+            record["family"],
+            record["safety"],
+            record["deadline_ms"],
+            self._variants(get("request", ([],))),
+            self._variants(get("reply", ())),
+            text and TextReply(*_affixes(text), text.get("silence_ms", 0), text.get("suffix", "")),
+            tuple(get("notes", ())),
+            get("ack", False),
+            request_text and TextRequest(*_affixes(request_text), request_text.get("suffix", "")),
+            get("role", ""),
+            read_by and ReadBack(read_by["query"], _tuples(read_by["fields"])),
+            _tuples(get("samples", ())),
+            tuple(get("agrees_with", ())),
+            self._package,
+        )
+
+    def _variants(self, records: list[list[Record]]) -> tuple[Variant, ...]:
+        return tuple([self._variant(fields) for fields in records])
+
+    def _variant(self, fields: list[Record]) -> Variant:
+        names = [field["name"] for field in fields]
+        return Variant(tuple([self._field(field, names) for field in fields]))
+
+    def _field(self, record: Record, names: list[str]) -> Field:
+        get = record.get
+        selector = get("selector", "")
+        types = get("cases") or (((), record["type"]),)
+        cases = tuple([Case(tuple(when), self._numbers_of(type)) for when, type in types])
+        first = self._type(types[0][1])
+        const, kind = get("const"), first["kind"]
+        choices: tuple[int, ...] = ()
+        labels: tuple[str, ...] = ()
+        if const is not None:
+            choices = (const,)
+        elif kind == "enum":
+            choices = tuple([value for _, value, _ in first["members"]])
+            labels = tuple([name for name, _, _ in first["members"]])
+        elif kind == "flag":
+            choices = (0, 1)
+        else:
+            choices = tuple(first.get("choices", ()))
+        return Field(
+            record["name"],
+            kind if kind in ("enum", "flag") else "number",
+            cases,
+            get("doc", ""),
+            kind == "value",
+            choices,
+            labels,
+            names.index(selector) if selector else -1,
+            "echo" in record,
+        )
+
+    def _type(self, reference: str | Record) -> Record:
+        return self._types[reference] if isinstance(reference, str) else reference
+
+    def _numbers_of(self, reference: str | Record) -> tuple[Number, ...]:
+        """Return a type's numbers in the order of the wire."""
+        if isinstance(reference, str) and reference in self._numbers:
+            return self._numbers[reference]
+        type = self._type(reference)
+        if type["kind"] == "value":
+            numbers = tuple([self._number(name, self._type(item)) for name, item in type["items"]])
+        else:
+            numbers = (self._number("", type),)
+        if isinstance(reference, str):
+            self._numbers[reference] = numbers
+        return numbers
+
+    def _number(self, name: str, type: Record) -> Number:
+        wire = type["wire"]
+        if isinstance(wire, str):
+            wire = self._wires[wire]
+        top = 256 ** wire["width"]
+        signed_at, get = wire["signed_at"], type.get
+        low, high = (signed_at + 1 - top if signed_at < top - 1 else 0), signed_at
+        kind = type["kind"]
+        if kind == "flag":
+            low, high = 0, 1
+        elif listed := [v for _, v, _ in type["members"]] if kind == "enum" else get("choices"):
+            low, high = min(listed), max(listed)
+        else:
+            low, high = get("minimum", low), get("maximum", high)
+        multiply, _, divide = str(get("scale", 1)).partition("/")
+        return Number(
+            name,
+            wire["width"],
+            wire["order"],
+            signed_at,
+            int(multiply),
+            int(divide or 1),
+            low,
+            high,
+            get("unit", ""),
+        )
+
+
+def _affixes(text: Record) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    return tuple(text["prefixes"]), tuple([name for name, _ in text["fields"]])
+
+
+def _tuples(value: Any) -> Any:
+    return tuple([_tuples(part) for part in value]) if isinstance(value, list | tuple) else value

@@ -1,0 +1,296 @@
+"""Messages as typed objects: a class for each command's request, and one for its reply.
+
+The generator writes these classes into an edition's ``messages.py``. For a table without a
+generated package, :mod:`cobotwire.protocol.made_messages` makes them from the table's records.
+
+A subclass names its fields by annotations, from which type checkers derive its constructor::
+
+    class GetEncoder(Request[int], command="get_encoder"):
+        joint: int
+
+    class GetEncoderReply(Reply[int], to=GetEncoder):
+        encoder: int
+
+Every client loads two hundred of these classes, so making one must take microseconds: neither
+``dataclasses`` nor the run-time part of ``typing.Generic`` is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    ClassVar,
+    Generic,
+    NoReturn,
+    Self,
+    TypeVar,
+    dataclass_transform,
+)
+
+from cobotwire.protocol.radians import to_degrees, to_radians
+
+Result = TypeVar("Result", covariant=True)
+
+
+@dataclass_transform(frozen_default=True)
+class Message:
+    """A request or a reply, with its fields as attributes.
+
+    Messages are immutable, and equal when type and fields are equal. A field that this variant of
+    the message leaves out is None.
+    """
+
+    command: ClassVar[str] = ""
+    """The name of the command."""
+
+    _names: ClassVar[tuple[str, ...]] = ()
+    # Names and constants in the order of the wire; empty where that is the order of declaration.
+    _wire: ClassVar[tuple[str | int, ...]] = ()
+    _radians: ClassVar[frozenset[str]] = frozenset()
+    _text: ClassVar[tuple[str, ...]] = ()
+    # Fields that hold several numbers.
+    _rows: ClassVar[tuple[str, ...]] = ()
+    # Whether the attributes are the values of the wire, one by one.
+    _direct: ClassVar[bool] = True
+    _converters: ClassVar[Mapping[str, Callable[[Any], Any]] | None] = None
+
+    @classmethod
+    def _declare(
+        cls,
+        wire: tuple[str | int, ...] = (),
+        radians: tuple[str, ...] = (),
+        text: tuple[str, ...] = (),
+    ) -> None:
+        """Note the fields of a class, and how they stand on the wire.
+
+        Args:
+            wire: field names and constants in the order of the wire, where it is not the order of
+                declaration.
+            radians: fields in radians, which the wire carries in degrees.
+            text: fields of text outside the frame.
+        """
+        annotations = cls.__annotations__
+        names = tuple(annotations)
+        cls._names = names
+        # Type checkers derive it from the annotations, and forbid to set it.
+        type.__setattr__(cls, "__match_args__", names)
+        cls._rows = tuple([name for name in names if annotations[name].startswith("Sequence")])
+        if wire or radians or text or (names and names[-1] in cls.__dict__):
+            cls._direct = False
+            cls._wire = wire or tuple([name for name in names if name not in text])
+            cls._radians = frozenset(radians)
+            cls._text = text
+
+    if not TYPE_CHECKING:
+
+        def __init__(self, *arguments: Any, **named: Any) -> None:
+            names = self._names
+            if named or len(arguments) != len(names):
+                arguments = _arranged(type(self), arguments, named)
+            fields = self.__dict__
+            fields.update(zip(names, arguments))
+            for name in self._rows:
+                # A list can change later, and has no hash.
+                if type(fields[name]) is list:
+                    fields[name] = tuple(fields[name])
+
+        def __setattr__(self, name: str, value: object) -> NoReturn:
+            raise AttributeError(f"{type(self).__name__} is immutable; {name} cannot be set")
+
+        def __delattr__(self, name: str) -> NoReturn:
+            raise AttributeError(f"{type(self).__name__} is immutable; {name} cannot be deleted")
+
+        def __class_getitem__(cls, result: object) -> type:
+            # Only type checkers need the result's type.
+            return cls
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any]) -> Self:
+        """Return the message with these fields, given as the codec decodes them.
+
+        Numbers become enum members, rows become named tuples, and degrees become radians, as the
+        class declares. Names that the class does not have are ignored.
+        """
+        converters = cls._converters
+        if converters is None:
+            cls._converters = converters = _converters_of(cls)
+        message = cls.__new__(cls)
+        own = message.__dict__
+        for name in cls._names:
+            value = fields.get(name)
+            if value is not None and name in converters:
+                value = converters[name](value)
+            own[name] = value
+        return message
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """The fields by name, as the codec encodes them; without those that are None."""
+        fields = {name: value for name, value in self.__dict__.items() if value is not None}
+        for name in self._radians & fields.keys():
+            fields[name] = to_degrees(fields[name])
+        return fields
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """The values of the frame in the order of the wire, as ``codec.encode`` takes them."""
+        raise NotImplementedError
+
+    def _wire_values(self) -> list[Any]:
+        own, radians = self.__dict__, self._radians
+        return [
+            part
+            if isinstance(part, int)
+            else to_degrees(own[part])
+            if part in radians
+            else own[part]
+            for part in self._wire
+        ]
+
+    @property
+    def text_values(self) -> dict[str, str]:
+        """The fields of text outside the frame, by name."""
+        return {name: self.__dict__[name] for name in self._text}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Message) or type(self) is not type(other):
+            return NotImplemented
+        return self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash((type(self), *self.__dict__.values()))
+
+    def __repr__(self) -> str:
+        shown = (f"{name}={value!r}" for name, value in self.__dict__.items() if value is not None)
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+
+class Request(Message, Generic[Result]):
+    """A message to the arm; ``Result`` is what the client's method for it returns."""
+
+    reply_type: ClassVar[type[Reply[Any]] | None] = None
+    """The class of the reply; None where nothing replies."""
+
+    def __init_subclass__(cls, *, command: str, **layout: Any) -> None:
+        """Note the command's name; ``layout`` is what :meth:`_declare` takes."""
+        cls._declare(**layout)
+        cls.command = command
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """The values of the frame in the order of the wire, as ``codec.encode`` takes them.
+
+        Optional arguments at the end that are None are left out; the codec rejects any other None.
+        """
+        if self._direct:
+            return tuple(self.__dict__.values())
+        values = self._wire_values()
+        while values and values[-1] is None:
+            values.pop()
+        return tuple(values)
+
+
+class Reply(Message, Generic[Result]):
+    """A message from the arm. Fields that every reply has come first; the others may be None."""
+
+    request_type: ClassVar[type[Request[Any]]]
+    """The class of the request that it replies to."""
+    _results: ClassVar[tuple[str, ...]] = ()
+    _result_type: ClassVar[Callable[..., Any] | None] = None
+
+    def __init_subclass__(
+        cls, *, to: type[Request[Any]], result: Callable[..., Any] | None = None, **layout: Any
+    ) -> None:
+        """Note the request's class, and what every message declares.
+
+        Args:
+            to: the class of the request.
+            result: the named tuple of the results, where there are several.
+            layout: what :meth:`_declare` takes.
+        """
+        cls._declare(**layout)
+        cls.command = to.command
+        cls.request_type = to
+        cls._results = tuple([name for name in cls._names if name not in cls.__dict__])
+        cls._result_type = result
+        to.reply_type = cls
+
+    @property
+    def result(self) -> Result:
+        """What the client's method returns."""
+        own, names, result_type = self.__dict__, self._results, self._result_type
+        found: Any = None
+        if result_type is not None:
+            found = result_type(*[own[name] for name in names])
+        elif names:
+            found = own[names[0]]
+        return found  # type: ignore[no-any-return]  # Result is the annotation of these fields
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """The values of the frame in the order of the wire, without fields that are None."""
+        if self._direct:
+            return tuple(self.__dict__.values())
+        return tuple([value for value in self._wire_values() if value is not None])
+
+
+def _arranged(
+    type: type[Message], arguments: tuple[Any, ...], named: Mapping[str, Any]
+) -> list[Any]:
+    """Return the arguments in the order of the fields.
+
+    Raises:
+        TypeError: an argument is missing, unknown, or given twice.
+    """
+    names = type._names
+    if len(arguments) > len(names):
+        raise TypeError(f"{type.__name__}() takes {len(names)} arguments, not {len(arguments)}")
+    given = dict(zip(names, arguments))
+    for name in named:
+        if name not in names:
+            raise TypeError(f"{type.__name__}() has no argument {name}")
+        if name in given:
+            raise TypeError(f"{type.__name__}() got its argument {name} twice")
+    given.update(named)
+    for name in names:
+        if name not in given:
+            if name not in type.__dict__:
+                raise TypeError(f"{type.__name__}() is missing its argument {name}")
+            given[name] = type.__dict__[name]
+    return [given[name] for name in names]
+
+
+def _converters_of(message: type[Message]) -> dict[str, Callable[[Any], Any]]:
+    """Return the functions that turn decoded values into what the class's annotations declare."""
+    from typing import get_args, get_type_hints
+
+    hints = get_type_hints(message)
+    found: dict[str, Callable[[Any], Any]] = {}
+    for name in message._names:
+        convert = next(filter(None, map(_converter, (hints[name], *get_args(hints[name])))), None)
+        if name in message._radians:
+            convert = _in_radians(convert)
+        if convert is not None:
+            found[name] = convert
+    return found
+
+
+def _converter(hint: object) -> Callable[[Any], Any] | None:
+    """Return the function that makes a value of an annotation out of a decoded one, if any."""
+    if not isinstance(hint, type):
+        return None
+    if issubclass(hint, tuple) and hasattr(hint, "_make"):
+        return hint._make  # type: ignore[no-any-return]
+    if hint is bool:
+        return bool
+    members = getattr(hint, "_value2member_map_", None)
+    # Where a selector decides the type, a number may belong to another type than the enum.
+    return None if members is None else lambda value: members.get(value, value)
+
+
+def _in_radians(convert: Callable[[Any], Any] | None) -> Callable[[Any], Any]:
+    if convert is None:
+        return to_radians
+    return lambda value: convert(to_radians(value))

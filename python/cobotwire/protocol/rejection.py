@@ -1,0 +1,148 @@
+"""The sentences of both codecs' errors, made from a few facts.
+
+A codec reports *where* and *what kind*. The sentence is made here, so the codecs cannot differ.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.fields import Case, Field, Number
+from cobotwire.protocol.frame_format import FrameFormat
+from cobotwire.protocol.table import Command, Direction, Table
+
+ValueFault = Literal["type", "not-finite", "range", "choice", "count"]
+FrameFault = Literal[
+    "no-header", "bad-address", "bad-length", "unknown-id", "bad-check", "truncated", "trailing"
+]
+
+
+def reject_direction(given: Any) -> UsageError:
+    """Return the error for a word that is not a direction."""
+    return UsageError("direction", given, "request or reply")
+
+
+def reject_variant(command: Command, direction: Direction, given: int) -> UsageError:
+    """Return the error for a number of values that no variant of the message has."""
+    argument = f"{command.name} {direction}"
+    variants = command.variants(direction)
+    if not variants:
+        message = f"{command.name} has no {direction} in a frame"
+        return UsageError(argument, given, message=message)
+    allowed = " or ".join(
+        [f"({', '.join([field.name for field in variant.fields])})" for variant in variants]
+    )
+    values = "1 value" if given == 1 else f"{given} values"
+    message = f"{values} given for the {argument}; it takes {allowed}"
+    return UsageError(argument, given, allowed, message=message)
+
+
+def reject_address(given: Any, addresses: tuple[int, ...]) -> UsageError:
+    """Return the error for an address byte that the frame format does not have."""
+    allowed = ", ".join(map(str, addresses)) or "None, because frames here have no address byte"
+    return UsageError("address", given, allowed)
+
+
+def reject_value(
+    field: Field, case: Case, element: int, fault: ValueFault, value: Any
+) -> UsageError:
+    """Return the error for a value that the field does not allow.
+
+    ``element`` is the index in a row of numbers; -1 is the field as a whole.
+    """
+    if element < 0:
+        if fault == "count":
+            # The elements may all be legal; what is wrong is how many there are.
+            return UsageError(f"len({field.name})", len(value), _elements(case))
+        allowed = _elements(case) if field.many else _allowed(field, case.numbers[0])
+        return UsageError(field.name, value, allowed)
+    number = case.numbers[element]
+    name = field.name
+    if field.many:
+        name += f".{number.name}" if number.name else f"[{element}]"
+    return UsageError(name, value, _allowed(field, number))
+
+
+def reject_raw(
+    command: Command, field: Field, case: Case, element: int, raw: int, offset: int, data: bytes
+) -> ProtocolError:
+    """Return the error for a raw value on the wire that the edition does not allow."""
+    number = case.numbers[element]
+    value, allowed = number.physical(raw), _allowed(field, number)
+    detail = f"{command.name}: {field.name} is {value}; allowed: {allowed}"
+    return ProtocolError("bad-value", offset, data, detail)
+
+
+def reject_frame(
+    table: Table, direction: Direction, fault: FrameFault, offset: int, data: bytes
+) -> ProtocolError:
+    """Return the error for bytes that are not exactly one legal frame."""
+    return ProtocolError(fault, offset, data, _frame_fault(table, direction, fault, data))
+
+
+def _frame_fault(table: Table, direction: Direction, fault: FrameFault, data: bytes) -> str:
+    frame = table.frame
+    at = frame.length_at
+    if fault == "no-header":
+        return f"the bytes do not start with the header {frame.header.hex(' ').upper()}"
+    if fault == "bad-address":
+        legal = ", ".join([f"{address:02X}" for address in frame.addresses])
+        return f"the address is {data[at - 1]:02X}; allowed: {legal}"
+    if fault == "truncated":
+        if len(data) <= at:
+            return "the bytes end before LEN"
+        missing = data[at] + frame.overhead - len(data)
+        return f"LEN is {data[at]:02X}, but the last {missing} byte(s) of the frame are missing"
+    if fault == "bad-length":
+        return _bad_length(table, direction, data)
+    if fault == "unknown-id":
+        return f"edition {table.edition} has no {direction} with id {data[at + 1]:02X}"
+    if fault == "bad-check":
+        return _bad_check(frame)
+    return f"LEN is {data[at]:02X}, but more bytes follow the end of the frame"
+
+
+def _bad_check(frame: FrameFormat) -> str:
+    if frame.check == "footer":
+        return f"the frame does not end with the footer {frame.footer.hex().upper()}"
+    return "the CRC is wrong" if frame.check == "crc16-modbus" else "the sum is wrong"
+
+
+def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
+    at = table.frame.length_at
+    id = data[at + 1] if len(data) > at + 1 else None
+    legal = {
+        table.frame.length(variant.size): command.name
+        for command in table.commands
+        for variant in command.variants(direction)
+        if command.id == id
+    }
+    if not legal:
+        return f"no {direction} of edition {table.edition} has LEN {data[at]:02X}"
+    name = next(iter(legal.values()))
+    lengths = " or ".join([f"{length:02X}" for length in sorted(legal)])
+    return f"LEN of the {direction} {id:02X} ({name}) is {data[at]:02X}; allowed: {lengths}"
+
+
+def _elements(case: Case) -> str:
+    names = [number.name for number in case.numbers]
+    text = f"a sequence of {len(names)} numbers"
+    return f"{text} ({', '.join(names)})" if all(names) else text
+
+
+def _allowed(field: Field, number: Number) -> str:
+    if field.kind == "flag":
+        return "True or False"
+    if field.labels:
+        return ", ".join([f"{label} ({raw})" for label, raw in zip(field.labels, field.choices)])
+    if field.choices:
+        return ", ".join(map(str, field.choices))
+    kind = "a number" if number.scaled else "a whole number"
+    unit = f" {number.unit}" if number.unit else ""
+    return f"{kind} {_bound(number, number.minimum)}..{_bound(number, number.maximum)}{unit}"
+
+
+def _bound(number: Number, raw: int) -> str:
+    exact = number.exact(raw)
+    return str(exact) if exact.denominator == 1 else str(float(exact))

@@ -1,0 +1,372 @@
+"""The exchange of requests and replies over one transport, shared by many callers.
+
+This is the session's state machine. It has no clock, thread or port: bytes and times go in, bytes
+and events come out, and clients differ only in how they wait.
+
+A request that has a reply passes through three states::
+
+    queued ──outgoing()──▶ waiting ──reply, error or deadline──▶ done
+       │                      │ ▲
+       │                      └─┘ outgoing(), for another attempt
+       └───────────────── give_up(), fail() ───────────────────▶ done
+
+Only one request waits at a time, since the protocol has no sequence numbers. The others queue in
+the order of submission; one that is held for an outstanding reply is overtaken. The deadline runs
+from the first sending, so that it measures the arm's silence and not the queue.
+
+One-way requests (settings, motion: whatever has no reply) take no turns. They are sent at once, and
+only once, also while another request waits.
+
+Ctrl-C can interrupt any step in a client's thread. So each step commits with a single assignment:
+``done`` ends a request, ``_last`` makes it the one that waits. What an interrupt leaves in the
+lists besides is skipped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Any
+
+from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame, Noise
+from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
+from cobotwire.session import outstanding
+from cobotwire.session.acks import Acks
+from cobotwire.session.echo import EchoDetector
+from cobotwire.session.events import (
+    AckReceived,
+    EchoReceived,
+    FrameEvent,
+    LateReply,
+    ReplyMatched,
+    ReplyRejected,
+    RequestExpired,
+    SessionEvent,
+    UnexpectedFrame,
+)
+from cobotwire.session.matching import repeats_arguments
+from cobotwire.session.pending import Pending, PendingAck, PendingRequest
+from cobotwire.session.policy import RetryPolicy
+from cobotwire.session.request import EncodedRequest, as_call
+
+# For how long received bytes are read before a request is sent, if they do not end.
+DRAIN_SECONDS = 0.05
+NOT_SENT = "more than can be read; a late reply may be among it"
+
+
+class Exchange:
+    """Requests that take turns, one-way requests, and the frames that come back."""
+
+    def __init__(self, codec: Codec) -> None:
+        self._codec = codec
+        self._framer = codec.framer("reply")
+        self._replying_ids = {c.id for c in codec.table.commands if c.answers}
+        self._received = 0
+        self._queue: list[PendingRequest] = []
+        # The request that was sent last; it waits for its reply unless it is done.
+        self._last: PendingRequest | None = None
+        self._pending_acks: list[PendingAck] = []
+        self._outstanding: list[outstanding.OutstandingReply] = []
+        self._acks = Acks()
+        self._echo = EchoDetector()
+
+    # What callers want.
+
+    def submit(
+        self, request: EncodedRequest, now: float, policy: RetryPolicy, wait: float | None = None
+    ) -> PendingRequest:
+        """Queue a request; ``wait`` is its deadline in seconds, None: that of the edition."""
+        pending = PendingRequest(request, wait, policy, now)
+        self._queue.append(pending)
+        return pending
+
+    def send_one_way(
+        self, request: EncodedRequest, now: float, ack_within: float | None = None
+    ) -> tuple[bytes, PendingAck | None]:
+        """Return the bytes of a one-way request, to be written now.
+
+        The second is there if ``ack_within`` says how many seconds its acknowledgement is waited
+        for, and the edition has one.
+        """
+        self._echo.sent_one_way(request, self._received)
+        pending = None
+        if request.command.ack:
+            ack = self._acks.expect(request, now, ack_within or 0.0, self._received)
+            if request.command.id in self._replying_ids:
+                self._expect_late_reply(request, ack.until)
+            if ack_within is not None:
+                pending = PendingAck(request, ack, now, now + ack_within)
+                self._pending_acks.append(pending)
+        return request.frame + request.text, pending
+
+    def give_up(self, pending: Pending) -> None:
+        """End a request whose caller waits no longer. A reply that still comes is late."""
+        if pending.done:
+            return
+        if isinstance(pending, PendingRequest):
+            self._expect_late_replies(pending, 0)
+        pending.cancel()
+        self._drop_done()
+
+    def fail(self, error: LinkError) -> None:
+        """End every request: the transport is gone."""
+        self.fail_waiting(error)
+        for pending in (*self._queue, *self._pending_acks):
+            if not pending.done:
+                pending.fail(error)
+        self._drop_done()
+
+    def fail_waiting(self, error: LinkError) -> None:
+        """End the request that waits: the bytes that :meth:`outgoing` gave were not written."""
+        waiting = self._waiting()
+        if waiting is not None:
+            self._expect_late_replies(waiting, 0)
+            waiting.fail(error)
+
+    # What the client's loop does.
+
+    def receive(self, data: bytes, now: float) -> list[SessionEvent]:
+        """Take received bytes; return what they are."""
+        self._received += len(data)
+        return self._sort(self._framer.feed(data), now)
+
+    def wake(self, now: float) -> list[SessionEvent]:
+        """Let time pass; return what ends by it. Receive first what has come by now."""
+        waiting = self._waiting()
+        events = self._end_wait(waiting, now) if waiting and waiting.ends_at <= now else []
+        for pending in self._pending_acks:
+            if pending.until <= now and not pending.done:
+                self._end_ack(pending, now)
+                self._drop_done()
+        return events
+
+    def idle_seconds(self, now: float) -> float | None:
+        """Return for how long nothing is to be done unless bytes come; None: without end."""
+        waiting = self._waiting()
+        if waiting is not None:
+            soonest, repeat_at = waiting.ends_at, self._repeat_at(waiting)
+            if repeat_at is not None and repeat_at < soonest:
+                soonest = repeat_at
+        else:
+            soonest = min([self._free_at(p, now) for p in self._queued()], default=inf)
+        for pending in self._pending_acks:
+            if pending.until < soonest and not pending.done:
+                soonest = pending.until
+        return None if soonest == inf else max(0.0, soonest - now)
+
+    def has_outgoing(self, now: float) -> bool:
+        """Return whether :meth:`outgoing` may have something to send."""
+        waiting = self._waiting()
+        if waiting is None:
+            return bool(self._queue)
+        repeat_at = self._repeat_at(waiting)
+        return repeat_at is not None and repeat_at <= now
+
+    def outgoing(self, now: float, drained: bool) -> bytes:
+        """Return the bytes of the request to be sent now, for the first time or again.
+
+        ``drained``: whether everything that has come by now was received. A request is sent on a
+        drained line, so that earlier bytes cannot pass for its reply.
+        """
+        waiting = self._waiting()
+        if waiting is not None:
+            return self._next_attempt(waiting, now)
+        for pending in self._queued():
+            if self._free_at(pending, now) <= now:
+                break
+        else:
+            return b""
+        if not drained:
+            # A line that brings more than can be read is never drained.
+            if pending.undrained(now) < DRAIN_SECONDS:
+                return b""
+            if outstanding.held_until(self._outstanding, pending.request) is not None:
+                self._refuse_to_send(pending, now)
+                return b""
+        if self._outstanding:
+            self._outstanding = outstanding.without_expired(self._outstanding, now)
+        self._echo.sent(pending.request, self._received)
+        pending.begin(now, self._received)
+        self._last = pending
+        self._queue.remove(pending)
+        return pending.request.frame
+
+    # Requests that are queued or wait.
+
+    def _waiting(self) -> PendingRequest | None:
+        last = self._last
+        return None if last is None or last.done else last
+
+    def _queued(self) -> list[PendingRequest]:
+        return [p for p in self._queue if not p.done and p is not self._last]
+
+    def _drop_done(self) -> None:
+        self._queue = [pending for pending in self._queue if not pending.done]
+        self._pending_acks = [pending for pending in self._pending_acks if not pending.done]
+
+    def _free_at(self, pending: PendingRequest, now: float) -> float:
+        """Return from when on no late reply can be mistaken for the request's."""
+        if not self._outstanding:
+            return now
+        held_until = outstanding.held_until(self._outstanding, pending.request)
+        return now if held_until is None else held_until
+
+    def _repeat_at(self, waiting: PendingRequest) -> float | None:
+        """Return when the request is to be sent again; not while its copy may be its reply."""
+        if waiting.candidate is not None and not self._echo.proven:
+            return None
+        return waiting.repeat_at
+
+    def _next_attempt(self, waiting: PendingRequest, now: float) -> bytes:
+        repeat_at = self._repeat_at(waiting)
+        if repeat_at is None or repeat_at > now:
+            return b""
+        self._echo.sent_again()
+        waiting.repeat(now)
+        return waiting.request.frame
+
+    def _refuse_to_send(self, pending: PendingRequest, now: float) -> None:
+        """End a request: the late reply that holds it may be among the bytes not read yet."""
+        request, waited = pending.request, now - pending.queued_at
+        call = as_call(request, self._codec)
+        pending.fail(ReplyTimeout(request.command.name, waited, (NOT_SENT,), 0, call))
+        self._drop_done()
+
+    def _expect_late_reply(self, request: EncodedRequest, until: float) -> None:
+        self._outstanding.append(outstanding.OutstandingReply(request, until))
+
+    def _expect_late_replies(self, pending: PendingRequest, replies: int) -> None:
+        """Expect a late reply to each attempt but as many as there were ``replies``."""
+        for sent_at in pending.attempt_times[replies:]:
+            self._expect_late_reply(pending.request, sent_at + pending.policy.grace)
+
+    # What ends a request.
+
+    def _reply(self, waiting: PendingRequest, fields: dict[str, Any], now: float) -> None:
+        if len(waiting.attempt_times) > 1:
+            self._expect_late_replies(waiting, 1)
+        waiting.reply(fields, now)
+
+    def _end_wait(self, waiting: PendingRequest, now: float) -> list[SessionEvent]:
+        """End the wait by silence after a text, by a copy that counts as reply, or by timeout."""
+        request = waiting.request
+        if waiting.text is not None and waiting.text.is_over(now):
+            # What waits in the framer came after the text, and does not belong to it.
+            try:
+                fields = waiting.text.decode()
+            except ProtocolError as error:
+                waiting.fail(error)
+                return [ReplyRejected(request.command, error)]
+            waiting.reply(fields, now)
+            return [ReplyMatched(request.command, fields, None)]
+        # The framer gives up what waits in it, so that a frame hidden after it still counts.
+        events = self._sort(self._framer.flush(), now)
+        if waiting.done or now < waiting.ends_at:
+            return events
+        candidate = waiting.candidate
+        if candidate is not None and not self._echo.proven:
+            self._reply(waiting, candidate.fields, now)
+            return [*events, ReplyMatched(request.command, candidate.fields, candidate)]
+        attempts, requested_at = len(waiting.attempt_times), waiting.requested_at
+        self._expect_late_replies(waiting, 0)
+        waiting.expire(self._codec, now - requested_at, attempts)
+        return [*events, RequestExpired(request.command, requested_at, attempts)]
+
+    def _end_ack(self, pending: PendingAck, now: float) -> None:
+        """End the wait for an acknowledgement: a copy counts, unless the line echoes."""
+        if self._acks.was_copied(pending.ack) and not self._echo.proven:
+            pending.succeed({})
+        else:
+            pending.expire(self._codec, now - pending.sent_at, 1)
+
+    # What received bytes are.
+
+    def _sort(self, received: Sequence[Event], now: float) -> list[SessionEvent]:
+        events: list[SessionEvent] = []
+        for event in received:
+            if isinstance(event, Noise):
+                self._take_noise(event, now)
+                events.append(event)
+            else:
+                events.append(self._match(event, now))
+        return events
+
+    def _take_noise(self, noise: Noise, now: float) -> None:
+        self._echo.add_noise(noise)
+        waiting = self._waiting()
+        if waiting is not None and waiting.text is not None:
+            # A text that began before the request was sent does not belong to it.
+            waiting.text.add(noise.data[max(0, waiting.offset - noise.offset) :], now)
+        self._note(noise)
+
+    def _match(self, frame: Frame, now: float) -> SessionEvent:
+        """Find out what a frame is; end the request that it replies to."""
+        is_copy = self._echo.take_copy(frame)
+        waiting = self._waiting()
+        if waiting is None or not waiting.accepts(frame):
+            return self._match_other(frame, now, is_copy)
+        request = waiting.request
+        try:
+            message = frame.decode("reply", of=request.command.name)
+        except ProtocolError as error:
+            return self._reject(waiting, frame, is_copy, error)
+        if is_copy:
+            return self._weigh_copy(waiting, frame, message)
+        if request.arguments and not repeats_arguments(message, request):
+            return self._match_other(frame, now, is_copy)
+        fields = message.fields
+        self._reply(waiting, fields, now)
+        return ReplyMatched(request.command, fields, message, frame)
+
+    def _match_other(self, frame: Frame, now: float, is_copy: bool) -> SessionEvent:
+        """Find out what a frame is that does not reply to the request that waits."""
+        late = outstanding.find(self._outstanding, frame)
+        if late is not None:
+            self._outstanding.remove(late)
+            if late.request.command.answers:
+                return self._note(LateReply(late.request.command, frame))
+        if is_copy:
+            self._acks.note_copy(frame)
+            return self._note(EchoReceived(frame))
+        acknowledged = self._acks.match(frame, now)
+        if acknowledged is None:
+            return self._note(UnexpectedFrame(frame))
+        for pending in self._pending_acks:
+            if self._acks.is_certain(pending.ack) and not pending.done:
+                pending.succeed({})
+        self._drop_done()
+        request, message = acknowledged
+        return AckReceived(request.command, message, frame)
+
+    def _weigh_copy(
+        self, waiting: PendingRequest, frame: Frame, message: DecodedMessage
+    ) -> SessionEvent:
+        """Keep a copy that can be the reply; one that cannot proves that the line echoes."""
+        if repeats_arguments(message, waiting.request):
+            waiting.keep_candidate(message)
+        else:
+            self._echo.prove()
+        return self._note(EchoReceived(frame))
+
+    def _reject(
+        self, waiting: PendingRequest, frame: Frame, is_copy: bool, error: ProtocolError
+    ) -> SessionEvent:
+        """End a request with a reply of illegal values, unless the frame is something else."""
+        if is_copy:
+            self._echo.prove()
+            return self._note(EchoReceived(frame))
+        if any(late.request.command.id == frame.command for late in self._outstanding):
+            return self._note(UnexpectedFrame(frame))
+        if len(waiting.attempt_times) > 1:
+            self._expect_late_replies(waiting, 1)
+        waiting.fail(error)
+        return ReplyRejected(waiting.request.command, error, frame)
+
+    def _note(self, event: FrameEvent | Noise) -> SessionEvent:
+        """Have everybody who waits remember an event, for the text of a timeout."""
+        waiting = self._waiting()
+        if waiting is not None:
+            waiting.note(event)
+        for pending in self._pending_acks:
+            pending.note(event)
+        return event

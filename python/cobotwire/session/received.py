@@ -1,0 +1,104 @@
+"""What was received while a reply was waited for, in words."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+
+from cobotwire.codec.interface import Codec, Event, Noise
+from cobotwire.session.events import EchoReceived, FrameEvent, LateReply
+
+# At most this many lines are kept, and this many bytes of each are shown.
+LINES = 20
+SHOWN = 24
+# At most this much of a span of noise is kept for its diagnosis: a panic dump has about 2.4 kB.
+KEPT = 4096
+
+
+class _NoiseSpan:
+    """Adjacent noise, with the reason of its first byte."""
+
+    __slots__ = ("data", "offset", "reason", "size")
+
+    def __init__(self, first: Noise) -> None:
+        self.offset, self.reason = first.offset, first.reason
+        self.data = bytearray()
+        self.size = 0
+
+    def add(self, data: bytes) -> None:
+        self.data += data[: KEPT - len(self.data)]
+        self.size += len(data)
+
+
+_Item = FrameEvent | _NoiseSpan
+
+
+class ReceivedMeanwhile:
+    """The last frames and spans of noise, for the text of a ReplyTimeout.
+
+    Noise is diagnosed only when the text is made: a request that gets its reply does not pay.
+    """
+
+    __slots__ = ("_items",)
+
+    def __init__(self) -> None:
+        self._items: deque[_Item] = deque(maxlen=LINES)
+
+    def add(self, event: FrameEvent | Noise) -> None:
+        """Note one event. Adjacent spans of noise become one."""
+        if not isinstance(event, Noise):
+            self._items.append(event)
+            return
+        last = self._items[-1] if self._items else None
+        if not isinstance(last, _NoiseSpan):
+            last = _NoiseSpan(event)
+            self._items.append(last)
+        last.add(event.data)
+
+    def lines(self, codec: Codec, request: bytes) -> tuple[str, ...]:
+        """Return a line for each item, oldest first; ``request`` are bytes the line may echo."""
+        diagnoses = _diagnoses(self._items, codec, request)
+        return tuple(
+            _noise_line(item, next(diagnoses))
+            if isinstance(item, _NoiseSpan)
+            else f"{_kind(item)} {_hex(item.frame.data, len(item.frame.data))}"
+            for item in self._items
+        )
+
+
+def _diagnoses(items: deque[_Item], codec: Codec, request: bytes) -> Iterator[str]:
+    """Yield for each span what begins in it, as a sentence; empty where nothing is recognised."""
+    # Imported here: most programs never need it.
+    from cobotwire.diagnose import Diagnoser, Finding, Summary, Unrecognised
+
+    diagnoser = Diagnoser(codec, "reply")
+    diagnoser.sent(request)
+    found = [*diagnoser.feed(_as_events(items)), *diagnoser.flush()]
+    findings = [i for i in found if isinstance(i, Finding) and not isinstance(i, Unrecognised)]
+    for span in (item for item in items if isinstance(item, _NoiseSpan)):
+        end = span.offset + span.size
+        yield str(Summary(f for f in findings if span.offset <= f.offset < end))
+
+
+def _as_events(items: deque[_Item]) -> Iterator[Event]:
+    for item in items:
+        if isinstance(item, _NoiseSpan):
+            yield Noise(item.offset, bytes(item.data), item.reason)
+        else:
+            yield item.frame
+
+
+def _noise_line(span: _NoiseSpan, diagnosis: str) -> str:
+    line = f"noise ({span.reason}) {_hex(span.data, span.size)}"
+    return f"{line}: {diagnosis}" if diagnosis else line
+
+
+def _kind(event: FrameEvent) -> str:
+    if isinstance(event, LateReply):
+        return f"late reply to {event.command.name}"
+    return "the request's own bytes" if isinstance(event, EchoReceived) else "frame"
+
+
+def _hex(data: bytes | bytearray, size: int) -> str:
+    rest = f" ... {size} bytes" if size > SHOWN else ""
+    return data[:SHOWN].hex(" ").upper() + rest

@@ -1,6 +1,0 @@
-"""The kinds of faults. Importing this registers them all."""
-
-from cobotwire.sim.faults.kinds import additions, controller, damage, loss, timing, wiring
-from cobotwire.sim.faults.registry import KINDS
-
-__all__ = ["KINDS", "additions", "controller", "damage", "loss", "timing", "wiring"]

@@ -1,0 +1,234 @@
+"""The simulated arm: one state and one clock, and a connection for each client."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from cobotwire import codec as codecs
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.messages import Reply
+from cobotwire.protocol.table import Command, Table
+from cobotwire.session import DeviceSession, RequestReceived, TextReceived
+from cobotwire.session.device import DeviceEvent
+from cobotwire.simulator.behaviour import BEHAVIOURS
+from cobotwire.simulator.kinematics import Geometry, geometry_of
+from cobotwire.simulator.replies import clamped, completed
+from cobotwire.simulator.state import ArmState
+
+# A joint's own limits lie within half a turn; wider ones are only what the wire can express.
+HALF_TURN = 180.0
+# An incomplete request is given up after this pause, so that the next request does not complete it.
+IDLE_SECONDS = 0.2
+NOTES_KEPT = 1000
+
+Clock = Callable[[], float]
+EventListener = Callable[[DeviceEvent, bytes], None]
+"""Takes an event of a connection and the bytes of the reply; empty: there is no reply."""
+
+
+class Note(NamedTuple):
+    """The reason why a command had no effect or waits; a real arm does not report it.
+
+    Attributes:
+        time: by the arm's clock, in seconds.
+        command: the name of the command.
+        text: the reason.
+    """
+
+    time: float
+    command: str
+    text: str
+
+
+class SimulatedArm:
+    """An arm that speaks an edition. Pass it your own clock to step its time.
+
+    The arm is a peer (:mod:`cobotwire.simulator.peer`) for one client; :meth:`connect` adds more.
+    """
+
+    def __init__(
+        self,
+        table: Table,
+        *,
+        clock: Clock = time.monotonic,
+        codec: codecs.CodecName | None = None,
+        on_event: EventListener | None = None,
+        acks: bool = True,
+        geometry: Geometry | None = None,
+        on_note: Callable[[Note], None] | None = None,
+    ) -> None:
+        """Create an arm that is powered off, with every joint at zero.
+
+        Args:
+            table: the edition that the arm speaks.
+            clock: returns the time in seconds.
+            codec: ``native`` or ``reference``; None: the default one.
+            on_event: called with everything that the arm receives, and with its reply.
+            acks: whether the arm sends the acknowledgements that the edition allows.
+            geometry: the lengths of the links; None: those of the arm that speaks this edition. If
+                they are not known either, the arm reports all coordinates as 0, rejects motions to
+                coordinates, and its joints do not snap to encoder ticks.
+            on_note: called with each new note; ``notes`` keeps the last 1000.
+        """
+        self.table = table
+        self.clock = clock
+        self.codec = codecs.load(table, codec)
+        self.acks = acks
+        self._on_event = on_event
+        self._on_note = on_note
+        self._notes: deque[Note] = deque(maxlen=NOTES_KEPT)
+        self._geometry = geometry or geometry_of(table)
+        self.state = self._new_state()
+        self._own_connection = ArmConnection(self, on_event)
+
+    def connect(self, on_event: EventListener | None = None) -> ArmConnection:
+        """Connect one more client: it shares the arm's state; its requests are parsed separately.
+
+        ``on_event`` is called with what this client sends; None: the arm's own listener is called.
+        """
+        return ArmConnection(self, on_event or self._on_event)
+
+    def restart(self) -> None:
+        """Lose all settings, as in a power cycle. The joints and the gripper keep their positions.
+
+        The arm counts its starts.
+        """
+        now, before = self.clock(), self.state
+        self.state = self._new_state()
+        self.state.angles.place(before.standing(now), now)
+        self.state.gripper.place(before.gripper.position(now), now)
+        self.state.starts = before.starts + 1
+        self._own_connection.reset()
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """The notes so far, the oldest first: at most 1000."""
+        return tuple(self._notes)
+
+    @property
+    def pending(self) -> int:
+        """The number of bytes of an incomplete request on the arm's own connection."""
+        return self._own_connection.pending
+
+    @property
+    def wait(self) -> float | None:
+        """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
+        return self._own_connection.wait
+
+    def receive(self, data: bytes) -> bytes:
+        """Receive ``data`` on the arm's own connection; return the replies."""
+        return self._own_connection.receive(data)
+
+    def flush(self) -> bytes:
+        """Give up an incomplete request on the arm's own connection; return the replies."""
+        return self._own_connection.flush()
+
+    def perform(self, command: Command, fields: Mapping[str, Any]) -> Reply[Any] | None:
+        """Perform a command; return the reply, None if the behaviour leaves it to the arm.
+
+        ``fields`` are those of the request, as the codec decodes them.
+        """
+        behaviour = BEHAVIOURS.get(command.name)
+        if behaviour is None:
+            return None
+        request = behaviour.request_type.from_fields(fields)
+        reply = behaviour.behave(self.state, self.clock(), request)
+        for text in self.state.remarks:
+            self.note(command, text)
+        self.state.remarks.clear()
+        return reply
+
+    def note(self, command: Command, text: str) -> None:
+        """Add a note."""
+        note = Note(self.clock(), command.name, text)
+        self._notes.append(note)
+        if self._on_note is not None:
+            self._on_note(note)
+
+    def _new_state(self) -> ArmState:
+        state = ArmState(self.table.joints, self._geometry)
+        for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
+            state.minimum[joint], state.maximum[joint] = lowest, highest
+        return state
+
+
+class ArmConnection:
+    """One client's connection to the arm: a peer that parses requests and encodes replies."""
+
+    def __init__(self, arm: SimulatedArm, on_event: EventListener | None) -> None:
+        self._arm = arm
+        self._on_event = on_event
+        self.reset()
+
+    @property
+    def pending(self) -> int:
+        """The number of bytes of an incomplete request."""
+        return self._session.pending
+
+    @property
+    def wait(self) -> float | None:
+        """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
+        return IDLE_SECONDS if self.pending else None
+
+    def receive(self, data: bytes) -> bytes:
+        """Receive ``data``; return the replies."""
+        return self._handle_all(self._session.receive(data))
+
+    def flush(self) -> bytes:
+        """Give up an incomplete request, because nothing more has come; return the replies."""
+        return self._handle_all(self._session.flush())
+
+    def restart(self) -> None:
+        """Restart the arm, and forget an incomplete request of this client."""
+        self._arm.restart()
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget an incomplete request."""
+        self._session = DeviceSession(self._arm.codec)
+
+    def _handle_all(self, events: list[DeviceEvent]) -> bytes:
+        replies = b""
+        for event in events:
+            reply = self._handle(event)
+            if self._on_event is not None:
+                self._on_event(event, reply)
+            replies += reply
+        return replies
+
+    def _handle(self, event: DeviceEvent) -> bytes:
+        if isinstance(event, RequestReceived):
+            return self._reply_to(event)
+        if isinstance(event, TextReceived):
+            self._arm.perform(event.command, event.fields)
+        # The document has no error reply: noise and malformed requests get none.
+        return b""
+
+    def _reply_to(self, received: RequestReceived) -> bytes:
+        command, given = received.message.command, received.message.fields
+        # A command with a text after its frame is performed once the text is complete.
+        performed = command.request_text is None
+        reply = self._arm.perform(command, given) if performed else None
+        if not command.answers and not (command.ack and self._arm.acks):
+            return b""
+        result = {} if reply is None else reply.fields
+        fields = completed(command, given, result)
+        try:
+            return self._session.encode_reply(command.name, fields)
+        except UsageError:
+            # The wire has no value for a distant pose, or for some limits.
+            self._arm.note(command, "replied with the nearest value that the wire can express")
+            return self._session.encode_reply(command.name, clamped(command, result, fields))
+
+
+def _joint_limits(table: Table) -> list[tuple[float, float]]:
+    """Return the edition's limits of each joint; empty if it states only the wire's."""
+    for command in table.commands:
+        if command.role == "joint targets":
+            numbers = command.request[0].fields[0].cases[0].numbers
+            limits = [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
+            return limits if all(high <= HALF_TURN for _, high in limits) else []
+    return []

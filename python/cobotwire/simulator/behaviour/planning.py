@@ -1,0 +1,103 @@
+"""Motion and kinematics of newer firmware, and where a motion will end."""
+
+from __future__ import annotations
+
+from cobotwire.editions.mycobot280.messages import (
+    AnglesToCoords,
+    AnglesToCoordsReply,
+    ClearQueue,
+    FocusAllServos,
+    GetAnglesCoords,
+    GetAnglesCoordsReply,
+    GetAnglesPlan,
+    GetAnglesPlanReply,
+    GetCoordsPlan,
+    GetCoordsPlanReply,
+    JogIncrementCoord,
+    SetEncodersDrag,
+    SolveInvKinematics,
+    SolveInvKinematicsReply,
+)
+from cobotwire.simulator.behaviour.motion import moves_straight
+from cobotwire.simulator.behaviour.registry import behaviour, row
+from cobotwire.simulator.kinematics import Pose
+from cobotwire.simulator.state import ArmState
+from cobotwire.simulator.targets import go_to_angles, go_to_coords, solve
+
+# The speed at which the simulated arm moves to each recorded point, in percent.
+DRAG_SPEED = 50
+
+
+@behaviour(ClearQueue)
+def clear_queue(arm: ArmState, now: float, request: ClearQueue) -> None:
+    """Forget the waiting targets. The sources define no more, so the present motion continues."""
+    arm.angles.forget(now)
+
+
+@behaviour(GetAnglesPlan)
+def get_angles_plan(arm: ArmState, now: float, request: GetAnglesPlan) -> GetAnglesPlanReply:
+    """Reply with the angles at the end of all motion."""
+    return GetAnglesPlanReply(angles=row(arm.reported_angles(arm.angles.target(now))))
+
+
+@behaviour(GetCoordsPlan)
+def get_coords_plan(arm: ArmState, now: float, request: GetCoordsPlan) -> GetCoordsPlanReply | None:
+    """Reply with the end's coordinates at the end of all motion, in the frame of the base."""
+    coords = arm.reported_coords(arm.angles.target(now), base=True)
+    return None if coords is None else GetCoordsPlanReply(coords=row(coords))
+
+
+@behaviour(GetAnglesCoords)
+def get_angles_coords(arm: ArmState, now: float, request: GetAnglesCoords) -> GetAnglesCoordsReply:
+    """Reply with the angles of the joints and the end's coordinates."""
+    standing = arm.standing(now)
+    coords = arm.reported_coords(standing) or (0.0,) * 6
+    return GetAnglesCoordsReply(angles=row(arm.reported_angles(standing)), coords=row(coords))
+
+
+@behaviour(AnglesToCoords)
+def angles_to_coords(
+    arm: ArmState, now: float, request: AnglesToCoords
+) -> AnglesToCoordsReply | None:
+    """Reply where the end would be, in the frame and for the end type that are set.
+
+    Joints rest on ticks: for the angles of get_angles, the reply equals that of get_coords.
+    """
+    coords = arm.reported_coords(arm.on_ticks(tuple(request.angles)))
+    return None if coords is None else AnglesToCoordsReply(coords=row(coords))
+
+
+@behaviour(SolveInvKinematics)
+def solve_inv_kinematics(
+    arm: ArmState, now: float, request: SolveInvKinematics
+) -> SolveInvKinematicsReply:
+    """Reply with angles for an end, near the given angles.
+
+    No source defines the reply without a solution; this arm returns the given angles and sets an
+    error.
+    """
+    near = tuple(request.angles)
+    found = solve(arm, Pose.of(request.coords), near) if arm.geometry else None
+    return SolveInvKinematicsReply(angles=row(near if found is None else found))
+
+
+@behaviour(JogIncrementCoord)
+def jog_increment_coord(arm: ArmState, now: float, request: JogIncrementCoord) -> None:
+    """Move the end along or about an axis by a step from its target."""
+    end = arm.end(arm.angles.target(now))
+    target = list(end.coords) if end else [0.0] * 6
+    target[request.axis - 1] += request.increment
+    go_to_coords(arm, target, request.speed, now, straight=moves_straight(arm))
+
+
+@behaviour(SetEncodersDrag)
+def set_encoders_drag(arm: ArmState, now: float, request: SetEncodersDrag) -> None:
+    """Move all servos to a recorded point."""
+    target = tuple(arm.angle_at(joint, tick) for joint, tick in enumerate(request.encoders))
+    go_to_angles(arm, target, DRAG_SPEED if any(request.speeds) else 0, now)
+
+
+@behaviour(FocusAllServos)
+def focus_all_servos(arm: ArmState, now: float, request: FocusAllServos) -> None:
+    """Hold every joint."""
+    arm.enabled = [arm.powered] * arm.joints

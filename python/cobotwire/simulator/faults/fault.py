@@ -1,0 +1,176 @@
+"""The base classes of faults: their conditions, and what they do to requests and replies."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, fields
+from random import Random
+from typing import ClassVar, Literal
+
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import FrameFormat, Table
+from cobotwire.simulator.faults.exchange import Reply, Request, joined, recut
+from cobotwire.simulator.faults.faulty_connection import FaultyConnection
+from cobotwire.simulator.faults.rules import (
+    LONGEST_SECONDS,
+    RULE,
+    SECONDS,
+    SHARE,
+    Several,
+    command,
+    integer,
+    one_of,
+    optional,
+    ruled,
+)
+
+Only = Literal["requests", "replies", "acknowledgements", "malformed input"]
+ONLY = ("requests", "replies", "acknowledgements", "malformed input")
+"""Any legal request; one that a reply is due to; one that is acknowledged; anything else."""
+
+COUNT = integer(1, 1_000_000)
+
+
+class Moment:
+    """A request to which a fault is applied, and what the fault may use.
+
+    Attributes:
+        request: what was received.
+        random: the source of random numbers, repeatable by the seed.
+        connection: the state that outlasts the request.
+        table: the edition.
+        delay: the delay of the reply, in seconds.
+        number: the number of the request, if its reply is reported when it has been sent.
+    """
+
+    def __init__(
+        self,
+        request: Request,
+        random: Random,
+        connection: FaultyConnection,
+        table: Table,
+        number: int | None = None,
+    ) -> None:
+        self.request = request
+        self.random = random
+        self.connection = connection
+        self.table = table
+        self.number = number
+        self.delay = 0.0
+        self._details: list[str] = []
+        self._moved = 0
+
+    @property
+    def frame(self) -> FrameFormat:
+        """How the edition builds frames."""
+        return self.table.frame
+
+    def report(self, detail: str) -> None:
+        """Report what the fault did."""
+        self._details.append(detail)
+
+    def put_later(self, seconds: float, reply: Reply) -> None:
+        """Send another reply after ``seconds``."""
+        self._moved += len(joined(reply))
+        self.connection.put(reply, seconds)
+
+    def hold(self, seconds: float, reply: Reply) -> bool:
+        """Hold a reply back until the next one; False: another is held, and goes with this one."""
+        if self.connection.outlet.holds:
+            return False
+        self._moved += len(joined(reply))
+        self.connection.hold(seconds, reply, self.number)
+        return True
+
+    def drop_unsent(self) -> int:
+        """Discard all unsent replies; return their number of bytes."""
+        lost = self.connection.outlet.drop()
+        self._moved -= lost
+        return lost
+
+    def take_report(self) -> tuple[str, int]:
+        """Return what was reported since the last call, and how many bytes were moved."""
+        report = "; ".join(self._details), self._moved
+        self._details, self._moved = [], 0
+        return report
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fault:
+    """Something that goes wrong.
+
+    The fields are the keys of a scenario file. A request must meet all conditions that are given.
+
+    Attributes:
+        commands: only these commands, by name or by id; empty: any command.
+        only: only this kind of request; see ``ONLY``.
+        nth: only the first, second ... of them, counted from 1; empty: each.
+        every: 2: every second of them; 3: every third.
+        first: with ``every``: the first of them to count from; None: the same as ``every``.
+        probability: 0 never, 1 always.
+        from_seconds: not before this time, counted from the beginning of the scenario.
+        until_seconds: not at this time or later.
+
+    Raises:
+        UsageError: a field has a value that is not allowed.
+    """
+
+    kind: ClassVar[str] = ""
+    # Whether the fault does something only where there is a reply.
+    wants_reply: ClassVar[bool] = True
+    # Whether the fault is applied to all of malformed input or of a text, in whatever pieces.
+    goes_on: ClassVar[bool] = False
+
+    commands: tuple[str | int, ...] = ruled(Several(command), ())
+    only: Only = ruled(one_of(ONLY), "requests")
+    nth: tuple[int, ...] = ruled(Several(COUNT), ())
+    every: int = ruled(COUNT, 1)
+    first: int | None = ruled(optional(COUNT), None)
+    probability: float = ruled(SHARE, 1.0)
+    from_seconds: float = ruled(SECONDS, 0.0)
+    until_seconds: float | None = ruled(optional(SECONDS), None)
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            try:
+                kept = field.metadata[RULE](value)
+            except ValueError as error:
+                raise UsageError(f"{self.kind}.{field.name}", value, str(error)) from None
+            object.__setattr__(self, field.name, kept)
+        if self.until_seconds is not None and self.until_seconds <= self.from_seconds:
+            allowed = f"more than from_seconds, {self.from_seconds:g}, up to {LONGEST_SECONDS:g}"
+            raise UsageError(f"{self.kind}.until_seconds", self.until_seconds, allowed)
+
+    def change_request(self, data: bytes, moment: Moment) -> bytes:
+        """Return what the arm receives of a request."""
+        return data
+
+    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+        """Return what the host receives of a reply."""
+        return reply
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Damage(Fault, ABC):
+    """A fault that changes bytes: those of the reply, or those of the request.
+
+    Attributes:
+        of: which of the two.
+    """
+
+    of: Literal["reply", "request"] = ruled(one_of(("reply", "request")), "reply")
+
+    @abstractmethod
+    def spoil(self, data: bytes, moment: Moment) -> bytes:
+        """Return the damaged bytes; there is at least one byte to damage."""
+
+    def change_request(self, data: bytes, moment: Moment) -> bytes:
+        """Damage the request, if the fault is one of requests."""
+        return self.spoil(data, moment) if self.of == "request" else data
+
+    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+        """Damage the reply, if the fault is one of replies."""
+        if self.of == "request":
+            return reply
+        return recut(reply, self.spoil(joined(reply), moment))

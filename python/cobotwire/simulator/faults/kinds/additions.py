@@ -1,0 +1,195 @@
+"""Faults that lose nothing, but add bytes that the arm did not send."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Literal
+
+from cobotwire.simulator.faults.exchange import Piece, Reply, enlarged, joined
+from cobotwire.simulator.faults.fault import ONLY, Damage, Fault, Moment, Only
+from cobotwire.simulator.faults.noise import COMMAND_ERROR, LEAKS, NOISE, mixed_noise
+from cobotwire.simulator.faults.registry import kind
+from cobotwire.simulator.faults.rules import (
+    SECONDS,
+    Several,
+    integer,
+    one_of,
+    optional,
+    pairs_of_hex,
+    ruled,
+)
+
+Where = Literal["before", "inside", "after"]
+TIMES = integer(1, 1000)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Addition(Damage):
+    """Bytes are added.
+
+    Attributes:
+        where: before the reply, after it, or inside, which breaks it.
+        after_bytes: with ``inside``, the number of bytes before them; None: drawn.
+        times: how many times, without a pause.
+    """
+
+    where: Where = ruled(one_of(("before", "inside", "after")), "before")
+    after_bytes: int | None = ruled(optional(integer(1, 4096)), None)
+    times: int = ruled(TIMES, 1)
+
+    @abstractmethod
+    def drawn(self, moment: Moment) -> bytes:
+        """Return the bytes to add once."""
+
+    def spoil(self, data: bytes, moment: Moment) -> bytes:
+        """Add the bytes; ``inside`` data that is too short, they are added after it."""
+        cut, added = self._addition(len(data), moment)
+        return data[:cut] + added + data[cut:]
+
+    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+        """Add the bytes to a reply; its pauses stay where they are."""
+        if self.of == "request":
+            return reply
+        return enlarged(reply, *self._addition(len(joined(reply)), moment))
+
+    def _addition(self, size: int, moment: Moment) -> tuple[int, bytes]:
+        """Return after how many of ``size`` bytes to add, and the bytes to add."""
+        added = b"".join(self.drawn(moment) for _ in range(self.times))
+        cut = {"before": 0, "after": size}.get(self.where, self.after_bytes or 0)
+        if self.where == "inside" and not cut and size > 1:
+            cut = moment.random.randrange(1, size)
+        shown = added.hex(" ").upper() if len(added) <= 32 else f"{len(added)} bytes"
+        moment.report(f"{shown} {self.where} the {self.of}")
+        return min(cut, size), added
+
+
+@kind("inserted")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inserted(Addition):
+    """Bytes of your choice are added: another command's frame, another program's request.
+
+    Attributes:
+        data: the bytes.
+    """
+
+    data: bytes = ruled(pairs_of_hex, b"\x00")
+
+    def drawn(self, moment: Moment) -> bytes:
+        """Return the bytes as they are."""
+        return self.data
+
+
+@kind("noise")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Noise(Addition):
+    """Noise of the catalogue is added, also where nothing is replied.
+
+    Attributes:
+        classes: which classes of noise, each equally often; empty: all, by their weights.
+    """
+
+    wants_reply = False
+
+    classes: tuple[str, ...] = ruled(Several(one_of(NOISE)), ())
+
+    def drawn(self, moment: Moment) -> bytes:
+        """Draw a piece of noise."""
+        if not self.classes:
+            return mixed_noise(moment.random, moment.table)
+        return NOISE[moment.random.choice(self.classes)].draw(moment.random, moment.table)
+
+    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+        """Add the noise; without a reply, send it alone."""
+        if reply or self.of == "request":
+            # Not super(): a dataclass with slots is a new class, which super() does not know.
+            return Addition.change_reply(self, reply, moment)
+        return (Piece(0.0, self._addition(0, moment)[1]),)
+
+
+@kind("servo-leak")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServoLeak(Addition):
+    """Packets of the servo bus are added, as they were seen on real lines.
+
+    Attributes:
+        packets: which ones; of several, one is drawn each time.
+    """
+
+    packets: tuple[str, ...] = ruled(Several(one_of(LEAKS)), tuple(LEAKS))
+
+    def drawn(self, moment: Moment) -> bytes:
+        """Draw one of the packets."""
+        return LEAKS[moment.random.choice(self.packets)]
+
+
+@kind("command-error")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandError(Fault):
+    """The firmware replies ``cmd_len error``; to malformed input, if ``only`` is left out.
+
+    Attributes:
+        times: how many times.
+        seconds: the pause between two of them, and before the reply, which follows.
+    """
+
+    wants_reply = False
+
+    only: Only = ruled(one_of(ONLY), "malformed input")
+    times: int = ruled(TIMES, 1)
+    seconds: float = ruled(SECONDS, 0.0)
+
+    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+        """Send the text before the reply, if there is one."""
+        moment.report(f"{COMMAND_ERROR.decode().strip()}, {self.times} times")
+        texts = tuple(Piece(self.seconds if n else 0.0, COMMAND_ERROR) for n in range(self.times))
+        return _followed_by(texts, self.seconds, reply)
+
+
+@kind("duplicated")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Duplicated(Fault):
+    """The reply is sent twice.
+
+    Attributes:
+        seconds: how much later the copy comes; 0: in one piece with the reply. Other replies may
+            come between them.
+    """
+
+    seconds: float = ruled(SECONDS, 0.0)
+
+    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+        """Send the reply twice."""
+        moment.report(f"again after {self.seconds:g} s")
+        if self.seconds:
+            moment.put_later(self.seconds, reply)
+            return reply
+        return (*reply[:-1], Piece(reply[-1].pause, reply[-1].data + joined(reply)))
+
+
+@kind("echo")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Echo(Fault):
+    """The host's own bytes come back before the reply.
+
+    Attributes:
+        seconds: the pause between the echo and the reply.
+    """
+
+    wants_reply = False
+    goes_on = True
+
+    seconds: float = ruled(SECONDS, 0.0)
+
+    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+        """Send the request, then the reply."""
+        moment.report(f"{len(moment.request.data)} bytes of the host come back")
+        return _followed_by((Piece(0.0, moment.request.data),), self.seconds, reply)
+
+
+def _followed_by(first: Reply, pause: float, reply: Reply) -> Reply:
+    """Return two replies as one; without a pause they are in one piece."""
+    if reply and not pause + reply[0].pause:
+        glued = Piece(first[-1].pause, first[-1].data + reply[0].data)
+        return (*first[:-1], glued, *reply[1:])
+    return (*first, *(Piece(pause + p.pause if p is reply[0] else p.pause, p.data) for p in reply))

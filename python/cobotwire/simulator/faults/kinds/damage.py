@@ -1,0 +1,98 @@
+"""Faults that change bytes into others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cobotwire.simulator.faults.fault import Damage, Moment
+from cobotwire.simulator.faults.registry import kind
+from cobotwire.simulator.faults.rules import integer, optional, pairs_of_hex, ruled
+
+
+@kind("corrupted")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Corrupted(Damage):
+    """Bits are flipped.
+
+    Attributes:
+        bits: how many, each at another place.
+        byte: which byte has them all: counted from 0, or from the end if negative; None: any bytes.
+    """
+
+    bits: int = ruled(integer(1, 64), 1)
+    byte: int | None = ruled(optional(integer(-4096, 4095)), None)
+
+    def spoil(self, data: bytes, moment: Moment) -> bytes:
+        """Flip the bits; without that byte, change nothing."""
+        places = range(8 * len(data))
+        if self.byte is not None:
+            places = range(8 * (self.byte % len(data)), 8 * (self.byte % len(data)) + 8)
+            if not -len(data) <= self.byte < len(data):
+                return data
+        chosen = sorted(moment.random.sample(places, min(self.bits, len(places))))
+        spoilt = bytearray(data)
+        for place in chosen:
+            spoilt[place // 8] ^= 1 << place % 8
+        flipped = ", ".join(f"bit {place % 8} of byte {place // 8}" for place in chosen)
+        moment.report(f"{flipped} of the {self.of} flipped")
+        return bytes(spoilt)
+
+
+@kind("wrong-length")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WrongLength(Damage):
+    """The frame's LEN is wrong.
+
+    Attributes:
+        by: how much larger it is than the right one; negative: smaller.
+    """
+
+    by: int = ruled(integer(-255, 255), 1)
+
+    def spoil(self, data: bytes, moment: Moment) -> bytes:
+        """Change LEN of the first frame."""
+        at = moment.frame.length_at
+        if not data.startswith(moment.frame.header) or len(data) <= at:
+            return data
+        wrong = (data[at] + self.by) & 0xFF
+        moment.report(f"LEN {wrong} in place of {data[at]}")
+        return data[:at] + bytes([wrong]) + data[at + 1 :]
+
+
+@kind("wrong-id")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WrongId(Damage):
+    """The frame has another command's id.
+
+    Attributes:
+        id: which id; None: any other, at random.
+    """
+
+    id: int | None = ruled(optional(integer(0, 0xFF)), None)
+
+    def spoil(self, data: bytes, moment: Moment) -> bytes:
+        """Change the id of the first frame."""
+        at = moment.frame.overhead
+        if not data.startswith(moment.frame.header) or len(data) <= at:
+            return data
+        other = (data[at] + moment.random.randrange(1, 0x100)) & 0xFF
+        wrong = other if self.id is None else self.id
+        moment.report(f"id 0x{wrong:02X} in place of 0x{data[at]:02X}")
+        return data[:at] + bytes([wrong]) + data[at + 1 :]
+
+
+@kind("replaced")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replaced(Damage):
+    """Other bytes come instead.
+
+    Attributes:
+        by: the other bytes.
+    """
+
+    by: bytes = ruled(pairs_of_hex, b"\xfe\xfe\x03\x12\x01\xfa")
+
+    def spoil(self, data: bytes, moment: Moment) -> bytes:
+        """Return the other bytes."""
+        moment.report(f"{self.by.hex(' ').upper()} in place of the {self.of}")
+        return self.by

@@ -1,0 +1,26 @@
+"""The interface of what a server serves: bytes in, bytes out, on the peer's own clock."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class PeerDisconnected(Exception):
+    """Raised by a peer that disappears; whatever serves it closes the connection."""
+
+
+class Peer(Protocol):
+    """Something that replies: bytes in, bytes out. It reads its own clock."""
+
+    @property
+    def wait(self) -> float | None:
+        """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
+        ...
+
+    def receive(self, data: bytes) -> bytes:
+        """Receive ``data``; return what is to be sent at once."""
+        ...
+
+    def flush(self) -> bytes:
+        """Return what is to be sent now, without new data."""
+        ...

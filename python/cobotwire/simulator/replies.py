@@ -1,0 +1,64 @@
+"""Complete a behaviour's reply, and move its values into the range that the wire can express."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from cobotwire.protocol.table import Command, Field, Number, Variant
+
+
+def completed(
+    command: Command, request: Mapping[str, Any], result: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return all fields of a reply: the result, echoes of the request, and what is usual.
+
+    Args:
+        command: the command.
+        request: the fields of the request.
+        result: the fields of the reply that the behaviour states.
+    """
+    if command.text is not None:
+        return {name: result.get(name, "") for name in command.text.fields}
+    # An acknowledgement reports 1: done.
+    usual = 1 if command.ack else 0
+    return {
+        field.name: request[field.name]
+        if field.echo
+        else result.get(field.name, _legal(field, usual))
+        for field in _variant(command, result).fields
+    }
+
+
+def clamped(
+    command: Command, result: Mapping[str, Any], fields: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the fields of a reply, with each number inside the range that the edition allows."""
+    kept = dict(fields)
+    for field in _variant(command, result).fields:
+        row = fields[field.name] if field.many else (fields[field.name],)
+        values = tuple(_inside(number, value) for number, value in zip(field.cases[0].numbers, row))
+        if not field.echo:
+            kept[field.name] = values if field.many else values[0]
+    return kept
+
+
+def _inside(number: Number, value: Any) -> Any:
+    return min(max(value, number.physical(number.minimum)), number.physical(number.maximum))
+
+
+def _variant(command: Command, result: Mapping[str, Any]) -> Variant:
+    """Return the first variant of the reply that has all fields of the result."""
+    for variant in command.reply:
+        if set(result) <= {field.name for field in variant.fields}:
+            return variant
+    return command.reply[0]
+
+
+def _legal(field: Field, usual: int) -> Any:
+    """Return the legal value that is nearest to the usual one."""
+    values = [
+        number.physical(field.choices[0] if field.choices else number.clamp(usual))
+        for number in field.cases[0].numbers
+    ]
+    return values if field.many else values[0]

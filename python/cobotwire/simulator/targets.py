@@ -1,0 +1,216 @@
+"""Targets: how the arm moves to them, and when it rejects them.
+
+A command that the arm rejects or ignores is acknowledged like any other, because the real arm does
+not report it either. The reason becomes a note; newer firmware reports its number as the last
+error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+
+from cobotwire.simulator.kinematics import Pose, nearest
+from cobotwire.simulator.kinematics.straight import straight_line
+from cobotwire.simulator.kinematics.ticks import on_tick
+from cobotwire.simulator.state import (
+    DEGREES_PER_SECOND,
+    FASTEST,
+    OPENING_PER_SECOND,
+    ArmState,
+)
+
+# Errors of get_error_information; 1 to 6 are joints beyond their limits.
+NO_SOLUTION, NO_STRAIGHT_LINE = 32, 33
+# A straight line is solved at points that are at most this far apart.
+STEP_MILLIMETRES, STEP_DEGREES = 5.0, 2.0
+# A joint that would turn more than this between two such points cannot follow, in degrees.
+LARGEST_TURN = 30.0
+# One turn in steps of two degrees; in steps of five millimetres, beyond any reach.
+JOG_STEPS = 181
+
+Point = tuple[float, ...]
+
+
+def rate(speed: int) -> float:
+    """Return degrees per second for a speed in percent."""
+    return min(DEGREES_PER_SECOND * speed, FASTEST)
+
+
+def reject(arm: ArmState, why: str, error: int = 0) -> bool:
+    """Note why a command is rejected or ignored; return False."""
+    arm.remarks.append(why)
+    arm.settings.error = error or arm.settings.error
+    return False
+
+
+def may_move(arm: ArmState, speed: int) -> bool:
+    """Return whether the arm obeys a motion now: it is powered, held, and not stopped."""
+    if not arm.powered:
+        return reject(arm, "ignored: the arm has no power")
+    if arm.free or not all(arm.enabled):
+        return reject(arm, "ignored: not every joint is held")
+    if arm.stopped:
+        return reject(arm, "ignored: the arm was stopped, and waits for resume")
+    if speed == 0:
+        return reject(arm, "ignored: its speed is 0")
+    return True
+
+
+def go_to_angles(
+    arm: ArmState, target: Point, speed: int, now: float, *, queue: bool | None = None
+) -> bool:
+    """Move the joints to angles, each to the nearest tick inside its limits.
+
+    Args:
+        arm: the arm.
+        target: the angles in degrees.
+        speed: percent, 1..100.
+        now: the time.
+        queue: whether the present motion ends first; None: the arm's mode decides.
+
+    Returns:
+        Whether the arm obeys.
+    """
+    if not may_move(arm, speed):
+        return False
+    present, goal = arm.angles.target(now), []
+    for joint, (low, high) in enumerate(arm.limits()):
+        wish = target[joint]
+        # A joint that does not move may be outside: an arm at rest was seen beyond its limits.
+        if wish != present[joint]:
+            if low > high or not arm.minimum[joint] <= wish <= arm.maximum[joint]:
+                why = f"rejected: {wish:.2f} degrees is beyond the limits of joint {joint + 1}"
+                return reject(arm, why, joint + 1)
+            wish = min(max(on_tick(wish) if arm.geometry else wish, low), high)
+        goal.append(wish)
+    arm.angles.go(goal, rate(speed), now, queue=_queues(arm) if queue is None else queue)
+    _note_a_pause(arm)
+    return True
+
+
+def go_to_angle(arm: ArmState, joint: int, angle: float, speed: int, now: float) -> bool:
+    """Move one joint, counted from 1; return whether the arm obeys."""
+    target = list(arm.angles.target(now))
+    target[joint - 1] = angle
+    return go_to_angles(arm, tuple(target), speed, now)
+
+
+def move_gripper(arm: ArmState, value: int, speed: int, now: float) -> None:
+    """Move the gripper to an opening in percent. Like the joints, it needs power to move."""
+    if arm.powered and speed > 0:
+        arm.gripper.go((float(value),), OPENING_PER_SECOND * speed, now)
+    else:
+        arm.remarks.append("ignored: the gripper has no power, or its speed is 0")
+
+
+def go_to_coords(
+    arm: ArmState, target: Iterable[float], speed: int, now: float, *, straight: bool = False
+) -> bool:
+    """Move the end to coordinates, by the joints' shortest way or on a straight line.
+
+    Return whether the arm obeys.
+    """
+    if not may_move(arm, speed):
+        return False
+    if arm.geometry is None:
+        return reject(arm, "rejected: the geometry of this arm is not known")
+    end = Pose.of(tuple(target))
+    start = arm.angles.target(now) if _queues(arm) else arm.angles.stop_at(now)
+    goal = solve(arm, end, start)
+    if goal is None:
+        return False
+    if not straight:
+        return go_to_angles(arm, goal, speed, now)
+    here = arm.end(start)
+    points = (
+        [] if here is None else _follow(arm, straight_line(here, end, _steps(here, end)), start)
+    )
+    if not points:
+        return reject(arm, "rejected: the joints cannot follow a straight line", NO_STRAIGHT_LINE)
+    _go_along(arm, points, speed, now, queue=_queues(arm))
+    return True
+
+
+def jog(
+    arm: ArmState, way: Callable[[Pose, float], Pose], step: float, speed: int, now: float
+) -> bool:
+    """Move the end until it is stopped, a joint is at its limit, or nothing is in reach.
+
+    Args:
+        arm: the arm.
+        way: returns the pose at a distance, in millimetres or degrees, from a pose.
+        step: the distance between two points, in millimetres or degrees.
+        speed: percent, 1..100.
+        now: the time.
+
+    Returns:
+        Whether the arm obeys.
+    """
+    if not may_move(arm, speed):
+        return False
+    start = arm.angles.stop_at(now)
+    here = arm.end(start)
+    if here is None:
+        return reject(arm, "rejected: the geometry of this arm is not known")
+    points = _follow(arm, (way(here, step * n) for n in range(1, JOG_STEPS)), start, whole=False)
+    if not points:
+        return reject(arm, "rejected: the end cannot move in this direction", NO_SOLUTION)
+    _go_along(arm, points, speed, now, queue=False)
+    return True
+
+
+def solve(arm: ArmState, end: Pose, start: Point) -> Point | None:
+    """Return the angles nearest to ``start`` that bring the end there; else None, with a note."""
+    assert arm.geometry is not None, "the caller has checked this"
+    try:
+        found = nearest(arm.geometry, arm.flange_for(end), start, arm.limits())
+    except ImportError:
+        what = "rejected: no exact solution, and the search for a near one needs SciPy"
+        reject(arm, f"{what}: pip install 'cobotwire[sim]'", NO_SOLUTION)
+        return None
+    if found is None:
+        coords = ", ".join(f"{value:.2f}" for value in end.coords)
+        reject(arm, f"rejected: no joint angles reach ({coords})", NO_SOLUTION)
+    return found
+
+
+def _follow(
+    arm: ArmState, ends: Iterable[Pose], start: Point, *, whole: bool = True
+) -> list[Point]:
+    """Return the angles along a way; if its end cannot be reached, nothing, or the first part."""
+    assert arm.geometry is not None, "the caller has checked this"
+    limits, points = arm.limits(), [start]
+    for end in ends:
+        try:
+            found = nearest(arm.geometry, arm.flange_for(end), points[-1], limits)
+        except ImportError:
+            found = None
+        if found is None or max(abs(a - b) for a, b in zip(found, points[-1])) > LARGEST_TURN:
+            return [] if whole else points[1:]
+        points.append(found)
+    return points[1:]
+
+
+def _go_along(arm: ArmState, points: list[Point], speed: int, now: float, *, queue: bool) -> None:
+    """Follow points; the last one is on ticks, where servos stop."""
+    goal = tuple(
+        min(max(on_tick(angle), low), high) for angle, (low, high) in zip(points[-1], arm.limits())
+    )
+    arm.angles.follow([*points[:-1], goal], rate(speed), now, queue=queue)
+    _note_a_pause(arm)
+
+
+def _note_a_pause(arm: ArmState) -> None:
+    """Note that a motion has to wait: no reply reports it."""
+    if arm.paused:
+        arm.remarks.append("waits: the arm is paused until resume")
+
+
+def _steps(start: Pose, end: Pose) -> int:
+    way, turn = start.distance(end)
+    return max(math.ceil(way / STEP_MILLIMETRES), math.ceil(turn / STEP_DEGREES), 1)
+
+
+def _queues(arm: ArmState) -> bool:
+    return arm.fresh_mode == 0

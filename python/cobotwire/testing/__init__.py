@@ -1,1 +1,0 @@
-"""For other people's tests: a pytest plugin that gives them simulated arms; docs/testing.md."""

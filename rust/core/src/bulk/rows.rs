@@ -1,0 +1,55 @@
+//! The frames of one variant in a stream, as columns.
+
+use super::cells::{Cells, Numbers};
+use crate::message::VariantId;
+use crate::table::Table;
+
+/// All frames of one variant, in the order of the stream.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    /// Which variant.
+    pub variant: VariantId,
+    /// Where each frame starts.
+    pub offsets: Vec<u64>,
+    /// A column for each field. A field with a row of numbers has several cells for each frame.
+    pub fields: Vec<Cells>,
+}
+
+impl Rows {
+    pub(crate) fn new(table: &Table, variant: VariantId, numbers: Numbers) -> Self {
+        let fields = table
+            .variant(variant)
+            .map_or(&[][..], |variant| variant.fields());
+        Self {
+            variant,
+            offsets: Vec::new(),
+            fields: fields
+                .iter()
+                .map(|field| Cells::new(field, numbers))
+                .collect(),
+        }
+    }
+
+    /// Take over the memory of columns of the same types.
+    pub(crate) fn reuse(&mut self, old: Self) {
+        let alike = |(new, old): (&Cells, &Cells)| {
+            std::mem::discriminant(new) == std::mem::discriminant(old)
+        };
+        let columns = self.fields.len() == old.fields.len();
+        if columns && self.fields.iter().zip(&old.fields).all(alike) {
+            *self = old;
+            self.offsets.clear();
+            self.fields.iter_mut().for_each(Cells::clear);
+        }
+    }
+
+    /// Return the contents, and leave empty columns of the same types.
+    pub(crate) fn take(&mut self) -> Self {
+        let empty = Self {
+            variant: self.variant,
+            offsets: Vec::new(),
+            fields: self.fields.iter().map(Cells::like).collect(),
+        };
+        std::mem::replace(self, empty)
+    }
+}

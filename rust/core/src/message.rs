@@ -1,0 +1,125 @@
+//! Messages: their directions, their variants, and the commands that they belong to.
+
+use crate::field::Field;
+use crate::frame::FrameFormat;
+use crate::number::{Misfit, Number};
+
+/// The direction of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// To the arm.
+    Request,
+    /// From the arm.
+    Reply,
+}
+
+/// The directions whose frames a framer accepts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Listening {
+    /// Only one direction.
+    To(Direction),
+    /// Both directions, as when sniffing a transport.
+    Both,
+}
+
+/// The data bytes of one variant of a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Variant {
+    fields: Vec<Field>,
+    starts: Vec<usize>,
+    size: usize,
+    /// The largest number of values in a message, rows and their elements counted.
+    values: usize,
+}
+
+impl Variant {
+    /// Return a variant with these fields, in wire order.
+    #[must_use]
+    pub fn new(fields: Vec<Field>) -> Self {
+        let (mut size, mut values) = (0, 0);
+        let mut starts = Vec::with_capacity(fields.len());
+        for field in &fields {
+            starts.push(size);
+            size = usize::saturating_add(size, field.size());
+            let counts = field.cases.iter().map(|case| case.numbers.len());
+            values += 1 + counts.max().unwrap_or_default();
+        }
+        Self {
+            fields,
+            starts,
+            size,
+            values,
+        }
+    }
+
+    /// Return its fields, in wire order.
+    #[must_use]
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// Return the number of its data bytes.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Return the field that picks another's case, with its index and its one number.
+    pub(crate) fn selector(&self, field: &Field) -> Option<(usize, &Field, &Number)> {
+        let index = field.selector?;
+        let selector = self.fields.get(index)?;
+        Some((index, selector, selector.numbers(0).first()?))
+    }
+
+    /// Return the largest number of values in a message, rows and their elements counted.
+    pub(crate) fn values(&self) -> usize {
+        self.values
+    }
+
+    /// Return the index of a field's first data byte.
+    pub(crate) fn start(&self, field: usize) -> usize {
+        self.starts.get(field).copied().unwrap_or_default()
+    }
+
+    pub(crate) fn check(&self, frame: &FrameFormat) -> Result<(), Misfit> {
+        self.fields
+            .iter()
+            .try_for_each(|field| field.check(&self.fields))?;
+        u8::try_from(frame.length(self.size))
+            .map(|_| ())
+            .map_err(|_| Misfit::Length)
+    }
+}
+
+/// One command: its id, its request and its reply.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Command {
+    /// The id on the wire.
+    pub id: u8,
+    /// The variants of the request.
+    pub request: Vec<Variant>,
+    /// The variants of the reply.
+    pub reply: Vec<Variant>,
+}
+
+impl Command {
+    /// Return the variants in one direction.
+    #[must_use]
+    pub fn variants(&self, direction: Direction) -> &[Variant] {
+        match direction {
+            Direction::Request => &self.request,
+            Direction::Reply => &self.reply,
+        }
+    }
+}
+
+/// One variant of one command's message in one direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct VariantId {
+    /// The direction.
+    pub direction: Direction,
+    /// Index of the command in the table.
+    pub command: usize,
+    /// Index of the variant among the command's in that direction.
+    pub variant: usize,
+}

@@ -1,0 +1,103 @@
+"""A wrong argument is reported before a byte is sent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from cobotwire import MyCobot, UsageError
+from cobotwire.client import Client
+from cobotwire.transport import Transport
+from recording_transport import RecordingTransport
+
+SIX = [0.0] * 6
+
+BAD: list[tuple[str, Callable[[Any], Any], str, str]] = [
+    ("five angles", lambda arm: arm.send_angles(SIX[:5], 20), "len(angles)", "6 numbers"),
+    ("seven angles", lambda arm: arm.send_angles([0] * 7, 20), "len(angles)", "6 numbers"),
+    (
+        "an angle too large",
+        lambda arm: arm.send_angles([0, 330.01, *SIX[2:]], 20),
+        "angles.j2",
+        "330",
+    ),
+    ("an angle too low", lambda arm: arm.send_angle(1, -325.36, 20), "angle", "-325.35"),
+    ("NaN", lambda arm: arm.send_angles([0, 0, math.nan, 0, 0, 0], 20), "angles.j3", ".."),
+    ("infinity", lambda arm: arm.send_angle(1, math.inf, 20), "angle", ".."),
+    ("a string for an angle", lambda arm: arm.send_angle(1, "10", 20), "angle", "a number"),
+    ("nothing for an angle", lambda arm: arm.send_angle(1, None, 20), "angle", "a number"),
+    ("a string for a row", lambda arm: arm.send_angles("000000", 20), "angles", "6 numbers"),
+    ("a number for a row", lambda arm: arm.send_angles(5, 20), "angles", "6 numbers"),
+    ("joint 0", lambda arm: arm.send_angle(0, 0, 20), "joint", "1..6"),
+    ("joint 7", lambda arm: arm.get_encoder(7), "joint", "1..6"),
+    ("joint 1.5", lambda arm: arm.send_angle(1.5, 0, 20), "joint", "a whole number"),
+    ("joint True", lambda arm: arm.send_angle(True, 0, 20), "joint", "a whole number"),
+    ("speed 101", lambda arm: arm.send_angles(SIX, 101), "speed", "0..100 percent"),
+    ("speed -1", lambda arm: arm.set_speed(-1), "speed", "0..100 percent"),
+    ("an unknown enum", lambda arm: arm.set_reference_frame(2), "frame", "BASE (0), WORLD (1)"),
+    ("a string for an enum", lambda arm: arm.set_end_type("TOOL"), "end", "FLANGE (0), TOOL (1)"),
+    ("axis 0", lambda arm: arm.send_coord(0, 10.0, 20), "axis", "X (1), Y (2), Z (3)"),
+    ("2 for a flag", lambda arm: arm.set_free_mode(2), "free", "True or False"),
+    ("a huge number", lambda arm: arm.set_server_port(10**400), "port", "1..65535"),
+    ("a huge angle", lambda arm: arm.send_angle(1, 10**400, 20), "angle", "330"),
+    ("encoder 4096", lambda arm: arm.set_encoder(1, 4096), "encoder", "0..4095 tick"),
+    ("colour 256", lambda arm: arm.set_color(0, 256, 0), "green", "0..255"),
+    (
+        "x beyond the wire",
+        lambda arm: arm.send_coords([3300.1, 0, 0, 0, 0, 0], 20, 1),
+        "coords.x",
+        "3300",
+    ),
+]
+
+
+@pytest.mark.parametrize("codec", ["reference", "native"])
+@pytest.mark.parametrize(
+    ("call", "argument", "allowed"), [b[1:] for b in BAD], ids=[b[0] for b in BAD]
+)
+def test_wrong_argument_is_named_and_nothing_is_written(
+    codec: Any, call: Callable[[Any], Any], argument: str, allowed: str
+) -> None:
+    link = RecordingTransport()
+    assert isinstance(link, Transport)
+    with MyCobot(link, codec=codec) as arm:
+        with pytest.raises(UsageError) as caught:
+            call(arm)
+        assert caught.value.argument == argument
+        assert allowed in caught.value.allowed
+        assert argument in str(caught.value)
+        assert link.written == b""
+        # Nothing waits afterwards: the next call is sent.
+        arm.power_on()
+    assert link.written == bytes.fromhex("FEFE0210FA")
+
+
+def test_usage_error_is_a_value_error() -> None:
+    with pytest.raises(ValueError, match=r"speed is 101; allowed: a whole number 0\.\.100 percent"):
+        MyCobot(RecordingTransport()).send_angles(SIX, 101)
+
+
+@pytest.mark.parametrize(
+    ("options", "argument"),
+    [
+        ({"port": ""}, "port"),
+        ({"port": 5}, "port"),
+        ({"port": "nosuch://thing"}, "port"),
+        ({"port": "loop://", "baudrate": -1}, "baudrate"),
+        ({"port": "loop://", "timeout": 0}, "timeout"),
+        ({"port": "loop://", "timeout": math.nan}, "timeout"),
+    ],
+)
+def test_wrong_option_is_named(options: dict[str, Any], argument: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        MyCobot(**options)
+    assert caught.value.argument == argument
+
+
+def test_unknown_codec_in_the_environment_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COBOTWIRE_CODEC", "fast")
+    with pytest.raises(UsageError, match="COBOTWIRE_CODEC is 'fast'; allowed: reference or native"):
+        Client.__init__(MyCobot.__new__(MyCobot), RecordingTransport())

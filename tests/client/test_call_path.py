@@ -1,0 +1,50 @@
+"""One call passes few files of the package, so that a reader can follow it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import cobotwire
+from cobotwire.editions.mycobot280 import MyCobot280
+
+PACKAGE = str(Path(cobotwire.__file__).parent)
+MOST_FILES = 12
+# Runs in a separate process, so that its code is not counted.
+SIMULATOR = """
+import sys
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.simulator import PtyServer, SimulatedArm
+with PtyServer(SimulatedArm(TABLE)) as server:
+    print(server.url, flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_get_angles_passes_at_most_12_files() -> None:
+    files: set[str] = set()
+
+    def note(frame: FrameType, event: str, argument: Any) -> None:
+        if event == "call" and frame.f_code.co_filename.startswith(PACKAGE):
+            files.add(str(Path(frame.f_code.co_filename).relative_to(PACKAGE)))
+
+    command = [sys.executable, "-c", SIMULATOR]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as simulator:
+        assert simulator.stdin is not None
+        assert simulator.stdout is not None
+        with MyCobot280(simulator.stdout.readline().strip(), codec="native") as arm:
+            # The first call also imports what few programs need.
+            arm.get_angles()
+            sys.setprofile(note)
+            try:
+                arm.get_angles()
+            finally:
+                sys.setprofile(None)
+        simulator.stdin.close()
+    assert "client/connection.py" in files
+    assert len(files) <= MOST_FILES, sorted(files)

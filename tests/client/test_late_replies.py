@@ -1,0 +1,99 @@
+"""A late reply on a real pseudo-terminal never becomes the value of another joint."""
+
+from __future__ import annotations
+
+import os
+import select
+import threading
+import time
+import tty
+from collections.abc import Iterator
+from contextlib import suppress
+
+import pytest
+
+from cobotwire import MyCobot, ReplyTimeout
+from cobotwire.client import Traffic
+
+TIMEOUT = 0.1
+
+
+def _reply(joint: int) -> bytes:
+    return bytes.fromhex("FE FE 04 3B 00") + bytes([joint]) + b"\xfa"
+
+
+class SlowArm:
+    """An arm that replies to get_encoder(joint) with the joint's number, after its delay."""
+
+    def __init__(self, delays: dict[int, float]) -> None:
+        self._delays = delays
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        self.url = os.ttyname(self._slave)
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._serve)
+        self._thread.start()
+
+    def _serve(self) -> None:
+        due: list[tuple[float, bytes]] = []
+        while not self._stop.is_set():
+            if select.select([self._master], [], [], 0.005)[0]:
+                request = os.read(self._master, 4096)
+                if request[3] == 0x3B:
+                    delay = self._delays.get(request[4], 0)
+                    due.append((time.monotonic() + delay, _reply(request[4])))
+            for entry in [entry for entry in due if entry[0] <= time.monotonic()]:
+                due.remove(entry)
+                os.write(self._master, entry[1])
+
+    def close(self) -> None:
+        self._stop.set()
+        self._thread.join()
+        os.close(self._master)
+        os.close(self._slave)
+
+
+@pytest.fixture
+def slow_arm(request: pytest.FixtureRequest) -> Iterator[SlowArm]:
+    made = SlowArm(request.param)
+    yield made
+    made.close()
+
+
+@pytest.mark.parametrize("slow_arm", [{1: TIMEOUT + 0.05}], indirect=True)
+def test_reply_50_ms_late_is_not_used_for_another_joint(slow_arm: SlowArm) -> None:
+    traffic: list[Traffic] = []
+    with MyCobot(slow_arm.url, timeout=TIMEOUT, trace=traffic.append) as arm:
+        started = time.monotonic()
+        with pytest.raises(ReplyTimeout):
+            arm.get_encoder(1)
+        for joint in (2, 3):
+            # On a busy machine it may time out, but it is never a wrong value.
+            with suppress(ReplyTimeout):
+                assert arm.get_encoder(joint) == joint
+        assert time.monotonic() - started < 0.9, "the late reply lifts the hold at once"
+    directions = [(t.direction, t.data) for t in traffic]
+    assert directions.index(("received", _reply(1))) < directions.index(
+        ("sent", bytes.fromhex("FE FE 03 3B 02 FA"))
+    )
+
+
+@pytest.mark.parametrize("slow_arm", [{1: 0.727, 2: 0.0}], indirect=True)
+def test_latest_reply_ever_seen_is_not_used_for_another_joint(slow_arm: SlowArm) -> None:
+    with MyCobot(slow_arm.url, timeout=TIMEOUT) as arm:
+        with pytest.raises(ReplyTimeout):
+            arm.get_encoder(1)
+        assert arm.get_encoder(2) == 2
+
+
+@pytest.mark.parametrize("slow_arm", [{1: 60.0}], indirect=True)
+def test_lost_reply_holds_the_next_query_but_no_one_way_request(slow_arm: SlowArm) -> None:
+    with MyCobot(slow_arm.url, timeout=TIMEOUT) as arm:
+        sent_at = time.monotonic()
+        with pytest.raises(ReplyTimeout):
+            arm.get_encoder(1)
+        started = time.monotonic()
+        arm.stop()
+        assert time.monotonic() - started < 0.5
+        assert arm.get_encoder(2) == 2
+        assert time.monotonic() - sent_at >= 1.0

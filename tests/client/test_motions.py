@@ -1,0 +1,141 @@
+"""Calls that wait for a motion of the simulated arm: reached, too slow, stuck, interrupted."""
+
+from __future__ import annotations
+
+import _thread
+import asyncio
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from both_ways import Opener, openers
+from cobotwire import MotionTimeout, ReplyTimeout, UsageError
+from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280, TargetKind
+from cobotwire.session import Traffic
+from cobotwire.session.motion import Outcome, Pause, Query, until_reached
+from cobotwire.simulator import PtyServer, SimulatedArm
+
+STOP = bytes.fromhex("FE FE 02 29 FA")
+THERE = [10.0, -20.0, 30.0, 0.0, 0.29, -5.0]
+OPENERS = openers(MyCobot280, AsyncMyCobot280)
+
+
+@pytest.fixture
+def simulated() -> SimulatedArm:
+    return SimulatedArm(TABLE)
+
+
+@pytest.fixture(params=list(OPENERS))
+def arm(request: pytest.FixtureRequest, simulated: SimulatedArm) -> Iterator[Any]:
+    """Open either client, on an arm that is powered."""
+    opening: Opener = OPENERS[request.param]
+    with PtyServer(simulated) as server, opening(server.url) as opened:
+        opened.power_on(ack_within=1.0)
+        yield opened
+
+
+def test_move_returns_when_the_arm_reaches_the_target(arm: Any) -> None:
+    arm.move_angles(THERE, 50)
+    assert arm.get_angles() == pytest.approx(THERE, abs=0.055), "it stands on encoder ticks"
+    assert arm.is_moving() is False
+
+
+def test_move_to_coordinates_returns_when_the_arm_reaches_them(arm: Any) -> None:
+    arm.move_angles([0, -30, -60, 0, 0, 0], 100)
+    target = [150.0, -70.0, 230.0, *arm.get_coords()[3:]]
+    arm.move_coords(target, 100)
+    # A distance of up to five millimetres counts as reached.
+    assert list(arm.get_coords())[:3] == pytest.approx(target[:3], abs=5.0)
+    assert arm.is_in_position(target, TargetKind.COORDS) is True
+
+
+def test_move_that_is_not_waited_for_returns_at_once(arm: Any) -> None:
+    arm.move_angles([150, 0, 0, 0, 0, 0], 10, wait=False)
+    assert arm.is_moving() is True
+    with pytest.raises(MotionTimeout):
+        arm.wait_until_reached([150, 0, 0, 0, 0, 0], TargetKind.ANGLES, timeout=0.2)
+    arm.send_angles([0, 0, 0, 0, 0, 0], 100, ack_within=1.0)
+
+
+def test_slow_move_is_a_timeout_and_continues(arm: Any) -> None:
+    started = time.monotonic()
+    with pytest.raises(MotionTimeout, match="has not reached") as caught:
+        arm.move_angles([150, 0, 0, 0, 0, 0], 10, timeout=0.5)
+    assert 0.4 < time.monotonic() - started < 1.0
+    assert isinstance(caught.value, TimeoutError)
+    assert caught.value.standing is False
+    assert arm.is_moving() is True
+
+
+def test_arm_that_stops_short_is_an_error_before_the_timeout(
+    arm: Any, simulated: SimulatedArm
+) -> None:
+    simulated.state.maximum[2] = 10.0  # the arm ignores such a target
+    started = time.monotonic()
+    with pytest.raises(MotionTimeout, match="stands still short of"):
+        arm.move_angles(THERE, 50, timeout=20)
+    assert time.monotonic() - started < 3
+
+
+def test_target_beyond_the_limits_is_rejected_before_a_byte_is_sent(arm: Any) -> None:
+    with pytest.raises(UsageError):
+        arm.move_angles([169, 0, 0, 0, 0, 0], 50)
+    with pytest.raises(UsageError, match="timeout"):
+        arm.move_angles(THERE, 50, timeout=-1)
+    assert arm.is_moving() is False
+
+
+def test_ctrl_c_stops_the_arm(simulated: SimulatedArm) -> None:
+    traffic: list[Traffic] = []
+    with PtyServer(simulated) as server, MyCobot280(server.url, trace=traffic.append) as arm:
+        arm.power_on(ack_within=1.0)
+        threading.Timer(0.3, _thread.interrupt_main).start()
+        with pytest.raises(KeyboardInterrupt):
+            arm.move_angles([150, 0, 0, 0, 0, 0], 10)
+        assert [one.data for one in traffic if one.direction == "sent"][-1] == STOP
+        time.sleep(0.2)  # an arm takes a moment to stand
+        assert arm.is_moving() is False
+
+
+def test_cancelled_move_stops_the_arm(simulated: SimulatedArm) -> None:
+    async def drive(url: str) -> bool:
+        async with AsyncMyCobot280(url) as arm:
+            await arm.power_on(ack_within=1.0)
+            with pytest.raises(TimeoutError):
+                async with asyncio.timeout(0.3):
+                    await arm.move_angles([150, 0, 0, 0, 0, 0], 10)
+            await asyncio.sleep(0.2)  # an arm takes a moment to stand
+            return await arm.is_moving()
+
+    with PtyServer(simulated) as server:
+        assert asyncio.run(drive(server.url)) is False
+
+
+def test_firmware_without_acks_delays_no_setter_and_times_out_if_acks_are_required() -> None:
+    silent = SimulatedArm(TABLE, acks=False)
+    for opening in OPENERS.values():
+        with PtyServer(silent) as server, opening(server.url) as arm:
+            started = time.monotonic()
+            for _ in range(50):
+                arm.set_color(1, 2, 3)
+            assert time.monotonic() - started < 0.3
+            with pytest.raises(ReplyTimeout, match=r"set_color\(red=1, green=2, blue=3\)"):
+                arm.set_color(1, 2, 3, ack_within=0.1)
+
+
+def test_steps_of_waiting_follow_from_times_and_results() -> None:
+    steps = until_reached(TABLE, THERE, 0, limit=1.0, started=100.0)
+    is_in_position: Any = TABLE.request_type("is_in_position")
+    assert next(steps) == Query(is_in_position(THERE, 0), 1.0)
+    # A request without a reply is not an error.
+    step = steps.send(Outcome(100.3))
+    assert isinstance(step, Query)
+    assert step.request == TABLE.request_type("is_moving")()
+    assert step.longest == pytest.approx(0.7)
+    assert steps.send(Outcome(100.31, True)) == Pause(100.31)
+    assert isinstance(steps.send(Outcome(100.4)), Query)
+    with pytest.raises(StopIteration):
+        steps.send(Outcome(100.5, True))

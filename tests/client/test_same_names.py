@@ -1,0 +1,53 @@
+"""The two clients of an edition have the same method names, arguments and types."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+import pytest
+
+from cobotwire import editions
+
+NAMES = editions.names()
+
+
+def methods(client: type) -> dict[str, Any]:
+    return {
+        name: value
+        for name, value in inspect.getmembers(client, inspect.isfunction)
+        if not name.startswith("_")
+    }
+
+
+def shape(method: Any) -> inspect.Signature:
+    """Return a signature, without the `Async` of a stream's class."""
+    found = inspect.signature(method)
+    return found.replace(return_annotation=str(found.return_annotation).removeprefix("Async"))
+
+
+@pytest.mark.parametrize("edition", NAMES)
+def test_both_clients_have_the_same_methods(edition: str) -> None:
+    package: Any = editions.load(edition)
+    blocking, asynchronous = methods(package.CLIENT), methods(package.ASYNC_CLIENT)
+    assert set(asynchronous) - set(blocking) == {"open"}
+    assert set(blocking) <= set(asynchronous)
+    for name in blocking:
+        assert shape(blocking[name]) == shape(asynchronous[name]), name
+    for command in package.TABLE.commands:
+        assert inspect.iscoroutinefunction(asynchronous[command.name])
+        assert not inspect.iscoroutinefunction(blocking[command.name])
+
+
+@pytest.mark.parametrize("edition", NAMES)
+def test_method_has_ack_within_if_the_edition_has_an_acknowledgement(edition: str) -> None:
+    package: Any = editions.load(edition)
+    for command in package.TABLE.commands:
+        parameters = inspect.signature(getattr(package.CLIENT, command.name)).parameters
+        assert ("ack_within" in parameters) == command.ack, command.name
+
+
+def test_name_that_an_edition_lacks_is_an_attribute_error() -> None:
+    package: Any = editions.load("mycobot")
+    with pytest.raises(AttributeError, match="no attribute 'Nothing'"):
+        package.Nothing  # noqa: B018  (looking is the point)

@@ -1,0 +1,41 @@
+"""Stream for minutes of accelerated time; bench/streaming.py streams for a whole day."""
+
+from __future__ import annotations
+
+import gc
+import tracemalloc
+from itertools import islice
+
+from accelerated import LATE, LOST, Checker, accelerated
+
+SAMPLES = 24_000
+
+
+def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
+    with accelerated(rate=100.0) as (arm, stream):
+        checker = Checker(arm)
+        begun = arm.now
+
+        def take(count: int) -> int:
+            for sample in islice(stream, count):
+                one = sample.readings[0]
+                checker.check(
+                    sample.number, sample.slot, one.value, one.requested_at, one.replied_at
+                )
+            gc.collect()
+            return tracemalloc.get_traced_memory()[0]
+
+        tracemalloc.start()
+        try:
+            early = take(SAMPLES // 10)
+            late = take(SAMPLES - SAMPLES // 10)
+        finally:
+            tracemalloc.stop()
+        assert late - early < 10_000, "bytes"
+        report = stream.report
+        assert arm.now - begun > 240
+        assert report.samples == SAMPLES
+        # Missing and late replies are counted as missed, and all slots are accounted for.
+        assert report.unanswered == arm.requests // LOST + arm.requests // LATE
+        assert report.unread == 0
+        assert abs(report.slots - (arm.now - begun) * 100) <= 1.5

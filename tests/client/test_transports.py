@@ -1,0 +1,182 @@
+"""Clients on transports that cannot be opened, that break, or that echo."""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+import termios
+import threading
+import time
+import tty
+from contextlib import suppress
+from typing import Any
+
+import pytest
+
+from cobotwire import LinkError, MyCobot, ReplyTimeout, UsageError
+from cobotwire import codec as codecs
+from cobotwire.client import Traffic
+from scripted_peer import ScriptedPeer
+
+ENABLED = bytes.fromhex("FE FE 03 50 01 FA")
+
+
+@pytest.mark.parametrize(
+    ("url", "kind", "text"),
+    [
+        ("hwgrep://nothing-like-this", LinkError, "no ports found"),
+        ("/dev/tty\0S0", UsageError, "printable"),
+        ("/dev/tty\ud800", UsageError, "printable"),
+        ("loop://?x=1", UsageError, "unknown option: 'x'"),
+        ("loop://?logging=loud", UsageError, "loud"),
+        ("spy:///dev/null?file=/nosuchfolder/f", LinkError, "No such file.*/nosuchfolder/f"),
+        ("socket://localhost", UsageError, "host:port"),
+        ("socket://127.0.0.1:abc", UsageError, "host:port"),
+        ("socket://127.0.0.1:0", UsageError, "host:port"),
+        ("socket://127.0.0.1:70000", UsageError, "host:port"),
+        ("rfc2217://localhost", UsageError, "host:port"),
+        ("socket://127.0.0.1:1", LinkError, "refused"),
+        ("alt://x?class=Nope", UsageError, "Nope"),
+        ("/dev/null", LinkError, "Inappropriate ioctl"),
+        ("/", LinkError, "Is a directory"),
+    ],
+)
+def test_error_gives_the_reason_why_a_port_cannot_be_opened(
+    url: str, kind: type[Exception], text: str
+) -> None:
+    with pytest.raises(kind, match=text) as caught:
+        MyCobot(url)
+    assert isinstance(caught.value, UsageError | LinkError)
+
+
+@pytest.mark.parametrize("baudrate", [True, False, 0, -1, 2**31, 10**30, 9600.0, "9600"])
+def test_wrong_baud_rate_is_named(baudrate: Any) -> None:
+    with pytest.raises(UsageError, match=r"a whole number 1\.\.2147483647") as caught:
+        MyCobot("loop://", baudrate=baudrate)
+    assert caught.value.argument == "baudrate"
+
+
+@pytest.mark.parametrize("codec", ["foo", "", 5, True, ["native"]])
+def test_unknown_codec_is_named(codec: Any) -> None:
+    with pytest.raises(UsageError, match="allowed: native or reference") as caught:
+        MyCobot("loop://", codec=codec)
+    assert caught.value.argument == "codec"
+
+
+def test_native_codec_without_its_binary_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(codecs, "native_available", lambda: False)
+    with pytest.raises(UsageError, match="the native codec is not installed here"):
+        MyCobot("loop://", codec="native")
+
+
+def test_true_is_not_a_timeout() -> None:
+    with pytest.raises(UsageError, match="timeout is True"):
+        MyCobot("loop://", timeout=True)
+
+
+def _ask_for_ever(arm: MyCobot) -> None:
+    while True:
+        with suppress(ReplyTimeout):
+            arm.get_angles()
+
+
+@pytest.mark.parametrize("kind", ["socket", "pty"])
+def test_transport_that_another_thread_closes_is_a_link_error(kind: str) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listening, ScriptedPeer() as peer:
+        url = f"socket://127.0.0.1:{listening.getsockname()[1]}" if kind == "socket" else peer.url
+        for _ in range(3):
+            arm = MyCobot(url, timeout=0.3)
+            closing = threading.Timer(0.05, arm.close)
+            closing.start()
+            with pytest.raises(LinkError, match=r"closed|disconnected"):
+                _ask_for_ever(arm)
+            closing.join()
+
+
+def test_terminal_error_is_a_link_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    # pyserial itself writes to a port behind spy://.
+    with ScriptedPeer() as peer, MyCobot(f"spy://{peer.url}") as arm:
+
+        def fail(*arguments: object) -> int:
+            raise termios.error(5, "Input/output error")
+
+        # No port here can be made to fail in this way.
+        monkeypatch.setattr(arm._connection._transport._port, "write", fail)  # type: ignore[attr-defined]
+        with pytest.raises(LinkError, match=r"cannot be written: .*Input/output error"):
+            arm.power_on()
+
+
+def test_wrong_argument_is_rejected_even_on_a_closed_port() -> None:
+    with ScriptedPeer() as peer:
+        arm = MyCobot(peer.url)
+        arm.close()
+        with pytest.raises(UsageError, match="joint is 9"):
+            arm.get_encoder(9)
+
+
+class Full:
+    """A transport that accepts no more bytes."""
+
+    url = "full"
+
+    def write(self, data: bytes) -> None:
+        raise LinkError(self.url, "is full")
+
+    def read(self, timeout: float) -> bytes:
+        return b""
+
+    def close(self) -> None:
+        pass
+
+
+def test_failed_write_is_not_traced() -> None:
+    traffic: list[Traffic] = []
+    with pytest.raises(LinkError, match="full"):
+        MyCobot(Full(), trace=traffic.append).power_on()
+    assert traffic == []
+
+
+def test_waiting_does_not_configure_the_port_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    with ScriptedPeer([0.02, bytes.fromhex("FE FE 03 12 01 FA")]) as peer:
+        with MyCobot(peer.url) as arm:
+            calls: list[str] = []
+            port: Any = arm._connection._transport._port  # type: ignore[attr-defined]
+            monkeypatch.setattr(port, "_reconfigure_port", lambda *a, **k: calls.append("again"))
+            assert arm.is_power_on() is True
+            assert calls == []
+
+
+def test_loop_url_echoes_and_the_copy_is_not_a_reply() -> None:
+    with MyCobot("loop://", timeout=0.1) as arm:
+        arm.power_on()
+        with pytest.raises(ReplyTimeout, match="the request's own bytes FE FE 03 50 01 FA"):
+            arm.is_servo_enable(1)
+
+
+def test_reply_of_older_firmware_equal_to_the_request_is_used() -> None:
+    with ScriptedPeer([ENABLED]) as peer, MyCobot(peer.url, timeout=0.2) as arm:
+        assert arm.is_servo_enable(1) is True
+
+
+def test_reply_after_the_echo_is_used() -> None:
+    with ScriptedPeer([ENABLED, 0.05, bytes.fromhex("FE FE 03 50 00 FA")]) as peer:
+        with MyCobot(peer.url) as arm:
+            assert arm.is_servo_enable(1) is False
+
+
+def test_spy_url_opens_a_port() -> None:
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    try:
+        with MyCobot(f"spy://{os.ttyname(slave)}", timeout=0.3) as arm:
+            os.write(master, bytes.fromhex("FE FE 03 12 00 FA"))
+            # A terminal passes bytes on after a moment; only then do they come before.
+            assert select.select([slave], [], [], 5)[0]
+            started = time.monotonic()
+            with pytest.raises(ReplyTimeout):
+                arm.is_power_on()
+            assert time.monotonic() - started < 1.0
+    finally:
+        os.close(master)
+        os.close(slave)

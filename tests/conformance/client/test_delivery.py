@@ -1,0 +1,63 @@
+"""The referee delivers replies after a delay, and with the faults of a scenario."""
+
+from __future__ import annotations
+
+import pytest
+
+from cobotwire.conformance.client import FAULTS, Referee, faulty_replies
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.protocol.errors import UsageError
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.faults.noise import LEAKS
+
+REQUEST, REPLY = bytes.fromhex("FEFE0212FA"), bytes.fromhex("FEFE031201FA")
+SERVO_PACKET = LEAKS["status"]
+
+
+def _replies(*faults: str, every: int = 1, requests: int = 1) -> list[tuple[float, bytes]]:
+    """Send a request each second; return the time and the bytes of each reply."""
+    clock = SteppedClock()
+    referee = Referee(TABLE, scenario=faulty_replies(0.008, faults, every), clock=clock)
+    received: list[tuple[float, bytes]] = []
+    for _ in range(requests):
+        end = clock() + 1.0
+        data = referee.receive(REQUEST)
+        while True:
+            if data:
+                received.append((round(clock(), 3), data))
+            wait = referee.wait
+            if wait is None or clock() + wait > end:
+                break
+            clock.sleep(wait)
+            data = referee.flush()
+        clock.sleep(end - clock())
+    return received
+
+
+def test_good_reply_arrives_whole_after_the_delay() -> None:
+    assert _replies() == [(0.008, REPLY)]
+
+
+def test_each_fault_changes_the_reply_as_its_name_says() -> None:
+    assert _replies("lost") == []
+    assert _replies("late") == [(0.608, REPLY)]
+    assert _replies("noise") == [(0.008, SERVO_PACKET + REPLY)]
+    assert _replies("twice") == [(0.008, REPLY * 2)]
+    assert _replies("merged", every=2, requests=3) == [(0.008, REPLY), (2.008, REPLY * 2)]
+    (first, head), (second, tail) = _replies("split")
+    assert (first, second, head + tail) == (0.008, 0.058, REPLY)
+
+
+def test_faults_take_turns_among_good_replies() -> None:
+    received = _replies("lost", "twice", every=2, requests=8)
+    assert [data for _, data in received] == [REPLY, REPLY, REPLY * 2] * 2
+
+
+@pytest.mark.parametrize(("faults", "every"), [(["lots"], 1), (["lost"], 0)])
+def test_unknown_fault_and_period_are_rejected(faults: list[str], every: int) -> None:
+    with pytest.raises(UsageError, match="misbehave" if every else "every"):
+        faulty_replies(0.0, faults, every)
+
+
+def test_every_fault_is_tested_here() -> None:
+    assert set(FAULTS) == {"lost", "late", "split", "merged", "noise", "twice"}

@@ -1,0 +1,102 @@
+"""Read which modules of the Python packages and the Rust crates import which."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+Arrows = dict[str, set[str]]
+
+
+def python_imports(path: Path, package: str) -> Iterator[str]:
+    """Yield every module that a file imports, anywhere in it, by its full name."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                parent = package.split(".")[: -node.level]
+                base = ".".join([*parent, base] if base else parent)
+            yield base
+            yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def python_arrows(root: Path, name: str) -> Arrows:
+    """Return the modules that each module of the package ``name`` in folder ``root`` imports.
+
+    ``from package import Name`` counts as an import of the package only if no module has that name.
+    """
+    modules = _python_modules(root, name)
+    arrows: Arrows = {}
+    for module, path in modules.items():
+        context = f"{module}.__init__" if path.name == "__init__.py" else module
+        named = [found for found in python_imports(path, context) if found in modules]
+        # `from a import b` yields a and a.b; if a.b is a module, a is not counted.
+        longest = {n for n in named if not any(m.startswith(f"{n}.") for m in named)}
+        arrows[module] = longest - {module}
+    return arrows
+
+
+def _python_modules(root: Path, name: str) -> dict[str, Path]:
+    found = {}
+    for path in sorted(root.rglob("*.py")):
+        parts = path.relative_to(root).with_suffix("").parts
+        found[".".join([name, *(part for part in parts if part != "__init__")])] = path
+    return found
+
+
+def rust_arrows(root: Path) -> Arrows:
+    """Return the modules that each module of a crate uses; ``root`` is its ``src`` folder."""
+    modules = {
+        path.relative_to(root).with_suffix("").as_posix().removesuffix("/mod"): path.read_text()
+        for path in root.rglob("*.rs")
+        if path.stem not in ("lib", "main")
+    }
+    return {name: set(_used(name, text, set(modules))) - {name} for name, text in modules.items()}
+
+
+def _used(module: str, text: str, modules: set[str]) -> Iterator[str]:
+    """Yield the modules that a Rust file names in its paths: ``crate::a::b`` and ``super::b``."""
+    code = re.sub(r"//.*", "", text.partition("#[cfg(test)]")[0])
+    here = module.split("/")
+    for match in re.finditer(r"\b(crate|super)((?:::\w+)+|::\{[^;]*\})", code):
+        start = [] if match[1] == "crate" else here[:-1]
+        for words in _paths(match[2].removeprefix("::")):
+            path = [*start, *words]
+            while path and "/".join(path) not in modules:
+                path.pop()
+            if path and path != here[: len(path)]:
+                yield "/".join(path)
+
+
+def _paths(tree: str) -> Iterator[list[str]]:
+    """Split ``{a::b, c::{d, e}}`` into the leading words of its branches."""
+    if not tree.startswith("{"):
+        yield tree.split("::")
+        return
+    for branch in re.split(r",\s*(?![^{}]*\}[^}])", tree.strip("{}")):
+        yield [word for word in branch.strip().split("{")[0].split("::") if word]
+
+
+def circles(arrows: Mapping[str, set[str]]) -> list[list[str]]:
+    """Return the largest sets of modules in which each module reaches every other one."""
+    reached = {name: _reached(arrows, name) for name in arrows}
+    found = {
+        frozenset({name, *(other for other in reached[name] if name in reached[other])})
+        for name in arrows
+        if name in reached[name]
+    }
+    return sorted(sorted(circle) for circle in found)
+
+
+def _reached(arrows: Mapping[str, set[str]], start: str) -> set[str]:
+    found: set[str] = set()
+    waiting = [start]
+    while waiting:
+        for name in arrows[waiting.pop()] - found:
+            found.add(name)
+            waiting.append(name)
+    return found

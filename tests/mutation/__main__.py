@@ -1,0 +1,50 @@
+"""Count how many broken subjects the testers find; print killed / total and every survivor.
+
+PYTHONPATH=tests python -m mutation                      all suites
+PYTHONPATH=tests python -m mutation device --sample 5    five mutants of each kind, device suites
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from mutation.listing import lines, page
+from mutation.running import run
+from mutation.suites import SUITES
+
+
+def main() -> int:
+    """Run the suites and print the figures; return 1 if a tester missed something."""
+    given = _arguments()
+    places = [
+        place
+        for place, make in enumerate(SUITES)
+        if not given.suites or any(word in make().name for word in given.suites)
+    ]
+    began = time.monotonic()
+    found = []
+    for verdicts in run(places, given.processes, given.sample, given.seed):
+        found.append(verdicts)
+        print("\n".join(lines(verdicts)), flush=True)
+    seconds = time.monotonic() - began
+    print(f"{seconds:.0f} s")
+    if given.page:
+        given.page.write_text(page(found, seconds))
+    return 0 if all(verdicts.sound for verdicts in found) else 1
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("suites", nargs="*", help="words in the names of suites; none: all")
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--sample", type=int, help="at most this many mutants of each kind")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--page", type=Path, help="write the list of survivors to this file")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,84 @@
+"""Short sessions about one request: the request, with a query before and after it."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from cobotwire.codec.reference import ReferenceCodec
+from cobotwire.conformance.client import ScriptLine
+from cobotwire.conformance.codec.questions.frames import frame_of
+from cobotwire.conformance.codec.questions.samples import (
+    RawValues,
+    named_values,
+    ordinary,
+)
+from cobotwire.protocol.table import Command, Table, Variant
+from cobotwire.session import text
+from mutation.client.mutant import PAUSE, Sent
+
+
+class Session(NamedTuple):
+    """A request with its bytes, and the queries around it."""
+
+    table: Table
+    command: Command
+    variant: Variant
+    position: int
+    raw_values: RawValues
+
+    @property
+    def place(self) -> str:
+        """The session's name in mutant ids."""
+        return f"{self.command.name} {self.position + 1}"
+
+    @property
+    def frame(self) -> bytes:
+        """The unchanged request."""
+        return self.frame_with(self.raw_values)
+
+    def frame_with(self, raw_values: RawValues) -> bytes:
+        """Return the request with other raw values."""
+        return frame_of(self.table, self.command.id, self.variant.pack(raw_values))
+
+    @property
+    def text(self) -> bytes:
+        """The text that follows the request, if it has one."""
+        spelled = self.command.request_text
+        if spelled is None:
+            return b""
+        return text.encode(spelled, {name: "word" for name in spelled.fields})
+
+    @property
+    def other(self) -> Command:
+        """A query with another id."""
+        role = "powered" if self.command.role != "powered" else "joints"
+        return self.table.in_role(role)  # type: ignore[arg-type]
+
+    @property
+    def query(self) -> bytes:
+        """The bytes of the query."""
+        return frame_of(self.table, self.other.id, b"")
+
+    def script(self, *between: ScriptLine) -> tuple[ScriptLine, ...]:
+        """Return the script: query, request, query."""
+        values = tuple(named_values(self.variant, self.raw_values).values())
+        query_line = ScriptLine(self.other, (), "before")
+        return (query_line, ScriptLine(self.command, values, "the call"), *between, query_line)
+
+    def writes(self, *frames: bytes) -> tuple[Sent, ...]:
+        """Return the queries with other writes in place of the request."""
+        return tuple(Sent(PAUSE, data) for data in (self.query, *frames, self.query))
+
+
+def sessions(table: Table) -> list[Session]:
+    """Return a session for each variant of each request of an edition."""
+    codec = ReferenceCodec(table)
+    found = []
+    for command in table.commands:
+        for index, variant in enumerate(command.request):
+            session = Session(table, command, variant, index, ordinary(variant))
+            values: list[Any] = list(named_values(variant, session.raw_values).values())
+            # A variant that another one hides is never sent.
+            if codec.encode(command.name, "request", values) == session.frame:
+                found.append(session)
+    return found

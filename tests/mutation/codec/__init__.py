@@ -1,0 +1,1 @@
+"""Codecs with one fault each, which the runner must find."""

@@ -1,0 +1,90 @@
+"""Explain why no test can distinguish a codec with a wrong table from a correct one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cobotwire.codec.interface import Codec
+from cobotwire.codec.reference import ReferenceCodec
+from cobotwire.conformance.codec.named import encode_named, plain_fields
+from cobotwire.conformance.codec.questions.frames import frame_of
+from cobotwire.conformance.codec.questions.samples import (
+    RawValues,
+    named_values,
+    ordinary,
+    with_one,
+)
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import Field, Number, Table
+from mutation.codec.mutant import CodecMutant
+from mutation.tables import Place, variant_at
+
+# A number of three bytes or more has too many values to try all of them.
+MOST_VALUES = 65536
+
+
+def reason(table: Table, mutant: CodecMutant) -> str:
+    """Compare every number that the field can carry, both ways; empty if the codecs differ."""
+    place = mutant.place
+    if place is None or mutant.table is None:
+        return ""
+    if place.field < 0:
+        return _shadowed(table, place)
+    right, wrong = ReferenceCodec(table), ReferenceCodec(mutant.table)
+    field = variant_at(table, place).fields[place.field]
+    count = 0
+    for raw_values in _all_samples(table, place, field):
+        count += 1
+        if not _alike(table, right, wrong, place, raw_values):
+            return ""
+    return f"alike for each of the {count} values that it can carry, and one more each way"
+
+
+def _shadowed(table: Table, place: Place) -> str:
+    """Return whether another variant with the same fields and size replaces the variant."""
+    variants = table.command(place.command).variants(place.direction)
+    own = variants[place.variant]
+    twins = [variant for variant in variants if variant is not own and variant == own]
+    return "another variant of the command is the same" if twins else ""
+
+
+def _all_samples(table: Table, place: Place, field: Field) -> list[RawValues]:
+    variant = variant_at(table, place)
+    base = ordinary(variant)
+    case = variant.raw_case(field, base)
+    assert case is not None, "an ordinary selector has a case"
+    return [
+        with_one(base, place.field, element, raw)
+        for element, number in enumerate(case.numbers[:1])
+        for raw in _values(number)
+    ]
+
+
+def _values(number: Number) -> range:
+    top = 256**number.width
+    low, high = number.raw_range
+    return range(low - 1, high + 2) if top <= MOST_VALUES else range(0)
+
+
+def _alike(table: Table, right: Codec, wrong: Codec, place: Place, raw_values: RawValues) -> bool:
+    variant = variant_at(table, place)
+    values = named_values(variant, raw_values)
+    if _encoded(right, place, values) != _encoded(wrong, place, values):
+        return False
+    data = frame_of(table, table.command(place.command).id, variant.pack(raw_values))
+    return bool(_decoded(right, place, data) == _decoded(wrong, place, data))
+
+
+def _encoded(codec: Codec, place: Place, values: dict[str, Any]) -> bytes | None:
+    try:
+        return encode_named(codec, place.command, place.direction, values)
+    except UsageError:
+        return None
+
+
+def _decoded(codec: Codec, place: Place, data: bytes) -> Any:
+    try:
+        message = codec.decode(place.direction, data, of=place.command)
+    except ProtocolError as error:
+        return error.reason, error.offset
+    return message.command.name, plain_fields(message)

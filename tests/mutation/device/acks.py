@@ -1,0 +1,47 @@
+"""Devices that send acknowledgements the edition does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire.codec.interface import Codec, DecodedMessage
+from cobotwire.protocol.table import Command, Table
+from mutation.device.broken import BrokenArm, Fault, TimedBytes
+from mutation.device.cells import framed
+from mutation.device.exchanges import distinct
+from mutation.mutant import Mutant
+
+DONE = b"\x01"
+
+
+class Acknowledged(Fault):
+    """One command is acknowledged although the edition has no acknowledgement of it."""
+
+    def __init__(self, command: Command, data: bytes) -> None:
+        self._command = command
+        self._data = data
+
+    def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
+        """Return the wrong acknowledgement, followed by the correct reply."""
+        if request.command is not self._command:
+            return [TimedBytes(0.0, data)]
+        return [TimedBytes(0.0, framed(codec.table.frame, self._command.id, self._data) + data)]
+
+
+def wrong_acks(table: Table) -> Iterator[Mutant]:
+    """Yield a mutant for every command without an acknowledgement."""
+    for command in distinct(table):
+        if not command.ack:
+            yield _mutant(table, command, "one that reports done", DONE)
+        if not command.ack and not command.answers:
+            yield _mutant(table, command, "an empty one", b"")
+
+
+def _mutant(table: Table, command: Command, text: str, data: bytes) -> Mutant:
+    return Mutant(
+        "ack where none is due",
+        command.name,
+        "",
+        text,
+        lambda clock: BrokenArm(table, Acknowledged(command, data), clock),
+    )

@@ -1,0 +1,49 @@
+"""Take a frame apart into numbers, so that any of them can be sent wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from cobotwire.codec.interface import DecodedMessage
+from cobotwire.protocol.fields import Case, Field, Number, RawRows, Variant
+from cobotwire.protocol.frame_format import FrameFormat
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One number on the wire: how it is written, and the raw number that is."""
+
+    number: Number
+    raw: int
+
+    @property
+    def data(self) -> bytes:
+        """Its bytes. What the width has no room for is cut off, as firmware in C does."""
+        return self.number.pack(self.raw)
+
+
+def take_apart(frame: FrameFormat, message: DecodedMessage, data: bytes) -> list[list[Cell]]:
+    """Return the cells of each field of a raw frame that was decoded as ``message``."""
+    variant = message.variant
+    rows = variant.unpack(frame.data(data))
+    return [
+        [Cell(number, raw) for number, raw in zip(_case(variant, field, rows).numbers, row)]
+        for field, row in zip(variant.fields, rows)
+    ]
+
+
+def _case(variant: Variant, field: Field, rows: RawRows) -> Case:
+    return variant.raw_case(field, rows) or field.cases[0]
+
+
+def joined(fields: Iterable[Iterable[Cell]]) -> bytes:
+    """Return the data bytes of a frame with these cells."""
+    return b"".join(cell.data for cells in fields for cell in cells)
+
+
+def framed(frame: FrameFormat, id: int, data: bytes, length: int | None = None) -> bytes:
+    """Return a frame; ``length``, if given, is its LEN whatever the size of the data."""
+    stated = frame.length(len(data)) if length is None else length
+    body = frame.header + bytes(frame.addresses[:1]) + bytes([stated % 256, id % 256]) + data
+    return body + frame.end(body)

@@ -1,0 +1,91 @@
+"""The suite of the device tester: an edition's mutants, and its correct device."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cobotwire import codec as codecs
+from cobotwire.protocol.table import Table
+from cobotwire.simulator.arm import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.faults import Noise, Scenario
+from cobotwire.simulator.peer import Peer
+from mutation.device import device_mutants
+from mutation.device.testing import complaints
+from mutation.mutant import Mutant
+from mutation.oracle.reasons import reason
+from mutation.suite import Case, Outcome, RightRun
+
+RUNS = 20
+# Servo traffic leaks before one reply in twenty, and after one reply in twenty.
+LEAKS = ("servo", "nuls")
+LIGHT_NOISE = Scenario(
+    name="light noise",
+    faults=(
+        Noise(probability=1 / 20, classes=LEAKS),
+        Noise(probability=1 / 20, classes=LEAKS, where="after"),
+    ),
+)
+
+
+class DeviceSuite:
+    """See :class:`mutation.suite.Suite`."""
+
+    def __init__(self, table: Table) -> None:
+        self._table = table
+        self._mutants = {mutant.id: mutant for mutant in device_mutants(table)}
+        self.name = f"device, {table.edition}"
+        # Failures that the correct device has too, which do not count, by the tested command.
+        self._groundless: dict[str, set[tuple[str, str]]] = {}
+
+    def cases(self) -> Sequence[Case]:
+        """Return every mutant of the edition's device."""
+        return [Case(mutant.id, mutant.kind) for mutant in self._mutants.values()]
+
+    def judge(self, case: Case) -> Outcome:
+        """Run the tester until a test case fails; if none fails, let the oracle give the reason."""
+        mutant = self._mutants[case.id]
+        try:
+            found = self._complaint(mutant)
+            return Outcome(case, found, "" if found else reason(self._table, mutant))
+        except Exception as error:
+            # No device, whatever it does, may crash the tester or the oracle.
+            return Outcome(case, "", "", f"{type(error).__name__}: {error}")
+
+    def _complaint(self, mutant: Mutant) -> str:
+        """Return the first failure; empty if there is none.
+
+        The test cases of the broken command run first, on a separate device, because they kill
+        most mutants; a whole run follows.
+        """
+        for only in dict.fromkeys((mutant.command, "")):
+            clock = SteppedClock()
+            for found in complaints(self._table, mutant.make(clock), clock, only):
+                if (found.command, found.case) not in self._excuses(only):
+                    return str(found)
+        return ""
+
+    def _excuses(self, only: str) -> set[tuple[str, str]]:
+        if only not in self._groundless:
+            clock = SteppedClock()
+            right = SimulatedArm(self._table, clock=clock)
+            found = complaints(self._table, right, clock, only)
+            self._groundless[only] = {(complaint.command, complaint.case) for complaint in found}
+        return self._groundless[only]
+
+    def right_runs(self) -> Sequence[str]:
+        """Return the names of the runs: on a clean line, and with light noise."""
+        return [f"{line} {number}" for line in ("clean", "noisy") for number in range(RUNS)]
+
+    def accept(self, run: str) -> RightRun:
+        """Run the tester on the right device to the end."""
+        line, number = run.split()
+        # Each run starts at another time, so that all runs differ.
+        clock = SteppedClock(int(number) * 1000.003)
+        arm = SimulatedArm(self._table, clock=clock)
+        peer: Peer = arm
+        if line == "noisy":
+            codec = codecs.load(self._table)
+            peer = LIGHT_NOISE.wrap(arm, codec, clock=clock, seed=int(number))
+        found = list(complaints(self._table, peer, clock))
+        return RightRun(run, not found, "; ".join(map(str, found)))

@@ -1,0 +1,161 @@
+"""Long random conversations, legal and not, made from a table, and a device's replies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from random import Random
+from typing import NamedTuple
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Frame
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Command, Table
+from cobotwire.simulator.arm import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.memory import TICK_SECONDS
+from cobotwire.simulator.peer import Peer
+from mutation.device.cells import framed, take_apart
+from mutation.device.legal import draw_request, shape
+
+# Long enough for a late reply, and for the longest motion of a joint.
+PAUSES = (0.0, 0.0, 0.001, 0.02, 0.05, 0.3, 1.0, 8.0)
+PART_LEGAL = 0.9
+PART_CUT = 0.1
+
+
+class Step(NamedTuple):
+    """Bytes that are written after a pause in seconds."""
+
+    pause: float
+    data: bytes
+
+
+class Received(NamedTuple):
+    """Bytes that a device sent, with their time."""
+
+    at: float
+    data: bytes
+
+
+class Conversation:
+    """A conversation with a device that can be repeated with another one.
+
+    It contains requests of some commands, mostly of those in ``about``; some are malformed. It
+    begins with a command that switches the power on, because without power an arm carries out few
+    commands. Values that the correct device reported may be sent back to it.
+    """
+
+    def __init__(
+        self,
+        table: Table,
+        random: Random,
+        commands: Sequence[Command],
+        about: Sequence[Command] = (),
+    ) -> None:
+        self.steps: list[Step] = []
+        self.received: list[Received] = []
+        self._table = table
+        self._random = random
+        self._commands = commands
+        self._about = about
+        self._codec = codecs.load(table)
+        self._framer = self._codec.framer("reply")
+        self._reported: dict[tuple[object, ...], list[int]] = {}
+        self._clock = SteppedClock()
+        self._right = SimulatedArm(table, clock=self._clock)
+
+    def have(self, steps: int) -> None:
+        """Have the conversation with the correct device."""
+        openings = [
+            c for c in self._table.commands if c.safety == "power" and not c.request[0].fields
+        ]
+        for command in openings[:1]:
+            self._exchange([Step(0.0, draw_request(self._table, command, self._random))])
+        while len(self.steps) < steps:
+            favoured = self._about and self._random.random() < 0.5
+            command = self._random.choice(self._about if favoured else self._commands)
+            data = draw_request(self._table, command, self._random, self._reported)
+            if self._random.random() > PART_LEGAL:
+                data = _damage(self._table, self._random, data)
+            self._exchange(_written(self._random, data))
+        _play(self._right, self._clock, [QUIET], self.received)
+
+    def again(self, peer: Peer, clock: SteppedClock) -> list[Received]:
+        """Return what another device sends when it receives the same at the same times."""
+        received: list[Received] = []
+        _play(peer, clock, (*self.steps, QUIET), received)
+        return received
+
+    def _exchange(self, steps: list[Step]) -> None:
+        self.steps.extend(steps)
+        before = sum(len(piece.data) for piece in self.received[-1:])
+        pieces = len(self.received)
+        _play(self._right, self._clock, steps, self.received)
+        new = self.received[max(pieces - 1, 0) :]
+        self._listen(b"".join(piece.data for piece in new)[before:])
+
+    def _listen(self, data: bytes) -> None:
+        for event in self._framer.feed(data):
+            if not isinstance(event, Frame):
+                continue
+            try:
+                message = event.message
+            except ProtocolError:
+                continue
+            cells = take_apart(self._table.frame, message, event.data)
+            for field, row in zip(message.variant.fields, cells):
+                self._reported[shape(field.cases[0])] = [cell.raw for cell in row]
+
+
+# The pause at the end of a conversation, in which late replies arrive.
+QUIET = Step(max(PAUSES), b"")
+
+
+def _play(peer: Peer, clock: SteppedClock, steps: Iterable[Step], received: list[Received]) -> None:
+    for step in steps:
+        _wait(peer, clock, clock() + step.pause, received)
+        if step.data:
+            _note(received, clock(), peer.receive(step.data))
+
+
+def _wait(peer: Peer, clock: SteppedClock, until: float, received: list[Received]) -> None:
+    while (wait := peer.wait) is not None and clock() + wait <= until:
+        # Time must advance even if a wait is only a rounding error.
+        clock.sleep(max(wait, TICK_SECONDS))
+        _note(received, clock(), peer.flush())
+    clock.sleep(until - clock())
+
+
+def _note(received: list[Received], now: float, data: bytes) -> None:
+    """Add bytes; join those with the same time into one piece."""
+    if data and received and received[-1].at == now:
+        received[-1] = Received(now, received[-1].data + data)
+    elif data:
+        received.append(Received(now, data))
+
+
+def _written(random: Random, data: bytes) -> list[Step]:
+    """Return a request in one write, or in several with pauses."""
+    pause = random.choice(PAUSES)
+    if random.random() > PART_CUT or len(data) < 3:
+        return [Step(pause, data)]
+    first, second = sorted(random.sample(range(1, len(data)), 2))
+    pieces = (data[:first], data[first:second], data[second:])
+    return [Step(random.choice(PAUSES[:4]), piece) for piece in pieces]
+
+
+def _damage(table: Table, random: Random, data: bytes) -> bytes:
+    """Return bytes that are not a legal request, or several requests in one write."""
+    used = {command.id for command in table.commands}
+    unused = [id for id in range(256) if id not in used]
+    return random.choice(
+        (
+            data * random.choice((2, 3)),
+            data[: random.randrange(1, len(data))],
+            data[:-1] + bytes([random.randrange(256)]),
+            bytes(random.randrange(256) for _ in range(random.randrange(1, 8))) + data,
+            framed(table.frame, random.choice(unused), data[4:-1]),
+            data[:2] + bytes([random.randrange(256)]) + data[3:],
+            data[:4] + bytes(random.randrange(256) for _ in data[4:-1]) + data[-1:],
+        )
+    )

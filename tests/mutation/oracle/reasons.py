@@ -1,0 +1,119 @@
+"""Explain why nobody on the line can distinguish a mutant from the correct device."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cobotwire.protocol.table import Field, Table
+from mutation.device.exchanges import reply_fields, request_fields
+from mutation.mutant import Mutant
+from mutation.oracle.compare import conversations, only_legal, replies_of, values_of
+from mutation.oracle.conversation import Conversation
+from mutation.oracle.undefined import LEFT_OPEN, OF_MEANING
+
+
+def reason(table: Table, mutant: Mutant) -> str:
+    """Return why a mutant cannot be distinguished from the correct device; empty if it can."""
+    undefined = _undefined(table, mutant)
+    if undefined:
+        return undefined
+    field = _field(table, mutant)
+    known = field is None or field.echo or _reported(table, mutant.command, field)
+    had, differs = [], False
+    for conversation in conversations(table, mutant.command):
+        replied = replies_of(mutant, conversation)
+        had.append(conversation)
+        if replied != conversation.received:
+            differs = True
+            if known or not only_legal(table, replied):
+                return ""
+    if not differs:
+        return _alike(table, mutant, had)
+    assert field is not None
+    return (
+        f"nobody knows the true value: every wrong one is legal, no command sets "
+        f"`{field.name}` and no other reply repeats it"
+    )
+
+
+def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
+    """Return how the mutant was compared, with the values that it could have sent wrongly."""
+    requests = sum(len(conversation.steps) for conversation in had)
+    same = f"not one byte differs in {len(had)} conversations of {requests} writes in all"
+    field = _field(table, mutant)
+    if field is None:
+        return f"{same}: no reply shows what it does"
+    seen = {
+        value
+        for conversation in had
+        for reported in values_of(table, mutant.command, field.name, conversation.received)
+        for value in (reported if isinstance(reported, tuple) else (reported,))
+    }
+    return f"{same}: `{field.name}` was {_range(seen)}, which is sent alike"
+
+
+# What the edition leaves undefined, by the unit or the labels of a request's field.
+SHARE = "percent"
+TURNS = "CLOCKWISE"
+
+
+def _undefined(table: Table, mutant: Mutant) -> str:
+    """Return what the edition does not define about a field, so that any effect is correct."""
+    if mutant.kind in OF_MEANING and mutant.command in LEFT_OPEN:
+        return LEFT_OPEN[mutant.command]
+    if not mutant.command or mutant.field in ("", *_replied(table, mutant.command)):
+        return ""
+    fields = {field.name: field for field in request_fields(table.command(mutant.command))}
+    field = fields[mutant.field]
+    if field.cases[0].numbers[0].unit == SHARE and field.name == "speed":
+        return (
+            "the edition gives a speed as a share of the fastest, and no line says how fast that is"
+        )
+    if TURNS in field.labels:
+        return "the edition does not say whether the angle of a joint that turns clockwise grows"
+    return ""
+
+
+def _replied(table: Table, name: str) -> list[str]:
+    command = table.command(name)
+    return [field.name for field in reply_fields(command)] if command.answers else []
+
+
+def _range(values: set[int | float]) -> str:
+    if not values:
+        return "never told"
+    low, high = min(values), max(values)
+    return f"always {low:g}" if low == high else f"between {low:g} and {high:g}"
+
+
+def _field(table: Table, mutant: Mutant) -> Field | None:
+    """Return the field of the reply that is wrong; None if something else is."""
+    if not mutant.command:
+        return None
+    command = table.command(mutant.command)
+    if not command.answers:
+        return None
+    return next((f for f in reply_fields(command) if f.name == mutant.field), None)
+
+
+def _reported(table: Table, name: str, field: Field) -> bool:
+    """Return whether another command sets or reports the value of the field."""
+    command = table.command(name)
+    setters = [c for c in table.commands if c.read_by is not None and c.read_by.query == name]
+    # A fixed effect reveals only one value.
+    if any(
+        all(isinstance(value, str) for _, value in c.read_by.fields) for c in setters if c.read_by
+    ):
+        return True
+    if setters and field.choices:
+        return True
+    return any(
+        _units(field) and _units(other) == _units(field)
+        for query in table.commands
+        if query.answers and query.id != command.id
+        for other in reply_fields(query)
+    )
+
+
+def _units(field: Field) -> set[str]:
+    return {number.unit for case in field.cases for number in case.numbers} - {""}

@@ -1,0 +1,118 @@
+"""The device tester kills a sample of the broken devices, and the figures are listed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from cobotwire.editions import mycobot, mycobot280
+from cobotwire.protocol.table import Table
+from cobotwire.simulator.clock import SteppedClock
+from mutation.device import device_mutants
+from mutation.device.broken import BrokenArm, Fault
+from mutation.device.suite import DeviceSuite
+from mutation.listing import lines, page
+from mutation.mutant import Mutant
+from mutation.oracle.compare import conversations, first_difference
+from mutation.oracle.reasons import reason
+from mutation.running import Verdicts, sampled
+from mutation.suite import Case, Outcome, RightRun, total
+
+TABLES = (mycobot.TABLE, mycobot280.TABLE)
+BOTH = pytest.mark.parametrize("table", TABLES, ids=lambda table: table.edition)
+# The kinds of fault.
+KINDS = {
+    *("sign", "scale", "width", "order", "endianness", "range", "value", "echo", "text"),
+    *("LEN", "id", "footer", "header", "no reply", "late reply", "double reply"),
+    *("ignored", "stored wrong", "wrong part", "ack where none is due", "malformed input"),
+}
+
+
+@pytest.fixture(scope="module", params=TABLES, ids=lambda table: table.edition)
+def suite(request: pytest.FixtureRequest) -> DeviceSuite:
+    return DeviceSuite(request.param)
+
+
+@BOTH
+def test_mutants_have_every_kind_of_fault_and_unique_ids(table: Table) -> None:
+    mutants = device_mutants(table)
+    assert {mutant.kind for mutant in mutants} == KINDS
+    assert len({mutant.id for mutant in mutants}) == len(mutants) >= 300
+
+
+@BOTH
+def test_broken_arm_without_a_fault_passes_as_correct(table: Table) -> None:
+    right = Mutant("none", "", "", "", lambda clock: BrokenArm(table, Fault(), clock))
+    assert first_difference(table, right, rounds=6) is None
+
+
+@BOTH
+def test_wrong_footer_differs_in_some_conversation(table: Table) -> None:
+    framed = [mutant for mutant in device_mutants(table) if mutant.kind == "footer"]
+    for mutant in framed[::9]:
+        assert first_difference(table, mutant) is not None, mutant.id
+
+
+def test_oracle_explains_why_a_survivor_cannot_be_distinguished() -> None:
+    table = mycobot.TABLE
+    mutants = {mutant.id: mutant for mutant in device_mutants(table)}
+    colour = mutants["stored wrong: set_color.red: half of it"]
+    assert "no reply shows what it does" in reason(table, colour)
+    assert reason(table, mutants["LEN: get_angles: one too many in LEN"]) == ""
+
+
+def test_conversation_is_the_same_each_time() -> None:
+    one, other = (next(iter(conversations(mycobot.TABLE, "get_angles"))) for _ in range(2))
+    assert one.steps == other.steps
+    assert one.received == other.received
+    clock = SteppedClock()
+    assert one.again(BrokenArm(mycobot.TABLE, Fault(), clock), clock) == one.received
+
+
+def test_each_sampled_mutant_is_killed_or_excused(suite: DeviceSuite) -> None:
+    for case in sampled(suite.cases(), 2, seed=7):
+        outcome = suite.judge(case)
+        assert outcome.killed_by or outcome.reason, (case.id, outcome.crash)
+
+
+def test_correct_device_passes_on_a_clean_line_and_a_noisy_one(suite: DeviceSuite) -> None:
+    names = suite.right_runs()
+    assert [name.split()[0] for name in names] == ["clean"] * 20 + ["noisy"] * 20
+    for name in (names[0], names[-1]):
+        run = suite.accept(name)
+        assert run.passed, run.text
+
+
+def _verdicts(outcomes: Sequence[Outcome], *, accepted: bool = True) -> Verdicts:
+    return Verdicts("a tester", list(outcomes), [RightRun("clean 0", accepted, "it failed")])
+
+
+KILLED = Outcome(Case("one", "sign"), "a test case")
+EXCUSED = Outcome(Case("two", "sign"), "", "nobody could tell")
+MISSED = Outcome(Case("three", "scale"), "")
+CRASHED = Outcome(Case("four", "scale"), "", "", "ValueError: no")
+
+
+def test_run_is_sound_if_all_are_killed_or_excused_and_correct_subjects_pass() -> None:
+    assert _verdicts([KILLED, EXCUSED]).sound
+    assert not _verdicts([KILLED, MISSED]).sound
+    assert not _verdicts([KILLED, CRASHED]).sound
+    assert not _verdicts([KILLED, EXCUSED], accepted=False).sound
+    assert total([KILLED, EXCUSED, MISSED, CRASHED]) == (1, 1, 4)
+
+
+def test_listing_names_each_survivor_with_its_reason(tmp_path: Path) -> None:
+    verdicts = _verdicts([KILLED, EXCUSED, MISSED, CRASHED], accepted=False)
+    for text in ("\n".join(lines(verdicts)), page([verdicts], 1.0)):
+        for part in (
+            "two",
+            "nobody could tell",
+            "three",
+            "the tester missed it",
+            "ValueError",
+        ):
+            assert part in text
+        assert "a test case" not in text.split("\n", 12)[-1]
+    assert "REJECTED  clean 0: it failed" in "\n".join(lines(verdicts))

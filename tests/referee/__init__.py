@@ -1,0 +1,1 @@
+"""Sessions of client libraries with the referee."""

@@ -1,0 +1,64 @@
+"""A single caller of an exchange, for tests about single requests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from cobotwire.codec.interface import Codec
+from cobotwire.session import (
+    EncodedRequest,
+    Exchange,
+    PendingRequest,
+    RetryPolicy,
+)
+from cobotwire.session.request import RequestEncoder
+
+ONCE = RetryPolicy(attempts=1)
+
+
+class OneCaller:
+    """Send one request after another, each once; the test provides bytes and times."""
+
+    def __init__(self, codec: Codec) -> None:
+        self.exchange = Exchange(codec)
+        self._encoder = RequestEncoder(codec)
+        self.pending: PendingRequest | None = None
+        self.receive = self.exchange.receive
+        self.wake = self.exchange.wake
+
+    def encode(self, name: str, values: Sequence[Any]) -> EncodedRequest:
+        return self._encoder.encode(name, values)
+
+    def request(
+        self, name: str, values: Sequence[Any], now: float, timeout: float | None = None
+    ) -> bytes:
+        """Send a request; return its bytes, empty while it is held."""
+        request = self.encode(name, values)
+        if not request.command.answers:
+            return self.exchange.send_one_way(request, now)[0]
+        self.pending = self.exchange.submit(request, now, ONCE, timeout)
+        return self.exchange.outgoing(now, drained=True)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether the last request waits for its reply."""
+        return self.pending is not None and not self.pending.done
+
+    @property
+    def wake_at(self) -> float | None:
+        """The time at which :meth:`wake` must be called unless bytes arrive earlier."""
+        return self.exchange.idle_seconds(0.0)
+
+    def give_up(self) -> None:
+        """Stop waiting, as Ctrl-C does."""
+        if self.pending is not None:
+            self.exchange.give_up(self.pending)
+
+    def free_at(self, name: str, *values: Any, now: float) -> float:
+        """Return when a request could be sent that is submitted now; nothing is sent."""
+        probe = self.exchange.submit(self.encode(name, values), now, ONCE)
+        seconds = self.exchange.idle_seconds(now)
+        self.exchange.give_up(probe)
+        assert seconds is not None, "a queued request has a time at which it can be sent"
+        return now + seconds

@@ -1,0 +1,93 @@
+"""Late replies are never taken for the reply to another request."""
+
+from __future__ import annotations
+
+import pytest
+
+from cobotwire.codec.interface import Codec
+from cobotwire.session import LateReply, ReplyMatched, RequestExpired, UnexpectedFrame
+from cobotwire.session.policy import GRACE_SECONDS
+from session.one_caller import OneCaller
+
+ENCODER = bytes.fromhex("FE FE 04 3B 08 00 FA")
+MINIMUM_OF_1 = bytes.fromhex("FE FE 05 4A 01 F9 F2 FA")
+TEXT = b"ssid: one password: two"
+
+
+@pytest.fixture
+def session(codec: Codec) -> OneCaller:
+    return OneCaller(codec)
+
+
+def give_up(session: OneCaller, name: str, *values: int) -> None:
+    session.request(name, values, now=0.0, timeout=0.1)
+    assert isinstance(session.wake(0.1)[-1], RequestExpired)
+
+
+def test_request_is_held_while_a_reply_that_looks_like_its_own_is_outstanding(
+    session: OneCaller,
+) -> None:
+    give_up(session, "get_encoder", 1)
+    # The reply does not name its encoder, so a query for another joint is held, too.
+    for joint in (1, 2):
+        assert session.free_at("get_encoder", joint, now=0.2) == GRACE_SECONDS
+        assert session.request("get_encoder", (joint,), now=GRACE_SECONDS - 0.01) == b""
+        session.give_up()
+    assert session.free_at("get_angles", now=0.2) == 0.2
+    assert session.request("set_encoder", (1, 5), now=0.2), "a one-way request is never held"
+    assert session.request("get_encoder", (2,), now=GRACE_SECONDS)
+
+
+def test_late_reply_lifts_the_hold(session: OneCaller) -> None:
+    give_up(session, "get_encoder", 1)
+    assert [type(e) for e in session.receive(ENCODER, 0.15)] == [LateReply]
+    assert session.free_at("get_encoder", 2, now=0.16) == 0.16
+    session.request("get_encoder", (2,), now=0.16)
+    assert [type(e) for e in session.receive(ENCODER, 0.17)] == [ReplyMatched]
+
+
+def test_reply_to_a_cancelled_request_is_outstanding(session: OneCaller) -> None:
+    session.request("get_encoder", (1,), now=5.0)
+    session.give_up()
+    assert session.free_at("get_encoder", 2, now=5.1) == 5.0 + GRACE_SECONDS
+
+
+def test_repeated_arguments_distinguish_replies(session: OneCaller) -> None:
+    give_up(session, "get_joint_min_angle", 1)
+    assert session.free_at("get_joint_min_angle", 1, now=0.2) == GRACE_SECONDS
+    assert session.free_at("get_joint_min_angle", 2, now=0.2) == 0.2
+    session.request("get_joint_min_angle", (2,), now=0.2)
+    assert [type(e) for e in session.receive(MINIMUM_OF_1, 0.3)] == [LateReply]
+    assert session.waiting
+    session.give_up()
+    # The late reply has arrived; only the reply to the request just given up is outstanding.
+    assert session.free_at("get_joint_min_angle", 1, now=0.3) == 0.3
+    assert session.free_at("get_joint_min_angle", 2, now=0.3) == 0.2 + GRACE_SECONDS
+
+
+def test_replies_that_may_not_repeat_their_argument_are_not_distinguished(
+    session: OneCaller,
+) -> None:
+    give_up(session, "is_servo_enable", 3)
+    assert session.free_at("is_servo_enable", 4, now=0.2) == GRACE_SECONDS
+
+
+def test_late_text_does_not_lift_the_hold(session: OneCaller) -> None:
+    give_up(session, "get_ssid_pwd")
+    session.receive(TEXT, 0.3)
+    assert session.free_at("get_ssid_pwd", now=0.4) == GRACE_SECONDS
+
+
+def test_echo_of_a_request_does_not_lift_the_hold(session: OneCaller) -> None:
+    session.request("is_servo_enable", (1,), now=0.0)
+    session.give_up()
+    session.receive(bytes.fromhex("FE FE 03 50 01 FA"), 0.1)
+    assert session.free_at("is_servo_enable", 2, now=0.2) == GRACE_SECONDS
+
+
+def test_illegal_frame_that_may_be_a_late_reply_ends_no_request(session: OneCaller) -> None:
+    give_up(session, "get_joint_min_angle", 1)
+    session.request("get_joint_min_angle", (2,), now=0.2)
+    [event] = session.receive(bytes.fromhex("FE FE 05 4A 09 F9 F2 FA"), 0.3)
+    assert isinstance(event, UnexpectedFrame)
+    assert session.waiting

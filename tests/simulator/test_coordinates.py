@@ -1,0 +1,215 @@
+"""Test the end of the simulated arm: targets, straight lines, jogs, and reference frames."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire.editions.mycobot280 import TABLE, TargetKind
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.kinematics import Pose
+
+REFERENCE = codecs.load(TABLE, "reference")
+BENT = (10.0, -30.0, -60.0, 20.0, 5.0, 30.0)
+# The error of the end from ticks of six joints, in millimetres and degrees.
+TICKS = 0.8
+LINEAR, FORWARD, BACKWARD = 1, 1, 0
+
+
+class Bench:
+    """A powered, bent arm, and a clock that the test steps."""
+
+    def __init__(self) -> None:
+        self.clock = SteppedClock()
+        self.arm = SimulatedArm(TABLE, clock=self.clock)
+        self.send("power_on")
+        self.send("send_angles", BENT, 100)
+        self.clock.sleep(10)
+
+    def send(self, name: str, *values: Any) -> bytes:
+        return self.arm.receive(REFERENCE.encode(name, "request", values))
+
+    def query(self, name: str, *values: Any) -> Any:
+        return REFERENCE.decode("reply", self.send(name, *values), of=name).values[-1]
+
+    @property
+    def end(self) -> Pose:
+        return Pose.of(self.query("get_coords"))
+
+
+@pytest.fixture
+def bench() -> Bench:
+    return Bench()
+
+
+def shifted(coords: tuple[float, ...], *shift: float) -> tuple[float, ...]:
+    return tuple(round(a + b, 2) for a, b in zip(coords, (*shift, 0, 0, 0, 0, 0, 0)))
+
+
+def test_coordinate_target_is_reached_and_read_back(bench: Bench) -> None:
+    target = shifted(bench.query("get_coords"), -20, 30, -25, 5, -10, 15)
+    bench.send("send_coords", target, 60, 0)
+    bench.clock.sleep(10)
+    way, turn = bench.end.distance(Pose.of(target))
+    assert way < TICKS
+    assert turn < 0.4
+    assert bench.query("is_in_position", target, TargetKind.COORDS) == 1
+    assert bench.arm.notes == ()
+
+
+def test_unreachable_target_is_rejected_with_a_note(bench: Bench) -> None:
+    before = bench.query("get_angles")
+    bench.send("send_coords", (281.4, 281.4, 412.6, 0, 0, 0), 60, 0)
+    bench.clock.sleep(10)
+    assert bench.query("get_angles") == before
+    [note] = bench.arm.notes
+    assert (note.command, note.time) == ("send_coords", 10.0)
+    assert "reach" in note.text
+    assert bench.query("get_error_information") == 32
+    bench.send("clear_error_information")
+    assert bench.query("get_error_information") == 0
+    bench.send("set_joint_max", 3, 10.0)
+    bench.send("send_angle", 3, 20.0, 50)
+    assert bench.query("get_error_information") == 3
+
+
+def test_linear_motion_is_straight(bench: Bench) -> None:
+    start = bench.query("get_coords")
+    target = shifted(start, -60, 40, -50)
+    bench.send("send_coords", target, 60, LINEAR)
+    off = []
+    while bench.query("is_moving"):
+        here = bench.query("get_coords")
+        share = (here[0] - start[0]) / -60
+        off += [abs(here[1] - start[1] - 40 * share), abs(here[2] - start[2] + 50 * share)]
+        bench.clock.sleep(0.05)
+    assert len(off) > 10
+    assert max(off) < 2 * TICKS
+    assert bench.query("is_in_position", target, TargetKind.COORDS) == 1
+
+
+def test_angular_motion_is_not_straight(bench: Bench) -> None:
+    start = bench.query("get_coords")
+    bench.send("send_coords", shifted(start, -120, 100, -50), 60, 0)
+    off = []
+    while bench.query("is_moving"):
+        here = bench.query("get_coords")
+        off.append(abs(here[1] - start[1] - 100 * (here[0] - start[0]) / -120))
+        bench.clock.sleep(0.05)
+    assert max(off) > 2
+
+
+@pytest.mark.parametrize("axis", range(1, 7))
+@pytest.mark.parametrize("direction", [BACKWARD, FORWARD])
+def test_jog_coord_continues_until_it_is_stopped(bench: Bench, axis: int, direction: int) -> None:
+    start = bench.query("get_coords")
+    bench.send("jog_coord", axis, direction, 20)
+    bench.clock.sleep(0.5)
+    bench.send("stop")
+    bench.clock.sleep(1.0)
+    change = [b - a for a, b in zip(start, bench.query("get_coords"))]
+    changed = change.pop(axis - 1)
+    assert (changed > 1) if direction == FORWARD else (changed < -1)
+    assert max(map(abs, change)) < 2 * TICKS
+    assert bench.query("is_moving") == 0
+
+
+def test_jog_ends_at_the_end_of_the_reach(bench: Bench) -> None:
+    bench.send("jog_coord", 3, FORWARD, 50)
+    bench.clock.sleep(60)
+    assert bench.query("is_moving") == 0
+    high = bench.query("get_coords")[2]
+    bench.send("jog_coord", 3, FORWARD, 50)
+    bench.clock.sleep(60)
+    assert bench.query("get_coords")[2] == pytest.approx(high, abs=5)
+
+
+@pytest.mark.parametrize("axis", [1, 2, 3])
+def test_jog_rpy_keeps_its_axis_and_the_position(bench: Bench, axis: int) -> None:
+    start = bench.end
+    bench.send("jog_rpy", axis, FORWARD, 20)
+    bench.clock.sleep(0.7)
+    bench.send("stop")
+    bench.clock.sleep(1)
+    end = bench.end
+    assert start.distance(end)[0] < 2 * TICKS
+    assert start.distance(end)[1] > 1
+    row = [part[axis - 1] for part in start[:3]]
+    assert [part[axis - 1] for part in end[:3]] == pytest.approx(row, abs=0.01)
+
+
+def test_tool_and_world_references_apply_when_they_are_chosen(bench: Bench) -> None:
+    flange = bench.end
+    tool, world = (0, 0, 50, 10, 20, 30), (100, -40, 20, 0, 0, 90)
+    bench.send("set_tool_reference", tool)
+    bench.send("set_world_reference", world)
+    assert bench.end == flange, "they are set, not chosen"
+    bench.send("set_end_type", 1)
+    x, y, z = (p + 50 * axis for p, axis in zip(flange.origin, flange.z))
+    assert bench.end.origin == pytest.approx((x, y, z), abs=0.3)
+    bench.send("set_reference_frame", 1)
+    # The world frame sees the pedestal turned by 90 degrees: x along its y.
+    assert bench.end.origin == pytest.approx((100 - y, -40 + x, 20 + z), abs=0.3)
+    target = shifted(bench.query("get_coords"), 15, -20, -10)
+    bench.send("send_coords", target, 60, LINEAR)
+    bench.clock.sleep(10)
+    assert bench.end.distance(Pose.of(target))[0] < TICKS
+    bench.send("set_reference_frame", 0)
+    bench.send("set_end_type", 0)
+    # The same move, as the flange and the base see it: 15 along the world's x is -y.
+    expected = [a + b for a, b in zip(flange.origin, (-20, -15, -10))]
+    assert bench.end.origin == pytest.approx(expected, abs=2 * TICKS)
+
+
+def test_kinematics_commands_agree_with_the_arm(bench: Bench) -> None:
+    coords = bench.query("get_coords")
+    standing = bench.arm.state.standing(bench.clock())
+    assert bench.query("angles_to_coords", bench.query("get_angles")) == pytest.approx(
+        coords, abs=0.3
+    )
+    solved = bench.query("solve_inv_kinematics", coords, bench.query("get_angles"))
+    assert solved == pytest.approx(standing, abs=0.2)
+    given = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    assert bench.query("solve_inv_kinematics", (0, 0, 3000, 0, 0, 0), given) == given
+    assert bench.query("get_error_information") == 32
+
+
+def test_arm_outside_its_limits_stays_there_until_it_is_sent_inside(
+    bench: Bench,
+) -> None:
+    bench.arm.state.angles.place((88.1, -148.33, 140.4, -140.0, 104.2, -13.7), bench.clock())
+    assert bench.query("get_angles")[1] == -148.35
+    bench.send("send_angle", 1, 20.0, 100)
+    bench.clock.sleep(5)
+    assert bench.query("get_angles")[:2] == (20.03, -148.35)
+    bench.send("jog_angle", 2, BACKWARD, 50)
+    bench.clock.sleep(5)
+    assert bench.query("get_angles")[1] == -148.35
+    bench.send("jog_angle", 2, FORWARD, 50)
+    bench.clock.sleep(0.5)
+    assert bench.query("get_angles")[1] > -148.35
+
+
+def test_arm_without_geometry_moves_joints_and_rejects_coordinates() -> None:
+    clock = SteppedClock()
+    arm = SimulatedArm(replace(TABLE, edition="another"), clock=clock)
+
+    def query(name: str, *values: Any) -> Any:
+        reply = arm.receive(REFERENCE.encode(name, "request", values))
+        return REFERENCE.decode("reply", reply, of=name).values[-1]
+
+    query("power_on")
+    query("send_angles", (10.0, 20.0, 30.0, 40.0, 50.0, 60.0), 100)
+    clock.sleep(5)
+    assert query("get_angles") == (10.0, 20.0, 30.0, 40.0, 50.0, 60.0), "it stands on no ticks"
+    assert query("get_coords") == query("angles_to_coords", BENT) == (0.0,) * 6
+    for motion in (("send_coords", (100, 0, 200, 0, 0, 0), 50, 0), ("jog_coord", 1, 1, 50)):
+        query(*motion)
+        assert "geometry" in arm.notes[-1].text
+    assert query("solve_inv_kinematics", (100, 0, 200, 0, 0, 0), BENT) == BENT
+    assert query("is_in_position", (0,) * 6, TargetKind.COORDS) == 0
+    assert query("is_moving") == 0

@@ -1,0 +1,192 @@
+"""Test one simulated arm over TCP, with several clients, some of which misbehave."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from cobotwire import LinkError, UsageError
+from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
+from cobotwire.simulator import SimulatedArm, TcpServer
+from cobotwire.simulator.client_connection import UNREAD_LIMIT
+from cobotwire.simulator.tcp import MOST_CLIENTS, address
+
+QUERY = bytes.fromhex("FE FE 02 12 FA")
+OFF = bytes.fromhex("FE FE 03 12 00 FA")
+
+
+@pytest.fixture
+def server() -> Iterator[TcpServer]:
+    with TcpServer(SimulatedArm(TABLE).connect) as serving:
+        yield serving
+
+
+def _connect(server: TcpServer) -> socket.socket:
+    client = socket.create_connection(("127.0.0.1", int(server.url.rpartition(":")[2])), 5)
+    client.settimeout(5)
+    return client
+
+
+def _comes(right: Callable[[], bool]) -> bool:
+    until = time.monotonic() + 30
+    while not right() and time.monotonic() < until:
+        time.sleep(0.005)
+    return right()
+
+
+def test_tcp_server_listens_on_loopback_and_a_free_port_by_default(server: TcpServer) -> None:
+    assert server.url.startswith("socket://127.0.0.1:")
+    assert server.loopback
+    with TcpServer(SimulatedArm(TABLE).connect) as other:
+        assert other.url != server.url
+    with TcpServer(SimulatedArm(TABLE).connect, "0.0.0.0") as everywhere:
+        assert not everywhere.loopback
+        with MyCobot280(everywhere.url) as arm:
+            assert arm.is_power_on() is False
+
+
+def test_several_clients_share_one_arm(server: TcpServer) -> None:
+    with MyCobot280(server.url) as one, MyCobot280(server.url) as two:
+        one.power_on(ack_within=2.0)
+        assert two.is_power_on() is True
+        one.move_angles([10, 0, 0, 0, 0, 0], 100)
+        assert two.get_angles().j1 == pytest.approx(10, abs=0.1)
+        assert server.clients == 2
+    assert _comes(lambda: server.clients == 0)
+
+
+def test_each_client_gets_the_replies_to_its_own_requests(server: TcpServer) -> None:
+    right: list[int] = []
+
+    def query(joint: int) -> None:
+        with MyCobot280(server.url, timeout=10) as arm:
+            arm.set_servo_data(joint, 21, joint * 10)
+            right.extend(arm.get_servo_data(joint, 21) == joint * 10 for _ in range(100))
+
+    threads = [threading.Thread(target=query, args=[joint]) for joint in range(1, 7)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(30)
+    assert right == [True] * 600
+
+
+def test_partial_frames_of_two_clients_do_not_mix(server: TcpServer) -> None:
+    with _connect(server) as one, _connect(server) as two:
+        one.sendall(QUERY[:3])
+        two.sendall(QUERY)
+        assert two.recv(100) == OFF
+        one.sendall(QUERY[3:])
+        assert one.recv(100) == OFF
+
+
+def test_asyncio_client_drives_the_arm_over_tcp(server: TcpServer) -> None:
+    async def drive() -> float:
+        async with AsyncMyCobot280(server.url) as arm:
+            await arm.power_on()
+            await arm.move_angles([5, 0, 0, 0, 0, 0], 100)
+            return (await arm.get_angles()).j1
+
+    assert asyncio.run(drive()) == pytest.approx(5, abs=0.1)
+
+
+def test_client_that_disconnects_within_a_frame_does_not_disturb_the_next_one(
+    server: TcpServer,
+) -> None:
+    with _connect(server) as client:
+        client.sendall(QUERY[:4])
+    with _connect(server) as client:
+        client.sendall(QUERY)
+        assert client.recv(100) == OFF
+
+
+def test_client_with_a_reset_connection_is_dropped(server: TcpServer) -> None:
+    with _connect(server) as client:
+        client.sendall(QUERY * 50)
+        # A reset instead of an orderly end, with replies on their way.
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")
+    assert _comes(lambda: server.clients == 0)
+    with MyCobot280(server.url) as arm:
+        assert arm.is_power_on() is False
+
+
+def test_client_that_floods_and_never_reads_does_not_block_others(server: TcpServer) -> None:
+    with _connect(server) as flooding, MyCobot280(server.url, timeout=60) as arm:
+        stop = threading.Event()
+
+        def flood() -> None:
+            flooding.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            while not stop.is_set():
+                flooding.sendall(QUERY * 400)
+
+        thread = threading.Thread(target=flood)
+        thread.start()
+        try:
+            for _ in range(50):
+                assert arm.is_power_on() is False
+            assert _comes(lambda: any(c.full for c in tuple(server._clients.values())))
+            for client in tuple(server._clients.values()):
+                assert client.connection.unread <= UNREAD_LIMIT + 4096 * 6
+        finally:
+            stop.set()
+            thread.join(60)
+    assert not thread.is_alive()
+
+
+def test_clients_beyond_the_limit_are_disconnected(server: TcpServer) -> None:
+    clients = [_connect(server) for _ in range(MOST_CLIENTS)]
+    try:
+        assert _comes(lambda: server.clients == MOST_CLIENTS)
+        with _connect(server) as late:
+            assert late.recv(100) == b""
+        clients.pop().close()
+        assert _comes(lambda: server.clients == MOST_CLIENTS - 1)
+        with MyCobot280(server.url) as arm:
+            assert arm.is_power_on() is False
+    finally:
+        for client in clients:
+            client.close()
+
+
+def test_closing_the_server_disconnects_all_clients() -> None:
+    with TcpServer(SimulatedArm(TABLE).connect) as server:
+        client = _connect(server)
+        client.sendall(QUERY)
+        assert client.recv(100) == OFF
+    with client:
+        assert client.recv(100) == b""
+    with pytest.raises(LinkError):
+        MyCobot280(server.url)
+
+
+def test_port_in_use_and_bad_address_raise_errors(server: TcpServer) -> None:
+    port = int(server.url.rpartition(":")[2])
+    with pytest.raises(LinkError, match=rf"127\.0\.0\.1:{port}: cannot listen: Address"):
+        TcpServer(SimulatedArm(TABLE).connect, port=port)
+    with pytest.raises(LinkError, match=r"no such host\.invalid:0: cannot listen"):
+        TcpServer(SimulatedArm(TABLE).connect, "no such host.invalid")
+    with pytest.raises(UsageError, match="65536"):
+        TcpServer(SimulatedArm(TABLE).connect, port=65536)
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        (":0", ("127.0.0.1", 0)),
+        ("localhost:9000", ("localhost", 9000)),
+        ("[::1]:80", ("::1", 80)),
+    ],
+)
+def test_address_is_split_into_host_and_port(text: str, parts: tuple[str, int]) -> None:
+    assert address(text) == parts
+
+
+@pytest.mark.parametrize("text", ["", "9000", "localhost", "localhost:", "localhost:http", ":-1"])
+def test_text_that_is_not_an_address_is_rejected(text: str) -> None:
+    with pytest.raises(UsageError, match="HOST:PORT"):
+        address(text)

@@ -1,0 +1,150 @@
+"""Test the pytest plugin as other projects use it: installed, in separate pytest runs."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import vectors
+
+INI = "[pytest]\naddopts = --strict-markers -q -p no:cacheprovider\nfilterwarnings = error\n"
+GUIDE = (vectors.ROOT / "docs" / "testing.md").read_text()
+EXAMPLES = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
+
+
+def run(folder: Path, test: str, *words: str) -> str:
+    """Run ``test`` as a separate project; return what pytest printed."""
+    (folder / "pytest.ini").write_text(INI)
+    (folder / "test_it.py").write_text(test)
+    result = subprocess.run(
+        [sys.executable, "-m", "pytest", *words],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    return result.stdout + result.stderr
+
+
+def test_example_of_the_guide_runs(tmp_path: Path) -> None:
+    assert "2 passed" in (output := run(tmp_path, EXAMPLES[0])), output
+
+
+def test_example_without_fixtures_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    exec(EXAMPLES[1], {})
+    seconds = int(capsys.readouterr().out.split()[0])
+    assert 11 < seconds < 16
+
+
+def test_url_fixture_serves_each_kind_of_port(tmp_path: Path) -> None:
+    test = """
+import pytest, serial, time
+
+def ask(url):
+    with serial.serial_for_url(url, 115200, timeout=60) as port:
+        port.write(bytes.fromhex("FE FE 02 12 FA"))
+        assert port.read(6) == bytes.fromhex("FE FE 03 12 00 FA")
+
+def test_pty(simulated_arm_url):
+    assert simulated_arm_url.startswith("/dev/")
+    ask(simulated_arm_url)
+
+@pytest.mark.simulated_arm(transport="tcp")
+def test_tcp(simulated_arm_url):
+    assert simulated_arm_url.startswith("socket://127.0.0.1:")
+    ask(simulated_arm_url)
+
+@pytest.mark.simulated_arm(transport="tcp", speed=100)
+def test_a_client_over_tcp_in_faster_time(simulated_arm):
+    simulated_arm.power_on()
+    started = time.monotonic()
+    simulated_arm.move_angles([100, 0, 0, 0, 0, 0], 5)
+    assert time.monotonic() - started < 5
+"""
+    assert "3 passed" in (output := run(tmp_path, test)), output
+
+
+def test_marks_combine_and_scenarios_are_found_beside_the_test(tmp_path: Path) -> None:
+    (tmp_path / "sick.yaml").write_text("faults:\n  - {fault: lost, only: replies}\n")
+    test = """
+import pytest
+from cobotwire import ReplyTimeout
+from cobotwire.simulator.faults import Lost, Scenario
+
+pytestmark = pytest.mark.simulated_arm(edition="mycobot280", scenario="sick.yaml")
+
+def deaf(arm):
+    with pytest.raises(ReplyTimeout):
+        arm.get_angles()
+    return type(arm).__name__
+
+def test_the_module_s(simulated_arm):
+    assert deaf(simulated_arm) == "MyCobot280"
+
+@pytest.mark.simulated_arm(edition="mycobot")
+def test_a_test_s_own_goes_before_it_argument_by_argument(simulated_arm):
+    assert deaf(simulated_arm) == "MyCobot"
+
+@pytest.mark.simulated_arm(scenario=Scenario(name="own", faults=(Lost(),)), seed=3)
+def test_an_object(simulated_arm):
+    deaf(simulated_arm)
+
+@pytest.mark.simulated_arm(scenario=None)
+def test_none(simulated_arm):
+    assert simulated_arm.is_power_on() is False
+"""
+    assert "4 passed" in (output := run(tmp_path, test)), output
+
+
+WRONG = {
+    "'mycobot280'": "arguments by name",
+    "senario='x'": "did you mean scenario?",
+    "transport='serial'": "one of memory, pty, tcp",
+    "speed=0": "above 0",
+    "scenario=3": "an object with wrap()",
+    "scenario='late-replys'": "late-replies",
+    "edition='mycobot28'": "did you mean mycobot280?",
+}
+
+
+def test_wrong_mark_is_reported(tmp_path: Path) -> None:
+    tests = [
+        f"@pytest.mark.simulated_arm({mark})\ndef test_{number}(simulated_arm):\n    pass\n"
+        for number, mark in enumerate(WRONG)
+    ]
+    printed = run(tmp_path, "import pytest\n" + "\n".join(tests))
+    assert f"{len(WRONG)} errors" in printed
+    for message in WRONG.values():
+        assert message in printed
+
+
+def test_run_without_the_fixtures_imports_only_the_plugins(tmp_path: Path) -> None:
+    test = """
+import sys
+
+def test_it():
+    loaded = set(sys.modules)
+    ours = sorted(name for name in loaded if name.startswith("cobotwire"))
+    assert ours == [
+        "cobotwire",
+        "cobotwire.conformance",
+        "cobotwire.conformance.pytest_plugin",
+        "cobotwire.conformance.report",
+        "cobotwire.conformance.suite",
+        "cobotwire.simulator",
+        "cobotwire.simulator.testing",
+        "cobotwire.simulator.testing.plugin",
+    ]
+    assert not {"serial", "ruamel", "matplotlib", "numpy"} & loaded
+"""
+    assert "1 passed" in (output := run(tmp_path, test)), output
+
+
+def test_mark_is_listed_by_pytest(tmp_path: Path) -> None:
+    printed = run(tmp_path, "", "--markers")
+    assert "@pytest.mark.simulated_arm(edition='mycobot'" in printed

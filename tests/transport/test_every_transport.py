@@ -1,0 +1,216 @@
+"""Behaviour that a serial port and TCP share."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cobotwire.protocol.errors import LinkError
+from cobotwire.transport import OpenedTransport, Transport
+from transport.ends import Line
+
+KINDS = ["serial", "socket"]
+AT_ONCE = 0.5
+
+
+@pytest.fixture(params=KINDS)
+def line(request: pytest.FixtureRequest) -> Iterator[Line]:
+    with Line(request.param) as open_line:
+        yield open_line
+
+
+def read_all(transport: OpenedTransport, size: int, seconds: float = 5.0) -> bytes:
+    """Read until ``size`` bytes have arrived."""
+    deadline = time.monotonic() + seconds
+    received = b""
+    while len(received) < size and time.monotonic() < deadline:
+        received += transport.read(0.1)
+    return received
+
+
+def test_transport_names_its_url_and_kind(line: Line) -> None:
+    assert isinstance(line.transport, Transport)
+    assert isinstance(line.transport, OpenedTransport)
+    assert line.transport.kind == line.end.kind
+    assert line.transport.url == line.end.url
+    assert line.end.url in repr(line.transport)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@settings(max_examples=25)
+@given(chunks=st.lists(st.binary(min_size=1, max_size=60), max_size=12))
+def test_bytes_go_both_ways_in_any_chunks(kind: str, chunks: list[bytes]) -> None:
+    whole = b"".join(chunks)
+    with Line(kind) as line:
+        for chunk in chunks:
+            line.end.send(chunk)
+            line.transport.write(chunk)
+        assert read_all(line.transport, len(whole)) == whole
+        assert line.end.receive(len(whole)) == whole
+
+
+def test_every_byte_value_goes_through_unchanged(line: Line) -> None:
+    # XON, XOFF, NUL, Ctrl-C, CR, LF, 0xFF: all of these mean something to a terminal.
+    every = bytes(range(256)) * 2
+    line.transport.write(every)
+    assert line.end.receive(len(every)) == every
+    line.end.send(every)
+    assert read_all(line.transport, len(every)) == every
+
+
+def test_read_waits_for_its_timeout(line: Line) -> None:
+    for seconds in (0.0, -1.0, 0.05):
+        started = time.monotonic()
+        assert line.transport.read(seconds) == b""
+        assert max(0.0, seconds) <= time.monotonic() - started < seconds + AT_ONCE + 1
+
+
+def test_received_byte_ends_the_wait(line: Line) -> None:
+    saying = threading.Timer(0.05, line.end.send, [b"x"])
+    saying.start()
+    started = time.monotonic()
+    assert line.transport.read(10.0) == b"x"
+    assert time.monotonic() - started < AT_ONCE
+    saying.join()
+
+
+def test_descriptor_can_be_waited_for(line: Line) -> None:
+    descriptor = line.transport.fileno()
+    assert descriptor is not None
+    assert select.select([descriptor], [], [], 0)[0] == []
+    line.end.send(b"abc")
+    assert select.select([descriptor], [], [], 5)[0] == [descriptor]
+    assert line.transport.read(0) == b"abc"
+
+
+def test_unplugging_ends_the_wait_at_once(line: Line) -> None:
+    pulling = threading.Timer(0.05, line.end.unplug)
+    pulling.start()
+    started = time.monotonic()
+    with pytest.raises(LinkError, match="cannot be read"):
+        line.transport.read(10.0)
+    assert time.monotonic() - started < AT_ONCE
+    pulling.join()
+    # And it stays that way.
+    with pytest.raises(LinkError):
+        line.transport.read(0)
+
+
+def test_data_from_before_the_end_is_read_first() -> None:
+    with Line("socket") as line:
+        line.end.send(b"last words")
+        line.end.unplug()
+        assert line.transport.read(1.0) == b"last words"
+        with pytest.raises(LinkError, match="the peer closed the connection"):
+            line.transport.read(1.0)
+
+
+def test_closing_from_another_thread_ends_the_wait_at_once(line: Line) -> None:
+    closing = threading.Timer(0.05, line.transport.close)
+    closing.start()
+    started = time.monotonic()
+    with pytest.raises(LinkError, match="closed meanwhile"):
+        line.transport.read(10.0)
+    assert time.monotonic() - started < AT_ONCE
+    closing.join()
+
+
+def test_signal_handler_may_close_the_transport_that_is_read(line: Line) -> None:
+    old = signal.signal(signal.SIGALRM, lambda *_: line.transport.close())
+    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    try:
+        started = time.monotonic()
+        with pytest.raises(LinkError, match="closed meanwhile"):
+            line.transport.read(10.0)
+        assert time.monotonic() - started < AT_ONCE
+    finally:
+        signal.signal(signal.SIGALRM, old)
+
+
+def test_closed_transport_is_a_link_error(line: Line) -> None:
+    line.transport.close()
+    line.transport.close()
+    for use in (
+        lambda: line.transport.read(0),
+        lambda: line.transport.write(b"x"),
+        lambda: line.transport.write_some(b"x"),
+        line.transport.fileno,
+    ):
+        with pytest.raises(LinkError, match="it is closed"):
+            use()
+
+
+def test_stuck_write_is_a_link_error_with_the_number_of_bytes_written(
+    line: Line,
+) -> None:
+    data = bytes(range(251)) * (400 if line.end.kind == "serial" else 60_000)
+    if line.end.kind == "socket":
+        # The sockets' buffers must fill up like a bridge's; they hold megabytes.
+        line.transport._baudrate = 2**31 - 1  # type: ignore[attr-defined]
+    started = time.monotonic()
+    with pytest.raises(LinkError, match=r"only \d+ of \d+ bytes were taken in") as caught:
+        line.transport.write(data)
+    assert time.monotonic() - started < 4.0
+    assert 0 <= caught.value.written < len(data)
+    assert str(caught.value.written) in str(caught.value)
+    assert line.end.receive(caught.value.written) == data[: caught.value.written]
+
+
+def test_closing_ends_a_waiting_write_at_once(line: Line) -> None:
+    data = bytes(20_000_000)
+    closing = threading.Timer(0.3, line.transport.close)
+    closing.start()
+    started = time.monotonic()
+    with pytest.raises(LinkError, match="closed meanwhile") as caught:
+        line.transport.write(data)
+    assert time.monotonic() - started < 0.3 + AT_ONCE
+    assert caught.value.written > 0
+    closing.join()
+
+
+def test_ctrl_c_in_a_write_finishes_the_frame_first(line: Line) -> None:
+    data = bytes(range(251)) * (400 if line.end.kind == "serial" else 40_000)
+    line.transport._baudrate = 100_000  # type: ignore[attr-defined]  # so that there is time enough
+    received: list[bytes] = []
+
+    def interrupt_and_receive() -> None:
+        time.sleep(0.1)
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.1)
+        received.append(line.end.receive(len(data)))
+
+    hearing = threading.Thread(target=interrupt_and_receive)
+    hearing.start()
+    with pytest.raises(KeyboardInterrupt):
+        line.transport.write(data)
+    hearing.join()
+    assert received == [data]
+
+
+def test_write_some_writes_what_fits_and_never_waits(line: Line) -> None:
+    block = bytes(1_000_000)
+    started = time.monotonic()
+    taken = [line.transport.write_some(block) for _ in range(200)]
+    assert time.monotonic() - started < 3.0
+    assert taken[0] > 0
+    assert taken[-1] < len(block)
+
+
+def test_one_thread_reads_while_another_writes(line: Line) -> None:
+    received: list[bytes] = []
+    reading = threading.Thread(target=lambda: received.append(line.transport.read(5.0)))
+    reading.start()
+    time.sleep(0.05)
+    line.transport.write(b"question")
+    assert line.end.receive(8) == b"question"
+    line.end.send(b"answer")
+    reading.join()
+    assert received == [b"answer"]
