@@ -14,9 +14,10 @@ import vectors
 from cobotwire.editions import mycobot, mycobot280
 from field_notes.case import DONE, Case
 from field_notes.cases import CASES
-from field_notes.line import line_of
+from field_notes.line import Line, line_of
 from field_notes.notes import ELSEWHERE, FIGURES, NOTES
 from field_notes.play import Outcome, play
+from stalls import unstalled
 
 FIELD_NOTES = vectors.ROOT.parent / "shared" / "protocol" / "field-notes.md"
 RUNS = [
@@ -45,13 +46,19 @@ def _played(case: Case, who: str, url: str) -> tuple[list[Outcome], float]:
     return outcomes, max(longest)
 
 
+def _run(case: Case, transport: str, who: str) -> tuple[list[Outcome], float, Line]:
+    with line_of(case, transport) as line:
+        outcomes, seconds = _played(case, who, line.url)
+        line.settle()
+    return outcomes, seconds, line
+
+
 @pytest.mark.parametrize(("case", "transport", "who"), RUNS)
 def test_call_on_a_field_notes_line_ends_with_the_verdict_of_its_case(
     case: Case, transport: str, who: str
 ) -> None:
-    with line_of(case, transport) as line:
-        outcomes, seconds = _played(case, who, line.url)
-        line.settle()
+    # A query is sent again after 167 ms, also if the test's own arm had no processor until then.
+    outcomes, seconds, line = unstalled(lambda: _run(case, transport, who), allowed=0.08)
     verdicts = [outcome.verdict for outcome in outcomes]
     if case.clients > 1:
         verdicts.sort(key=case.verdicts.index)

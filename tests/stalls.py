@@ -1,0 +1,56 @@
+"""Measure how long the machine kept a thread from running, so that a test can repeat a run."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import TypeVar
+
+R = TypeVar("R")
+PERIOD = 0.005
+RUNS = 4
+
+
+class StallMeter:
+    """A thread that wakes every 5 ms, while the ``with`` block runs.
+
+    Attributes:
+        longest: by how many seconds it woke too late, at most.
+    """
+
+    def __init__(self) -> None:
+        self.longest = 0.0
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._measure, daemon=True)
+
+    def __enter__(self) -> StallMeter:
+        """Start to measure."""
+        self._thread.start()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        """End the thread."""
+        self._over.set()
+        self._thread.join()
+
+    def _measure(self) -> None:
+        before = time.monotonic()
+        while not self._over.wait(PERIOD):
+            now = time.monotonic()
+            self.longest = max(self.longest, now - before - PERIOD)
+            before = now
+
+
+def unstalled(run: Callable[[], R], allowed: float) -> R:
+    """Return the result of a run during which no thread waited longer than ``allowed`` seconds.
+
+    A run on a machine that stalled is repeated, three times at most: it says how fast the machine
+    is, and not whether the code is right. The result of the last run counts in any case.
+    """
+    for _ in range(RUNS):
+        with StallMeter() as meter:
+            result = run()
+        if meter.longest <= allowed:
+            break
+    return result
