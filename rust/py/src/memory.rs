@@ -119,8 +119,18 @@ impl Memory {
         view: *mut ffi::Py_buffer,
         flags: c_int,
     ) -> PyResult<()> {
-        if view.is_null() || flags & ffi::PyBUF_WRITABLE == ffi::PyBUF_WRITABLE {
-            return Err(PyBufferError::new_err("a column cannot be written to"));
+        let refused = |why: &'static str| Err(PyBufferError::new_err(why));
+        if view.is_null() {
+            return refused("a column needs a view to fill");
+        }
+        // SAFETY: the caller gives a view to fill. A view that is refused has no owner.
+        unsafe { (*view).obj = ptr::null_mut() };
+        let wanted = |flag: c_int| flags & flag == flag;
+        if wanted(ffi::PyBUF_WRITABLE) {
+            return refused("a column cannot be written to");
+        }
+        if wanted(ffi::PyBUF_FORMAT) && !wanted(ffi::PyBUF_ND) {
+            return refused("a view with a format needs a shape: without one it is bytes");
         }
         let mut held = slf.get().held();
         let across = held.across;
@@ -132,11 +142,14 @@ impl Memory {
         } else {
             (count / across, 2)
         };
+        // One row, or one number in each, is in both orders.
+        if wanted(ffi::PyBUF_F_CONTIGUOUS) && across > 1 && rows > 1 {
+            return refused("the column is in C order, not in Fortran order");
+        }
         let shape = Box::new(Shape {
             shape: [rows, across],
             strides: [size * across.max(1), size],
         });
-        let wanted = |flag: c_int| flags & flag == flag;
         held.views += 1;
         drop(held);
         // SAFETY: the caller gives a view to fill. The column's memory stays where it is while
@@ -152,7 +165,8 @@ impl Memory {
             } else {
                 ptr::null_mut()
             };
-            (*view).ndim = dimensions;
+            // Without a shape the view is bytes, which have one dimension.
+            (*view).ndim = if wanted(ffi::PyBUF_ND) { dimensions } else { 1 };
             (*view).shape = if wanted(ffi::PyBUF_ND) {
                 (&raw mut (*shape).shape).cast()
             } else {
