@@ -5,7 +5,7 @@ RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml)
 # The Python tests run in three lanes at once: two that compute, and one that mostly waits for ports.
 COMPUTING := $(addprefix tests/,codec codegen diagnose protocol spec typing)
 SIMULATING := $(addprefix tests/,conformance docs inspect peers simulator)
-# In CI, print the output of one lane after another; a person sees all lanes at once.
+# In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
@@ -32,7 +32,7 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
 	cargo clippy --workspace --all-targets --quiet -- -D warnings
 
-rust-test: products ## run the tests of the Rust core
+rust-test: products ## run the Rust tests
 	cargo test --workspace --quiet
 
 python-test: .venv/.tools .venv/.native ## run the Python tests on both codecs, in three lanes
@@ -60,7 +60,7 @@ docs: .venv/.tools .venv/.native ## build the docs site into docs/_build; a warn
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build
 	@echo open docs/_build/index.html
 
-bench: .venv/.tools .venv/.native ## measure speed beside the limits, and losses on bad lines
+bench: .venv/.tools .venv/.native ## compare speeds with their limits; count losses on bad lines
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/client.py
 	$(BIN)/python bench/simulated_time.py
@@ -80,26 +80,26 @@ plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes
 	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
 
-fuzz: products .venv/.native $(CARGO_FUZZ) ## fuzz, FUZZ_SECONDS (60) a target; see CONTRIBUTING.md
+fuzz: products .venv/.native $(CARGO_FUZZ) ## fuzz each target for FUZZ_SECONDS (60); see CONTRIBUTING.md
 	cargo clippy --manifest-path rust/fuzz/Cargo.toml --all-targets --quiet -- -D warnings
 	@status=0; \
 	$(BIN)/python rust/fuzz/run.py $(FUZZ_SECONDS) || status=1; \
 	$(BIN)/python tests/deep.py $(FUZZ_SECONDS) || status=1; \
 	exit $$status
 
-table: .venv/.tools .venv/.native ## compare us with pymycobot on bad lines, into docs/bad-lines.md
+table: .venv/.tools .venv/.native ## compare our clients with pymycobot on bad lines; write docs/bad-lines.md
 	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
-conform: .venv/.tools .venv/.native ## break subjects on purpose and count what the testers of conformance find
+conform: .venv/.tools .venv/.native ## break subjects on purpose; count how many the conformance tests find
 	PYTHONPATH=tests $(BIN)/python -m mutation
 
-faults: .venv/.tools .venv/.native ## run us and pymycobot on each fault, into docs/fault-scenarios.md
+faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py
 
-figures: .venv/.tools .venv/.native ## count files and lines of each room, import circles, files that a call passes
+figures: .venv/.tools .venv/.native ## count files, lines and import cycles of each room, and the files that a call uses
 	$(BIN)/python tests/house_figures.py
 
-clean: ## remove the environment and what was built
+clean: ## remove the environment and all build products
 	rm -rf .venv target targets rust/core/tests/data .cargo-tools rust/fuzz/target docs/_build
 
 .venv/.base: pyproject.toml
@@ -108,7 +108,7 @@ clean: ## remove the environment and what was built
 	$(BIN)/python -m pip install --quiet --upgrade pip 'maturin>=1.9,<2'
 	touch $@
 
-# Build the Rust codec in release mode and install it in place, with what the command line needs.
+# Build the Rust codec in release mode; install it in place, with the extras of the command line.
 .venv/.native: .venv/.base $(RUST_SOURCES)
 	. $(BIN)/activate && maturin develop --release --quiet --extras cli,sim
 	touch $@
@@ -117,6 +117,6 @@ clean: ## remove the environment and what was built
 	$(BIN)/python -m pip install --quiet -e codegen --group test
 	touch $@
 
-# Installed in the project, so that it does not change the version of other projects.
+# Install it in the project, so that other projects keep their version.
 $(CARGO_FUZZ):
 	cargo install --quiet --locked --root .cargo-tools --version 0.13.1 cargo-fuzz

@@ -22,7 +22,7 @@ class Started(NamedTuple):
     end: Connection
 
     def result(self, until: float) -> Any:
-        """Return the function's result, or None if there is none at that ``time.monotonic()``."""
+        """Return the result, or None if it has not arrived by ``until`` (``time.monotonic()``)."""
         result = None
         if self.end.poll(max(0.0, until - time.monotonic())):
             result = self.end.recv()
@@ -41,7 +41,7 @@ def warm_up(modules: Sequence[str]) -> None:
 
 
 def start(function: Callable[..., Any], *arguments: Any) -> Started:
-    """Call a module-level function in a process of its own."""
+    """Call a module-level function in a separate process."""
     ours, theirs = _PROCESSES.Pipe(duplex=False)
     process = _PROCESSES.Process(target=_child, args=(theirs, function, arguments))
     process.start()

@@ -3,8 +3,8 @@
     make table
 
 Each case runs on a real pty and over real TCP, with one client at a time: our blocking one, our
-asyncio one, and unmodified pymycobot 4.0.7. Each client runs in a process of its own and is ended
-after a time limit, so that hanging is a result, too.
+asyncio one, and unmodified pymycobot 4.0.7. Each client runs in a separate process. A client that
+exceeds the time limit is ended, and counts as hanging.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Run(NamedTuple):
 
 
 def main() -> None:
-    """Run the cases that the command line names, or all; without names, write the page."""
+    """Run the named cases and print their rows; without names, run all and write the page."""
     chosen = [CASES[name] for name in sys.argv[1:]] or list(CASES.values())
     runs = [
         Run(case, transport, who)

@@ -1,4 +1,4 @@
-"""The page of bad lines: judge the outcomes of each run, and lay them out."""
+"""Judge the outcomes of each run, and format them as the page of bad lines."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KINDS = ("right", "honest error", "-1 or None", "crash", WRONG, "sent too often"
 
 @dataclass(frozen=True)
 class Row:
-    """How one client fared with one case."""
+    """The outcome of one case with one client."""
 
     case: Case
     outcomes: list[Outcome]
@@ -36,7 +36,7 @@ class Row:
         return kinds
 
     def worst(self) -> str:
-        """Return the worst of them, as which the row counts."""
+        """Return the worst way in which a call ended; the summary counts the run as this."""
         return max(self.kinds(), key=KINDS.index)
 
     def _kind(self, outcome: Outcome) -> str:
@@ -132,7 +132,7 @@ def _has(results: Results, case: Case) -> bool:
 def _summary(results: Results, clients: tuple[str, ...]) -> str:
     runs = len(results) // len(clients)
     lines = [
-        f"| the worst that a caller got, of {runs} runs | "
+        f"| worst outcome of a run ({runs} runs) | "
         + " | ".join(TITLES[who] for who in clients)
         + " |"
     ]
@@ -161,7 +161,7 @@ def _table(cases: list[Case], results: Results, clients: tuple[str, ...], limit:
 
 
 def _quoted(results: Results) -> str:
-    lines = ["### The lines of the notes", ""]
+    lines = ["### Quotations from the notes", ""]
     for key, piece in NOTES.items():
         names = [case.name for cases in GROUPS.values() for case in cases if key in case.notes]
         if names:

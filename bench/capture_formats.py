@@ -19,7 +19,7 @@ STEP_NS = 10_000_000
 
 
 def ours() -> tuple[float, bytes, bytes]:
-    """Return microseconds a frame, the file of a killed writer, and the file of a closed one."""
+    """Return microseconds per frame, the file of a killed writer, and that of a closed one."""
     from cobotwire.capture import CaptureWriter, Interface, Packet
 
     file = io.BytesIO()
@@ -80,7 +80,7 @@ def read_ours(data: bytes) -> int:
 
 
 def read_mcap(data: bytes) -> int:
-    """Count the packets that MCAP's reader for streams finds; it needs no index at the end."""
+    """Count the packets that MCAP's stream reader finds; it needs no index at the end."""
     reader = importlib.import_module("mcap.reader").NonSeekingReader(io.BytesIO(data))
     return sum(1 for _ in reader.iter_messages())
 
@@ -92,7 +92,7 @@ def read_pcapng(data: bytes) -> int:
 
 
 def outcome(read: Callable[[bytes], int], data: bytes) -> str:
-    """Return what reading gives: a number of packets, or an error."""
+    """Return the number of packets that ``read`` finds, or the name of its error."""
     try:
         return f"{read(data)} packets"
     except Exception as error:

@@ -1,14 +1,14 @@
-"""Measure how fast a call is, over a pty, with a trivial responder in another process.
+"""Measure the time of a call over a pty, with a trivial responder in another process.
 
-The floor is what the machine needs for the same bytes: os.write, select, os.read. All candidates
-take turns on the same responder in one run. The fastest turn of each counts, since other programs
-on the machine can only add time. The limits apply to the ratios.
+The floor is the time of bare system calls for the same bytes: os.write, select, os.read. All
+candidates take turns on the same responder in one run. The fastest turn of each counts, since other
+programs on the machine can only add time. The limits apply to the ratios.
 
 The simulated arm replies on its own pty to the same bare system calls; its row shows how much
 longer it takes than the trivial responder.
 
-A pty has no baud rate, so the setters are compared with the fastest line that exists: ten bits a
-byte at 1,000,000 baud; and with bare os.write of the same frames.
+A pty has no baud rate. So the setters are compared with the fastest real line (ten bits a byte at
+1,000,000 baud), and with bare os.write of the same frames.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ port.serve()
 TURNS, CALLS, WARM_UP = 20, 50, 5
 SETTERS = 1000
 FASTEST_BAUD = 1_000_000
-LIMITS = {"blocking": 2.0, "asyncio": 3.0, "of a simulated arm": 3.0}
+LIMITS = {"blocking": 2.0, "asyncio": 3.0, "simulated arm": 3.0}
 TIMES_FASTER = 8.0
 
 
 def main() -> None:
-    """Measure, and print ratios beside the limits."""
+    """Measure, and print the ratios with their limits."""
     with responder(RESPONDER) as url, _simulated() as simulated:
         _round_trips(url, simulated)
     with responder(RESPONDER) as url:
@@ -69,10 +69,10 @@ def _simulated() -> Iterator[str]:
 
 
 def _round_trips(url: str, simulated: str) -> None:
-    """Time each candidate; it opens the port for its turn, untimed, since a port is locked."""
+    """Time each candidate. It opens the port for its turn, untimed, since open ports are locked."""
     candidates = {
         "floor": _floor,
-        "of a simulated arm": lambda _: _floor(simulated),
+        "simulated arm": lambda _: _floor(simulated),
         "blocking": _blocking,
         "asyncio": lambda port: asyncio.run(_asyncio(port)),
         "pymycobot": _pymycobot,
@@ -89,9 +89,8 @@ def _round_trips(url: str, simulated: str) -> None:
         print(f"get_angles, {name:22} {seconds * 1e6:6.0f} us   {ratio:5.1f} x floor{verdict}")
     faster = best["pymycobot"] / best["blocking"]
     verdict = within(faster >= TIMES_FASTER)
-    print(
-        f"{'than pymycobot, blocking':34} {faster:5.1f} x faster   {verdict} {TIMES_FASTER:.0f} x"
-    )
+    name = "blocking, against pymycobot"
+    print(f"{name:34} {faster:5.1f} x faster   {verdict} {TIMES_FASTER:.0f} x")
 
 
 def _timed(call: Callable[[], Any]) -> float:

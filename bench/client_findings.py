@@ -1,4 +1,4 @@
-"""Play a session of pymycobot 4.0.7 and of our clients to the referee; print the failures.
+"""Run a session of pymycobot 4.0.7 and of our clients with the referee; print the failures.
 
 .venv/bin/python bench/client_findings.py                 # all clients, all lines
 .venv/bin/python bench/client_findings.py --only cobotwire
@@ -40,7 +40,7 @@ LINES: dict[str, Line] = {
 
 
 def judged(client: str, line: Line) -> tuple[Report, list[str]]:
-    """Play the session; return the report, and the calls that failed for the caller."""
+    """Run the session; return the report, and the calls that raised or returned an error."""
     prepare()
     kind, play = CLIENTS[client]
     referee = Referee(
@@ -66,8 +66,8 @@ def _settle(referee: Referee) -> None:
 def main() -> None:
     """Print the failures of each client on each line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", default="", help="clients whose name begins so")
-    parser.add_argument("--line", choices=LINES, help="one line alone")
+    parser.add_argument("--only", default="", help="only clients with names that begin like this")
+    parser.add_argument("--line", choices=LINES, help="only this line")
     options = parser.parse_args()
     for client in CLIENTS:
         for name, line in LINES.items():

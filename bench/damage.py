@@ -35,8 +35,8 @@ ACK = b"\xfe\xfe\x03\x10\x01\xfa"
 def damage(table: Table, line: Line, kind: str, rate: float, *, seed: int = 2) -> Line:
     """Return ``line`` with damage of one kind; ``rate`` is its probability for each byte sent.
 
-    ``mixed`` is all the others in equal shares. A flip changes one bit, an insertion is one byte of
-    any value, an ``ack`` stands before a get_angles reply, without a pause.
+    ``mixed`` has equal shares of all other kinds. A flip changes one bit, an insertion adds one
+    byte of any value, and an ``ack`` directly precedes a get_angles reply.
     """
     random = np.random.default_rng(seed)
     kinds = tuple(FAULTS) if kind == "mixed" else (kind,)
@@ -51,9 +51,9 @@ def damage(table: Table, line: Line, kind: str, rate: float, *, seed: int = 2) -
 def noisy(
     table: Table, line: Line, *, share: float = 0.1, inside: float = 0.05, seed: int = 3
 ) -> Line:
-    """Return ``line`` with noise between the frames, until ``share`` of all bytes are noise.
+    """Return ``line`` with noise between its frames, so that ``share`` of all bytes are noise.
 
-    ``inside`` is the share of the noise that comes at any place, and so mostly cuts a frame.
+    ``inside`` is the share of the noise at random places, which are mostly inside a frame.
     """
     random = np.random.default_rng(seed)
     # Pieces are picked from a few thousand; drawing each of a million would take a minute.
@@ -68,7 +68,7 @@ def noisy(
             random.choice(line.starts, pieces),
         )
     )
-    # Two pieces for one place stand there one after the other.
+    # Pieces for the same place follow each other there.
     bursts = np.full(len(places), pieces // len(places))
     bursts[: pieces % len(places)] += 1
     picks = iter(random.integers(0, len(pool), pieces).tolist())
@@ -114,9 +114,9 @@ def apply(line: Line, edits: list[Edit]) -> Line:
 
 
 def _mended(line: Line) -> Line:
-    """Mark frames as undamaged that stand in the stream as they were sent, in spite of an edit.
+    """Mark as undamaged each frame that an edit only moved.
 
-    An edit that doubles the first byte leaves the frame whole, one byte later.
+    An edit that doubles the first byte moves the frame by one byte.
     """
     for index in np.flatnonzero(~line.whole).tolist():
         sent, start, end = line.original(index), int(line.starts[index]), int(line.ends[index])

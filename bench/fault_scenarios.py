@@ -2,9 +2,9 @@
 
     make faults
 
-Each scenario that comes with the package is applied to an arm that always replies the same, on a
-real pty. Each client makes the same 18 calls, in a process of its own that is ended after a time
-limit. With names on the command line, print their rows and write nothing.
+Each scenario of the package is applied to an arm that always sends the same replies, on a real pty.
+Each client makes the same 18 calls in a separate process, which is ended after a time limit. With
+names on the command line, the bench prints their rows and writes nothing.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ CLIENTS = {
 AT_ONCE = 4
 LIMIT_SECONDS = 60.0
 KINDS = ("right", "honest error", "-1 or None", WRONG, "exception", "not ended")
-# For comparison: no scenario.
+# A run without a scenario, for comparison.
 NONE = "(none)"
 
 
 class Run(NamedTuple):
-    """How one client fared with one scenario.
+    """The outcome of one scenario with one client.
 
     Attributes:
         kinds: how many calls ended in each way.
         seconds: the duration of each call that ended.
-        again: how many one-way requests arrived more often than they were called.
+        again: how many one-way requests arrived more often than their methods were called.
     """
 
     kinds: Counter[str]
@@ -55,7 +55,7 @@ class Run(NamedTuple):
 
 
 def main() -> None:
-    """Run the scenarios that are named, or all."""
+    """Run the named scenarios; without names, run all and write the page."""
     names = sys.argv[1:] or [NONE, *shipped()]
     apart.warm_up(["fault_session", "pymycobot"])
     wanted = [(name, who) for name in names for who in CLIENTS]
@@ -78,7 +78,7 @@ def _measured(name: str, who: str) -> Run:
     with PtyServer(peer) as port:
         started = apart.start(play_session, who, port.url)
         timed = started.result(time.monotonic() + LIMIT_SECONDS)
-        # What was written last arrives meanwhile.
+        # Wait for the last bytes that the client wrote.
         time.sleep(0.3)
     return _judged(timed, arm.frames)
 
@@ -93,7 +93,7 @@ def _judged(timed: list[TimedOutcome] | None, frames: list[bytes]) -> Run:
 
 
 def _kind(call: Call, outcome: Outcome, frames: list[bytes]) -> str:
-    """Return how a call ended; a one-way request that did not arrive, but seems done, is wrong."""
+    """Return how a call ended; success is wrong if its one-way request did not arrive."""
     if outcome.verdict == RIGHT and call.right == DONE:
         if outcome.detail == "-1":
             return "-1 or None"

@@ -1,4 +1,4 @@
-"""A session of calls that our client and pymycobot both know."""
+"""A session of calls that our client and pymycobot both have."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from field_notes.steady_arm import COORDS_READ, REGISTER_READ
 POWERED = Call("is_power_on", (), 1)
 COORDS = Call("get_coords", (), COORDS_READ)
 REGISTER = Call("get_servo_data", (1, 24, 1), REGISTER_READ)
-# These return nothing: each is right if its bytes arrive, as often as it was called.
+# These return nothing; each is right if its bytes arrive exactly as often as it is called.
 ONE_WAY = (
     Call("power_on", (), DONE, bytes.fromhex("FE FE 02 10 FA")),
     Call("set_color", (1, 2, 3), DONE, bytes.fromhex("FE FE 05 6A 01 02 03 FA")),

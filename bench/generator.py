@@ -1,4 +1,4 @@
-"""Measure how long the generator takes: each row is a whole process, as a person starts it."""
+"""Measure how long the generator takes: each row times a whole process, including its start."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TURNS = 5
 
 
 def main() -> None:
-    """Measure, and print seconds beside the limits."""
+    """Measure, and print the seconds with their limits."""
     with tempfile.TemporaryDirectory() as folder:
         big = Path(folder) / "big.yaml"
         big.write_text(_big())
@@ -36,7 +36,7 @@ def _seconds(words: list[str]) -> float:
 
 
 def _big() -> str:
-    """Return a protocol of 400 commands, where ids repeat with other lengths."""
+    """Return a protocol of 400 commands; ids repeat, with other lengths."""
     head = (ROOT / "tests/codegen/lamp.yaml").read_text().partition("commands:\n")[0]
     commands, vectors = [], []
     for index in range(400):

@@ -1,4 +1,4 @@
-"""Measure the import time of cobotwire beside pymycobot's, and its installed size.
+"""Compare the import time of cobotwire with pymycobot's, and measure its installed size.
 
 Each import runs in its own process, and all candidates take turns. Only the import is timed, not
 the start of Python. The median counts. ``import cobotwire`` loads a name only on its first use, so
@@ -31,7 +31,7 @@ IMPORTS = {
 
 
 def main() -> None:
-    """Measure, and print ratios beside the limits."""
+    """Measure, and print the ratios with their limits."""
     _times()
     _size()
 

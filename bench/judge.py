@@ -1,4 +1,4 @@
-"""Judge what a reader found on a line, by the truth about the line and by the table alone."""
+"""Judge the frames that a reader found, by the truth about the line and by the table."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ class Covered:
 
 @dataclass(frozen=True)
 class Verdict:
-    """How one reader fared on one line.
+    """The result of one reader on one line.
 
     Attributes:
         undamaged: how many frames arrived undamaged.
         recovered: how many of them were read.
         covered: undamaged frames that were lost because a legal false frame covers them.
-        unexplained: the start of each undamaged frame that was lost without such a cover.
+        unexplained: the start of each undamaged frame that was lost, but not covered.
         altered: how many damaged frames are still legal, and were read with wrong values.
         restored: how many damaged frames were read as they were sent.
-        phantoms: how many frames were accepted where none was sent.
+        phantoms: how many accepted frames were not sent at all.
         distances: the bytes from each damage to the next undamaged frame that was read.
     """
 
@@ -58,7 +58,7 @@ class Verdict:
 
 
 def legal_heads(table: Table, listening: Listening) -> Legal:
-    """Return ``LEN CMD`` of every variant that may arrive: what the table allows."""
+    """Return ``LEN CMD`` of every variant that the table allows in this direction."""
     variants = [variant for way in ("request", "reply") for variant in variants_of(table, way)]
     if listening != "both":
         variants = variants_of(table, listening)
@@ -66,7 +66,7 @@ def legal_heads(table: Table, listening: Listening) -> Legal:
 
 
 def is_legal(table: Table, legal: Legal, frame: bytes) -> bool:
-    """Return whether these bytes are one frame of the edition, without a codec."""
+    """Return whether these bytes are one frame of the edition; use no codec."""
     size = frame[2] + 3 if len(frame) > 4 else -1
     return (
         frame.startswith(table.frame.header)
@@ -100,7 +100,7 @@ def judge(table: Table, listening: Listening, line: Line, read: Sequence[Accepte
 
 
 def ideal_distances(line: Line) -> Places:
-    """Return the bytes from each damage to the next undamaged frame: the least that is possible."""
+    """Return the bytes from each damage to the next undamaged frame: the least possible."""
     return _distances(line.sites, line.starts[line.whole].tolist())
 
 

@@ -2,10 +2,10 @@
 
     python bench/kinematics.py [--poses N]
 
-Every pose is that of random angles inside the limits of the edition mycobot280; the search starts
-from other random angles. The poses are taken once as they are, and once truncated to the wire's
-steps as in get_coords, which may put them slightly out of reach. Then random coordinates in the box
-that the edition allows: how many of them are reachable.
+Each pose comes from random angles inside the limits of the edition mycobot280; the search starts at
+other random angles. The bench tries each pose unchanged, and again truncated to the wire's steps as
+in get_coords, which may put it slightly out of reach. Last, it counts how many random coordinates
+inside the edition's limits are reachable.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ MILLIMETRES, DEGREES = 0.1, 0.02
 
 
 def main() -> None:
-    """Measure the poses; print them with the limits."""
+    """Measure the poses; print the errors with their limits."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--poses", type=int, default=10_000)
     poses: int = parser.parse_args().poses
     rng = random.Random(280)  # noqa: S311  (samples, no secrets)
     exact = [flange(MYCOBOT_280, random_angles(rng)) for _ in range(poses)]
-    _round_trip("as they are", exact, rng, limited=True)
+    _round_trip("unchanged", exact, rng, limited=True)
     reported = [Pose.of(reported_coords(pose.coords)) for pose in exact]
     _round_trip("as get_coords reports them", reported, rng, limited=False)
     numbers = TABLE.in_role("coordinate targets").request[0].fields[0].cases[0].numbers
     box = [(number.physical(number.minimum), number.physical(number.maximum)) for number in numbers]
     anywhere = [Pose.of([rng.uniform(low, high) for low, high in box]) for _ in range(poses)]
-    _round_trip("anywhere in the box that send_coords takes", anywhere, rng, limited=False)
+    _round_trip("anywhere inside the limits of send_coords", anywhere, rng, limited=False)
 
 
 def _round_trip(what: str, poses: list[Pose], rng: random.Random, *, limited: bool) -> None:

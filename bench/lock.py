@@ -1,7 +1,7 @@
-"""Measure what holding or releasing the interpreter's lock costs a call.
+"""Measure the cost of holding or releasing the interpreter's lock during a call.
 
 Small input is decoded under the lock, large input without it. For sizes on both sides of the
-threshold this prints the time of a call, alone and beside a thread that is busy in Python.
+threshold, this prints the time of a call, alone and next to a thread that is busy in Python.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def main() -> None:
     codec = codecs.load(TABLE, "native")
     data = stream_a(TABLE, SIZES[-1] // 14).data
     print(f"the interpreter switches threads every {sys.getswitchinterval() * 1e3:g} ms")
-    print(f"{'bytes':>10} {'alone':>12} {'beside a busy thread':>22}")
+    print(f"{'bytes':>10} {'alone':>12} {'next to a busy thread':>22}")
     for size in SIZES:
         part = data[:size]
         alone = _median(codec, part)

@@ -1,8 +1,8 @@
-"""Measure what two outstanding requests would gain: bare frames over a pty, two kinds of arm.
+"""Measure the gain of two outstanding requests, with bare frames over a pty and two kinds of arm.
 
 One arm handles requests one after another, 8 ms each: a loop that reads a frame, queries the servos
-and replies. The other replies to each request 8 ms after it came, like a slow line. The bench sends
-get_angles and get_coords one after another, as the session does, and both at once.
+and replies. The other replies to each request 8 ms after its arrival, like a slow line. The bench
+sends get_angles and get_coords one after another, as the session does, and then both at once.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from responder import responder
 ROUNDS = 100
 REQUESTS = [bytes.fromhex("FE FE 02 20 FA"), bytes.fromhex("FE FE 02 23 FA")]
 REPLY_SIZE = 17
-# Reads all requests and replies to each 8 ms after it came, or after the previous reply.
+# Reads all requests; replies to each 8 ms after its arrival, or 8 ms after the previous reply.
 RESPONDER = """
 import os, select, sys, time
 master, one_by_one = int(sys.argv[1]), sys.argv[2] == "one after another"
@@ -49,7 +49,7 @@ def main() -> None:
 
 
 def _round(descriptor: int, writes: list[bytes]) -> float:
-    """Write each, read all its replies before the next, and return the seconds."""
+    """Make each write and read its replies before the next; return the seconds."""
     started = time.perf_counter()
     for data in writes:
         os.write(descriptor, data)

@@ -21,12 +21,12 @@ POSE = [30.0, -20.0, -35.0, 25.0, 40.0, 15.0]
 # The fastest turn of each call counts, since other programs can only add time.
 TURNS = 3
 NEAR = [20.0, -25.0, -30.0, 20.0, 35.0, 10.0]
-# Stands for the coordinates that the session read at POSE.
+# A placeholder for the coordinates that the session read at POSE.
 READ = "the coordinates read before"
 
 
 class Step(NamedTuple):
-    """A call by pymycobot's name, and the seconds of the arm's time that pass after it."""
+    """A call, by pymycobot's name, and a pause after it, in seconds of the arm's time."""
 
     name: str
     values: tuple[Any, ...] = ()
@@ -92,9 +92,9 @@ def play(client: Any, clock: RunningClock) -> list[Called]:
 
 
 def pymycobot_on(url: str) -> Any:
-    """Open its class for a port or a socket as its users do; both constructors sleep 1.5 s."""
+    """Open pymycobot's class for a port or a socket; both constructors sleep 1.5 s."""
     with warnings.catch_warnings():
-        # Importing it compiles and calls what Python deprecates.
+        # Its import uses deprecated features of Python.
         warnings.simplefilter("ignore")
         from pymycobot import MyCobot280 as Theirs
         from pymycobot import MyCobot280Socket as TheirSocket
@@ -112,10 +112,10 @@ SERVERS: dict[str, Callable[[SimulatedArm, RunningClock], Server]] = {
 
 
 @contextmanager
-def session(who: str, link: str, speed: float = 1.0) -> Iterator[tuple[Any, RunningClock]]:
+def session(who: str, transport: str, speed: float = 1.0) -> Iterator[tuple[Any, RunningClock]]:
     """Connect a client to a new arm."""
     clock = RunningClock(speed)
-    with SERVERS[link](SimulatedArm(TABLE, clock=clock), clock) as server:
+    with SERVERS[transport](SimulatedArm(TABLE, clock=clock), clock) as server:
         client = CLIENTS[who](server.url)
         try:
             yield client, clock
@@ -128,12 +128,14 @@ def main() -> None:
     """Measure and print."""
     columns: dict[str, list[Called]] = {}
     for _ in range(TURNS):
-        for link in SERVERS:
+        for transport in SERVERS:
             for who in CLIENTS:
-                with session(who, link) as (client, clock):
+                with session(who, transport) as (client, clock):
                     called = play(client, clock)
-                best = columns.setdefault(f"{who}, {link}", called)
-                columns[f"{who}, {link}"] = [min(pair, key=_seconds) for pair in zip(best, called)]
+                best = columns.setdefault(f"{who}, {transport}", called)
+                columns[f"{who}, {transport}"] = [
+                    min(pair, key=_seconds) for pair in zip(best, called)
+                ]
     print("| call | " + " | ".join(columns) + " |")
     print("|---" * (len(columns) + 1) + "|")
     for index, step in enumerate(SESSION):

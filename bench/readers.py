@@ -1,7 +1,7 @@
 """The readers of the streams: our two codecs, pymycobot's own reader, a textbook state machine.
 
-Each takes the bytes of a line and returns what it took for frames, in order. The peers get the best
-case: they are called until the line ends, so that they lose only what their reading loses.
+Each takes the bytes of a line and returns, in order, what it accepts as frames. The peers run under
+the best conditions: they are called until the line ends, so that only their reading loses frames.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from streams import Line
 
 
 class Accepted(NamedTuple):
-    """Bytes that a reader took for a frame, and their place on the line."""
+    """Bytes that a reader accepted as a frame, and their place on the line."""
 
     start: int
     end: int
@@ -129,19 +129,19 @@ def pymycobot() -> Reader:
     return read
 
 
-def pymycobot_asked(line: Line) -> list[Accepted]:
-    """Read with the same code as its users: with one request for each frame that was sent.
+def pymycobot_by_request(line: Line) -> list[Accepted]:
+    """Read with the same code as pymycobot's users: with one request for each frame that was sent.
 
     Each request empties the buffer, as in ``_res``: reading starts after the previous frame, and
     noise before the reply comes after the request. A frame with another id is dropped, as in
-    ``_res``. There are no further attempts: their replies would be other frames.
+    ``_res``. There is no second attempt: its reply would be another frame.
     """
     common, peer = pymycobot_peer()
     found: list[Accepted] = []
     begins = [0, *line.ends.tolist()]
     for begin, start, end in zip(begins, line.starts.tolist(), line.ends.tolist()):
         window = iter([line.data[at : at + 1] for at in range(begin, end)])
-        # After the reply nothing more comes, and its 0.5 s pass.
+        # Nothing follows the reply, and pymycobot's 0.5 s pass.
         times = itertools.chain(itertools.repeat(0.0, end - begin + 1), itertools.repeat(1.0))
         peer._serial_port = SimpleNamespace(read=partial(next, window, b""))
         with mock.patch.object(common, "time", SimpleNamespace(time=times.__next__)):
@@ -155,7 +155,7 @@ def pymycobot_asked(line: Line) -> list[Accepted]:
 def pymycobot_peer() -> tuple[SimpleNamespace, SimpleNamespace]:
     """Return pymycobot's module of shared code, and one of its arms without a port."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # importing it calls what Python 3.11 deprecates
+        warnings.simplefilter("ignore")  # its import uses features that Python 3.11 deprecates
         from pymycobot import CommandGenerator, MyCobot280, common
     # Like its constructor, without the port and without 1.5 s of sleep.
     peer = object.__new__(MyCobot280)

@@ -1,4 +1,4 @@
-"""A process on the other end of a pseudo-terminal, and the verdict on a measured figure."""
+"""A process at the other end of a pseudo-terminal, and the verdict on a measured figure."""
 
 from __future__ import annotations
 

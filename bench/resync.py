@@ -1,7 +1,8 @@
-"""The resync report: which frames each reader finds on damaged lines.
+"""Report which frames each reader finds on damaged lines.
 
-Every undamaged frame must be found, unless a false frame that the table allows covers it; those are
-counted and shown. If any other frame is lost, or the two codecs differ, the exit code is 1.
+Every undamaged frame must be found, unless a false frame that the table allows covers it. Covered
+frames are counted and shown. If any other frame is lost, or the two codecs differ, the exit code
+is 1.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from readers import Reader
 from streams import Line
 
 TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
-# Rarer damage needs a longer line: by this factor.
+# The rarer the damage, the longer the line, by this factor.
 LENGTHS = {1e-4: 2.0, 1e-3: 1.0, 1e-2: 0.5}
 BYTE_BY_BYTE = 100_000
 
@@ -58,7 +59,7 @@ class Scenario:
 
 
 def scenarios() -> Iterator[Scenario]:
-    """Yield replies with each kind of damage, and a shared line and stream A with all of them."""
+    """Yield replies with each kind of damage, and a shared line and stream A with all kinds."""
     for edition in TABLES:
         for rate in LENGTHS:
             for kind in KINDS:
@@ -78,7 +79,7 @@ def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) ->
         "any LEN to 64": readers.any_length(64)(line.data),
         "textbook": readers.textbook(table)(line.data),
         "pymycobot": readers.pymycobot()(line.data),
-        "pymycobot asked": readers.pymycobot_asked(line),
+        "pymycobot by request": readers.pymycobot_by_request(line),
     }
     verdicts = {
         name: judge(table, scenario.listening, line, frames) for name, frames in read.items()
@@ -102,11 +103,11 @@ def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) ->
 
 
 def bounded(edition: str, frames: int, seed: int) -> list[dict[str, Any]]:
-    """Measure the value of the table: the same scan with any id and any LEN up to a bound."""
+    """Measure what the table is worth: scan without it, with any id and any LEN up to a bound."""
     table = TABLES[edition]
     line = Scenario(edition, "A", "reply", "line noise", 0.1).line(frames, 1000 * seed)
     scans: dict[str, Reader] = {"the table": readers.ours(table, "native", "reply")}
-    # LEN 254 is FE, a case of its own: FE FE FE is then a header.
+    # LEN 254 is FE, a special case: FE FE FE would be a header.
     lengths = {"longest": table.frame.maximum_length, "64": 64, "128": 128, "253": 253, "255": 255}
     for name, longest in lengths.items():
         scans[name] = readers.any_length(longest)
@@ -124,7 +125,7 @@ def _agree(table: Table, listening: Listening, data: bytes) -> bool:
 
 
 def _late(table: Table, listening: Listening, data: bytes) -> dict[str, int]:
-    """Feed byte by byte; count the bytes after its last one until each frame is delivered."""
+    """Feed byte by byte; count the frames that are delivered after their last byte."""
     framer = codecs.load(table, "native").framer(listening)
     late = []
     for fed, byte in enumerate(memoryview(data).cast("c"), start=1):
@@ -135,11 +136,13 @@ def _late(table: Table, listening: Listening, data: bytes) -> dict[str, int]:
 def main() -> int:
     """Measure and print all rows; return 1 if a lost frame is not explained."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--frames", type=int, default=20_000, help="sent in a row, on average")
-    parser.add_argument("--reference-bytes", type=int, default=20_000, help="for both codecs")
+    parser.add_argument("--frames", type=int, default=20_000, help="frames in each row, on average")
+    parser.add_argument(
+        "--reference-bytes", type=int, default=20_000, help="bytes that both codecs read"
+    )
     parser.add_argument("--seed", type=int, default=4)
     parser.add_argument("--show", type=int, default=12, help="how many lost frames to show")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all of it there")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the report to this file")
     options = parser.parse_args()
     started = time.monotonic()
     print(resync_table.HEAD, resync_table.COLUMNS, sep="\n")

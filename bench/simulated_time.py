@@ -2,9 +2,9 @@
 
     python bench/simulated_time.py [--minutes N]
 
-In one process, without a line: the time is that of the simulated arm, from the request's bytes to
-the reply's. Targets follow each other without a pause. The queries are get_angles in one run
-and get_coords in another. The limit is one minute for the hour.
+It runs in one process without a transport, so it measures only the simulated arm, from the bytes of
+a request to those of its reply. Targets follow each other without a pause. The queries are
+get_angles in one run and get_coords in another. The hour may take at most one minute.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SPEED = 40
 
 
 def main() -> None:
-    """Measure both runs; print them with the limit."""
+    """Measure both runs; print their times with the limit."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--minutes", type=float, default=60.0)
     seconds = parser.parse_args().minutes * 60
@@ -60,7 +60,7 @@ def _hour(name: str, samples: int) -> None:
     print(
         f"an hour at {1 / PERIOD:.0f} Hz, {name:10} {taken:6.1f} s of CPU   "
         f"{'within' if taken <= LIMIT else 'OVER'} {LIMIT:.0f} s   "
-        f"({taken / HOUR * PERIOD * 1e6:.0f} us a sample, {moved / samples:.0%} of them on the way)"
+        f"({taken / HOUR * PERIOD * 1e6:.0f} us a sample, {moved / samples:.0%} of them in motion)"
     )
 
 

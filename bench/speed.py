@@ -1,6 +1,6 @@
-"""Measure the native codec, as ratios to other programs on the same input in the same run.
+"""Compare the native codec with other programs, on the same input in the same run.
 
-Each round runs everything once, one after another; a ratio is the median over the rounds.
+Each round runs each program once; a ratio is the median over the rounds.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def main() -> None:
 
 
 class Reused:
-    """Call with ``out=`` the previous result, as a program does that reads many captures."""
+    """Pass the previous result as ``out=``, like a program that reads many captures."""
 
     def __init__(self, call: Any) -> None:
         self.call = call
@@ -72,7 +72,7 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
     few = stream_a(TABLE, SLOWEST)
     timed = {
         "memcpy": Timed(peers.memcpy(clean)),
-        "memcpy of the noisy one": Timed(peers.memcpy(bad)),
+        "memcpy of the noisy stream": Timed(peers.memcpy(bad)),
         "scan": Timed(Reused(partial(codec.scan, clean, "reply"))),
         "noisy scan": Timed(Reused(partial(codec.scan, bad, "reply"))),
         "fresh": Timed(partial(codec.decode_columns, clean, "reply")),
@@ -87,14 +87,14 @@ def bulk(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
     }
     return timed, [
         Target("framing scan to offsets", "scan", "memcpy", 1.6),
-        Target("the same, 10 % noise", "noisy scan", "memcpy of the noisy one", 2.5),
+        Target("the same, 10 % noise", "noisy scan", "memcpy of the noisy stream", 2.5),
         Target("float64 columns, out=", "reused", "memcpy", 6.5),
         Target("float64 columns, fresh", "fresh", "memcpy", 8),
         Target("float64 columns, fresh", "fresh", "NumPy", 10, faster=True),
         Target("float64 columns, fresh", "fresh", "pymycobot", 3000, faster=True),
         untargeted("float64 columns, fresh", "fresh", "pymycobot, no port"),
         Target("raw columns, out=", "raw", "memcpy", 2.5),
-        Target("the same, 10 % noise", "noisy raw", "memcpy of the noisy one", 3),
+        Target("the same, 10 % noise", "noisy raw", "memcpy of the noisy stream", 3),
     ]
 
 
@@ -174,7 +174,7 @@ def single(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
 
 
 def adversarial(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
-    """Time 64 MiB that are made to be slow, and half of that."""
+    """Time adversarial inputs of 64 MiB and of 32 MiB."""
     longest = TABLE.frame.maximum_length
     header = codec.encode("get_angles", "reply", (ANGLES,))[:4]
     patterns = {
@@ -195,7 +195,7 @@ def adversarial(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Targe
 
 
 def threads(codec: Codec, frames: int) -> tuple[dict[str, Timed], list[Target]]:
-    """Time two captures in two threads, against one after another."""
+    """Time two captures in two threads, and one after the other."""
     data = stream_a(TABLE, 4 * frames).data
     out: list[Columns | None] = [None, None]
 
@@ -221,7 +221,7 @@ PARTS = {
     "Bulk": bulk,
     "Messages": objects,
     "One frame": single,
-    "Input made to be slow": adversarial,
+    "Adversarial input": adversarial,
     "Threads": threads,
 }
 

@@ -84,8 +84,8 @@ class FindDecoder:
 def numpy_columns(data: bytes) -> dict[int, tuple[Any, Any]]:
     """Return offsets and float64 values of angles and coordinates by id, from a vectorised scan.
 
-    It takes every position with a fitting header, LEN and footer for a frame. So it is right only
-    if no frame contains bytes that look like one. It ignores all other messages.
+    It accepts each position with a fitting header, LEN and footer as a frame. So its result is
+    correct only if no frame contains bytes that look like one. It ignores all other messages.
     """
     bytes_ = np.frombuffer(data, np.uint8)
     starts = np.flatnonzero((bytes_[:-16] == 0xFE) & (bytes_[1:-15] == 0xFE))
@@ -126,7 +126,7 @@ def pymycobot_reads(data: bytes, starts: Sequence[int]) -> Callable[[], list[Any
 
 
 def pymycobot_reads_memory(data: bytes) -> Callable[[], list[Any]]:
-    """Return the same without pyserial: each byte comes from a list, by the fastest call."""
+    """Return the same without pyserial: the fastest possible call takes each byte from a list."""
     common, peer = pymycobot_peer()
     clock = SimpleNamespace(time=lambda: 0.0)
 

@@ -1,4 +1,4 @@
-"""Compute and print the ratios of the speed bench beside their targets."""
+"""Compute the ratios of the speed bench, and print them with their targets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Work = Callable[[], object]
 
 @dataclass
 class Timed:
-    """One thing that is timed, with the seconds a run in each round."""
+    """A piece of work to time, and the seconds per run in each round."""
 
     work: Work
     times_a_round: int = 1
@@ -67,7 +67,7 @@ class Ratio:
 
 
 def measure(timed: dict[str, Timed], rounds: int) -> None:
-    """Run everything in turn, round by round, so that a slow moment affects all alike."""
+    """Run everything in turn, round by round, so that a slow moment affects all work equally."""
     for each in timed.values():
         each.work()  # not counted: it fills memory and caches
     for _ in range(rounds):

@@ -1,4 +1,4 @@
-"""Measure the real time that a client needs over a transport in memory, in stepped time."""
+"""Measure how much real time a client in stepped time needs, over a transport in memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MINUTE_AT_100_HZ = 6001
 
 
 def main() -> None:
-    """Measure each by its fastest run, and print it."""
+    """Measure both kinds of work; print the fastest run of each."""
     for name, work in (("a motion that is waited for", _move), ("a minute at 100 Hz", _stream)):
         stepped, real = min((_turn(work) for _ in range(TURNS)), key=lambda turn: turn[1])
         print(f"{name:30} {stepped:6.1f} s of the arm's time in {real * 1e3:6.1f} ms")

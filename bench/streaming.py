@@ -1,10 +1,10 @@
 """Stream for a day at 100 Hz in accelerated time; check memory, repetition and order.
 
-    python bench/streaming.py              about a minute of this machine's time
-    python bench/streaming.py --whole-day  all of the day's 8.64 million slots
+    python bench/streaming.py              run for about a minute of real time
+    python bench/streaming.py --whole-day  run all of the day's 8.64 million slots
 
 The transport is in memory and owns the clock (tests/accelerated.py); client, session and native
-codec are the ordinary ones. Some replies are lost, some slow, some come too late.
+codec are the ordinary ones. Some replies are lost, some are slow, and some exceed their deadline.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from accelerated import Checker, accelerated
 RATE = 100.0
 DAY = 86_400.0
 MINUTE = 50.0
-# Bytes that the process may grow between a tenth of the run and its end: some pages.
+# How many bytes the process may grow after the first tenth of the run: some pages.
 GROWTH = 1 << 20
 CHUNK = 1000
 
 
 def main() -> None:
-    """Stream for a minute of real time, or a day of the arm's; print the samples and the cost."""
+    """Stream for a minute of real time, or for a day of the arm's time; print samples and cost."""
     bound = None if "--whole-day" in sys.argv[1:] else MINUTE
     started = time.perf_counter()
     early: int | None = None

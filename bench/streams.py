@@ -1,8 +1,7 @@
 """Make byte streams from an edition's table, with the truth about every frame in them.
 
-``frames_alike`` builds any number of frames of one variant at once, with random legal values, by
-NumPy and without a codec: no codec is judged by a stream that it made itself. A seed always gives
-the same stream.
+``frames_alike`` builds many frames of one variant at once, with random legal values. It uses NumPy
+and no codec, so that no codec is judged by its own stream. The same seed gives the same stream.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ class Line:
         whole: whether it arrives as it was sent.
         sent: the undamaged bytes, and where each frame starts in them.
         sites: the place after each damage.
-        acks: the starts of acknowledgements that were added: noise if the edition has none, but
+        acks: the starts of added acknowledgements. They are noise if the edition has none, but
             accepting them is never a mistake.
     """
 
@@ -70,7 +69,7 @@ def stream_a(table: Table, count: int, *, seed: int = 1) -> Line:
 
 
 def catalogue(table: Table, count: int, listening: Listening, *, seed: int = 1) -> Line:
-    """Yield each variant of each message of an edition equally often, with random legal values."""
+    """Make a stream with each variant of each message equally often, with random legal values."""
     directions: tuple[Direction, ...] = (
         ("request", "reply") if listening == "both" else (listening,)
     )
@@ -79,7 +78,7 @@ def catalogue(table: Table, count: int, listening: Listening, *, seed: int = 1) 
 
 
 def variants_of(table: Table, direction: Direction) -> list[tuple[int, Variant]]:
-    """Return id and variant of every message variant of the edition in one direction."""
+    """Return every variant of the edition's messages in one direction, with its id."""
     return [
         (command.id, variant)
         for command in table.commands

@@ -7,7 +7,7 @@ Each rule replaces text of the asyncio file. Lines between ``# unasync: off`` an
 are left out, and so is a line that ends with ``# unasync: off``.
 """
 
-# ruff: noqa: E501, S603  (passages are as long as in the files; ruff is our own command)
+# ruff: noqa: E501, S603  (passages keep the line lengths of their files; ruff is trusted)
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LEFT_OUT = re.compile(
     r"^ *# unasync: off\n.*?^ *# unasync: on\n|^[^\n]*# unasync: off\n", re.MULTILINE | re.DOTALL
 )
 
-# Text of docstrings that differs; each stands in exactly one file.
+# Texts that differ between the docstrings of the two clients; each is in exactly one file.
 PASSAGES = [
     (
         '"""The asyncio client."""',
@@ -111,7 +111,7 @@ RULES = [
 
 
 def blocking(source: str, text: str, used: set[str]) -> str:
-    """Return the blocking form of an asyncio file; add the passages that it has to ``used``."""
+    """Return the blocking version of an asyncio file; add the passages found in it to ``used``."""
     text = LEFT_OUT.sub("", text)
     for passage, replacement in PASSAGES:
         if passage in text:
@@ -123,7 +123,7 @@ def blocking(source: str, text: str, used: set[str]) -> str:
 
 
 def _formatted(text: str) -> str:
-    """Return the text as ruff lays it out: names are shorter now, and sort differently."""
+    """Sort the imports and format the text with ruff, because names are shorter now."""
     name = ["--stdin-filename", str(CLIENT / "generated.py"), "-"]
     for command in (["check", "--select", "I", "--fix", "--quiet"], ["format"]):
         run = [sys.executable, "-m", "ruff", *command, *name]

@@ -14,7 +14,7 @@ from judge import Verdict, judge
 from readers import Accepted
 from streams import Line, catalogue
 
-NO_LOSS = "lost without a legal false frame over them: 0"
+NO_LOSS = "lost that no legal false frame covers: 0"
 
 
 def _line(kind: str = "false header") -> Line:
@@ -40,7 +40,7 @@ def test_reader_that_consumes_on_failure_loses_unexplained_frames(reader: reader
     assert len(verdict.unexplained) > len(verdict.covered)
 
 
-def test_verdict_of_a_perfect_reader_has_no_loss_and_shows_one_missing_frame() -> None:
+def test_perfect_reader_has_no_loss_and_a_missing_frame_is_unexplained() -> None:
     line = _line("mixed")
     whole = [
         Accepted(start, end, line.data[start:end])
@@ -53,7 +53,7 @@ def test_verdict_of_a_perfect_reader_has_no_loss_and_shows_one_missing_frame() -
     assert missing.unexplained == [whole[100].start]
 
 
-def test_wrong_frames_are_counted_by_their_origin() -> None:
+def test_wrong_frame_is_counted_as_altered_or_as_phantom() -> None:
     frame = bytes.fromhex("FE FE 03 12 01 FA")
     clean = catalogue(TABLE, 4000, "reply")
     line = damage(TABLE, clean, "flip", 1e-2)
@@ -72,7 +72,7 @@ def test_pymycobots_reader_reads_a_clean_line_completely() -> None:
 
 def test_pymycobot_drops_a_reply_after_an_ack() -> None:
     line = _line("ack")
-    verdict = _judged(line, readers.pymycobot_asked(line))
+    verdict = _judged(line, readers.pymycobot_by_request(line))
     assert verdict.undamaged - verdict.recovered == len(line.acks) > 0
 
 

@@ -48,8 +48,8 @@ def test_damaged_stream_describes_each_frame_correctly(table: Table, kind: str) 
     line = damage.damage(table, clean, kind, 1e-2)
     assert line.data != clean.data
     for index in range(line.frames):
-        stands = line.data[line.starts[index] : line.ends[index]]
-        assert (stands == clean.original(index)) == line.whole[index], index
+        received = line.data[line.starts[index] : line.ends[index]]
+        assert (received == clean.original(index)) == line.whole[index], index
     assert (line.starts[1:] >= line.ends[:-1]).all(), "frames do not overlap"
 
 
