@@ -8,36 +8,17 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
-from cobotwire.diagnose import firmware, garbage
-from cobotwire.diagnose.findings import (
-    Boot,
-    CommandError,
-    Finding,
-    Garbage,
-    Nuls,
-    Panic,
-    ServoPacket,
-    Text,
-    Unrecognised,
-)
-from cobotwire.diagnose.frames import Frames
+from cobotwire.diagnose import garbage
+from cobotwire.diagnose.findings import Finding
+from cobotwire.diagnose.recogniser import Recogniser
+from cobotwire.diagnose.registry import RECOGNISERS
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
-from cobotwire.diagnose.servo import ServoBus
 
 Item = Frame | Finding
 
 # A packet or text may continue after frames of at most this many bytes together: an acknowledgement
 # and the longest reply, twice. After more bytes it is unlikely that the parts belong together.
 REACH = 64
-
-_TEXTS = (Text, CommandError, Boot, Panic)
-# Kinds that are split into pieces, and the size of a full piece.
-_PIECES: dict[type[Finding], int] = {
-    Text: firmware.LINE_LIMIT,
-    Nuls: garbage.NUL_LIMIT,
-    Unrecognised: garbage.PIECE_LIMIT,
-    Garbage: garbage.PIECE_LIMIT,
-}
 
 
 class Diagnoser:
@@ -50,8 +31,7 @@ class Diagnoser:
     """
 
     def __init__(self, codec: Codec, listening: Listening = "reply") -> None:
-        self._frames = Frames(codec, listening)
-        self._bus = ServoBus()
+        self._recognisers = [recogniser(codec, listening) for recogniser in RECOGNISERS]
         self._residue = Residue()
         self._held: deque[Frame] = deque()
         self._gap = 0
@@ -59,16 +39,17 @@ class Diagnoser:
         self._in_text = False
         # At this many bytes from the start of the residue nothing can start, whatever comes.
         self._plain = 0
-        # Matches the bytes of the residue at which something may be recognised.
-        self._interesting = re.compile(
-            re.escape(codec.table.frame.header[:1])
-            + rb"|\xff(?:\xff|\Z)|\0{%d}|\0+\Z" % garbage.NUL_MINIMUM
-            + rb"|[%s]{%d}|[%s]+\Z" % (firmware.READABLE, firmware.TEXT_MINIMUM, firmware.READABLE)
-        )
+        # Matches the places of the residue at which something may be recognised.
+        self._interesting = re.compile(b"|".join(each.starts for each in self._recognisers))
+        self._by_first_byte = [self._starting_with(bytes([byte])) for byte in range(256)]
+
+    def _starting_with(self, byte: bytes) -> tuple[Recogniser, ...]:
+        return tuple(each for each in self._recognisers if re.match(each.starts, byte))
 
     def sent(self, data: bytes) -> None:
         """Note a request that was sent, so that its echo is recognised."""
-        self._frames.sent(data)
+        for recogniser in self._recognisers:
+            recogniser.sent(data)
 
     def feed(self, events: Iterable[Event]) -> list[Item]:
         """Take events of the framer, in order; return the frames and findings that are certain."""
@@ -118,9 +99,9 @@ class Diagnoser:
     def _emit(self, items: list[Item], finding: Finding) -> None:
         if self._continues(finding):
             finding = replace(finding, continued=True)
-        self._last, self._in_text = finding, isinstance(finding, _TEXTS)
-        if isinstance(finding, ServoPacket):
-            self._bus.received(finding)
+        self._last, self._in_text = finding, finding.readable
+        for recogniser in self._recognisers:
+            recogniser.found(finding)
         while self._held and self._held[0].offset < finding.offset:
             items.append(self._held.popleft())
         items.append(finding)
@@ -131,7 +112,7 @@ class Diagnoser:
         if last is None or type(last) is not type(finding):
             return False
         end = last.spans[-1].offset + len(last.spans[-1].data)
-        full = len(last.data) == _PIECES.get(type(last)) and not last.data.endswith(b"\n")
+        full = len(last.data) == last.piece and not last.data.endswith(b"\n")
         return full and end == finding.offset
 
     def _next(self, start: int) -> Finding | None:
@@ -145,7 +126,7 @@ class Diagnoser:
         limit = min(end, start + garbage.PIECE_LIMIT)
         place = start + self._plain
         while (place := self._place(place, limit)) < limit:
-            verdict = self._recognise(place, in_text=False)
+            verdict = self._recognise(place, after_text=False)
             if verdict is not None:
                 self._plain = place - start
                 return None if isinstance(verdict, Wait) else self._unknown(start, place)
@@ -164,11 +145,11 @@ class Diagnoser:
         self._plain = 0
         return garbage.classify(self._residue, start, end)
 
-    def _recognise(self, at: int, in_text: bool) -> Verdict:
-        residue, byte = self._residue, self._residue.data[at]
-        verdict = self._frames.recognise(residue, at)
-        if verdict is None and byte == 0xFF:
-            verdict = self._bus.recognise(residue, at)
-        if verdict is None and byte == 0:
-            verdict = garbage.recognise_nuls(residue, at)
-        return firmware.recognise(residue, at, in_text) if verdict is None else verdict
+    def _recognise(self, at: int, after_text: bool) -> Verdict:
+        residue = self._residue
+        residue.after_text = after_text
+        for recogniser in self._by_first_byte[residue.data[at]]:
+            verdict = recogniser.recognise(residue, at)
+            if verdict is not None:
+                return verdict
+        return None

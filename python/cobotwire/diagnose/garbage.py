@@ -1,4 +1,4 @@
-"""Classify bytes in which nothing was recognised: NULs, a wrong baud rate, or unknown.
+"""Classify bytes in which no recogniser found anything: NULs, a wrong baud rate, or unknown.
 
 A receiver that is at least twice as fast as the sender samples each bit several times: the start
 bit fills the low bits with zeros, and the ones are consecutive. ``78 80 78``, seen at a wrong rate,
@@ -9,14 +9,14 @@ the slower one, garbage looks like data. Hence the finding is a guess.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import comb
+from typing import ClassVar
 
-from cobotwire.diagnose.findings import REBOOT_NULS, Finding, Garbage, Nuls, Unrecognised
-from cobotwire.diagnose.residue import Residue, Verdict, Wait
+from cobotwire.diagnose.findings import SHOWN, Finding
+from cobotwire.diagnose.nuls import nuls
+from cobotwire.diagnose.residue import Residue
 
-# This many NULs in a row are a finding of their own.
-NUL_MINIMUM = 4
-NUL_LIMIT = 4096
 # Unrecognised bytes are reported in pieces of this size.
 PIECE_LIMIT = 256
 
@@ -34,30 +34,55 @@ _FITTING = frozenset(
 )
 
 
-def recognise_nuls(residue: Residue, at: int) -> Verdict:
-    """Recognise a run of NULs at ``at``, in pieces of ``NUL_LIMIT``."""
-    limit, final = residue.stretch(at)
-    rest = residue.data[at : min(limit, at + NUL_LIMIT)]
-    count = len(rest) - len(rest.lstrip(b"\0"))
-    if at + count == limit and count < NUL_LIMIT and not final:
-        return Wait.WAIT
-    return _nuls(residue, at, at + count) if count >= NUL_MINIMUM else None
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Garbage(Finding):
+    """Bytes that may have been sent at a lower baud rate; this is a guess.
 
+    ``fitting`` bytes look like it; with probability ``chance`` as many random bytes would.
+    """
 
-def _nuls(residue: Residue, start: int, end: int) -> Nuls:
-    return Nuls(
-        spans=residue.spans(start, end),
-        reason=residue.reason(start),
-        count=end - start,
-        reboot=end - start >= REBOOT_NULS,
+    fitting: int
+    chance: float
+    kind: ClassVar[str] = "garbage"
+    advice: ClassVar[str] = (
+        "the baud rate may be wrong: try --baudrate 1000000 or --baudrate 115200"
     )
+    piece: ClassVar[int | None] = PIECE_LIMIT
+    summary_prefix: ClassVar[str] = "perhaps a wrong baud rate: "
+    summary_noun: ClassVar[str] = "stretch"
+
+    def describe(self) -> str:
+        """Describe the guess."""
+        return (
+            f"perhaps a wrong baud rate: {self.fitting} of {len(self.data)} bytes look "
+            f"stretched (probability for random bytes: {self.chance:.2g})"
+        )
+
+    def example(self) -> str:
+        """Return the first bytes."""
+        return self.data[: SHOWN // 4].hex(" ")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unrecognised(Finding):
+    """Bytes in which no recogniser found anything, and that do not look stretched."""
+
+    kind: ClassVar[str] = "unrecognised"
+    advice: ClassVar[str] = (
+        "record the traffic (--record FILE), and inspect it with cobotwire decode FILE"
+    )
+    piece: ClassVar[int | None] = PIECE_LIMIT
+
+    def summarize(self, count: int, size: int) -> str:
+        """Describe the number of bytes."""
+        return f"{size} unrecognised byte{'s' * (size != 1)}"
 
 
 def classify(residue: Residue, start: int, end: int) -> Finding:
-    """Return the best finding for bytes in which nothing was recognised."""
+    """Return the finding that fits best."""
     data = residue.data[start:end]
     if not any(data):
-        return _nuls(residue, start, end)
+        return nuls(residue, start, end)
     spans, reason = residue.spans(start, end), residue.reason(start)
     fitting = sum(byte in _FITTING for byte in data)
     large = sum(byte in _FITTING and byte >= SMALL for byte in data)

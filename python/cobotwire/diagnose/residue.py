@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
 from enum import Enum
 from itertools import pairwise
@@ -19,6 +20,8 @@ class Wait(Enum):
 # A finding that starts there, or None if nothing does, or Wait if more bytes are needed.
 Verdict = Finding | Wait | None
 
+_LINE_END = re.compile(rb"\r?\n|\r")
+
 
 class Residue:
     """Consecutive bytes of noise, with marks where frames interrupted them.
@@ -31,6 +34,8 @@ class Residue:
         self.data = b""
         # Whether no later byte can belong to ``data``.
         self.closed = False
+        # Whether the place to recognise comes directly after text.
+        self.after_text = False
         self._marks: list[int] = []
         self._starts: list[int] = []
         self._pieces: list[tuple[int, NoiseReason]] = []
@@ -63,6 +68,14 @@ class Residue:
         if index < len(self._marks):
             return self._marks[index], True
         return len(self.data), self.closed
+
+    def line_end(self, at: int) -> int | Wait:
+        """Return the place after the line end at ``at``; ``at`` itself if there is no line end."""
+        limit, final = self.stretch(at)
+        found = _LINE_END.match(self.data, at, limit)
+        end = found.end() if found else at
+        undecided = end == limit and self.data[at:end] in (b"", b"\r")
+        return Wait.WAIT if undecided and not final else end
 
     def reason(self, at: int) -> NoiseReason:
         """Return the framer's reason for the byte at ``at``."""

@@ -9,7 +9,12 @@ error byte may have the value of an instruction.
 
 from __future__ import annotations
 
-from cobotwire.diagnose.findings import ServoPacket
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from cobotwire.codec.interface import Codec, Listening
+from cobotwire.diagnose.findings import Finding
+from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.registers import register_name
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 
@@ -28,8 +33,68 @@ INSTRUCTIONS = {
     0x82: "sync read",
     0x83: "sync write",
 }
-# Voltage, sensor, temperature, current, overload; other bits are never set.
-ERROR_BITS = 0x2F
+# By bit of the error byte; other bits are never set.
+ERRORS = {0: "voltage", 1: "sensor", 2: "temperature", 3: "current", 5: "overload"}
+ERROR_BITS = sum(1 << bit for bit in ERRORS)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServoPacket(Finding):
+    """A packet of the servo bus with a right checksum.
+
+    ``servo`` is 254 for all servos. ``ambiguous``: the packet could also have the other role.
+    ``register`` of a status packet is known only if its instruction was received before. ``count``
+    is the number of bytes to read from or write to a servo. ``error`` is the error byte of a status
+    packet.
+    """
+
+    servo: int
+    role: Literal["instruction", "status"]
+    ambiguous: bool
+    instruction: str | None
+    error: int | None
+    register: int | None
+    register_name: str | None
+    count: int | None
+    servos: tuple[int, ...]
+    parameters: bytes
+    kind: ClassVar[str] = "servo"
+    advice: ClassVar[str] = (
+        "the firmware leaks packets of its servo bus; cobotwire skips them, but programs that "
+        "expect clean replies may fail: try a newer firmware"
+    )
+    summary_prefix: ClassVar[str] = "servo bus leak: "
+    summary_noun: ClassVar[str] = "packet"
+
+    def describe(self) -> str:
+        """Describe the packet."""
+        doubt = " (or a status with errors)" if self.ambiguous else ""
+        return f"servo bus: {self.example()}{doubt}"
+
+    def example(self) -> str:
+        """Describe the packet without its bus."""
+        servo = "all servos" if self.servo == BROADCAST else f"servo {self.servo}"
+        if self.role == "status":
+            where = "" if self.register is None else f" at {self._register_text()}"
+            sent = f" {self.parameters.hex(' ')}{where}" if self.parameters else ""
+            return f"status of {servo}{sent}{self._errors_text()}"
+        if self.servos:
+            servo = f"servos {', '.join(map(str, self.servos))}"
+        if self.register is None:
+            rest = f" {self.parameters.hex(' ')}" if self.parameters else ""
+            return f"{self.instruction} of {servo}{rest}"
+        text = f"{self.instruction} {self.count} bytes at {self._register_text()} of {servo}"
+        if self.instruction in ("write", "reg write"):
+            return f"{text}: {self.parameters[1:].hex(' ')}"
+        return text
+
+    def _register_text(self) -> str:
+        name = f" ({self.register_name})" if self.register_name else ""
+        return f"register 0x{self.register:02X}{name}"
+
+    def _errors_text(self) -> str:
+        names = [name for bit, name in ERRORS.items() if (self.error or 0) >> bit & 1]
+        return f", with errors: {', '.join(names)}" if names else ""
 
 
 def size_of(packet: bytes) -> int | None:
@@ -51,10 +116,12 @@ def size_of(packet: bytes) -> int | None:
     return size if ~sum(packet[2 : size - 1]) & 0xFF == packet[size - 1] else 0
 
 
-class ServoBus:
+class ServoBus(Recogniser):
     """Recognises packets; remembers instructions, as a status packet does not name its register."""
 
-    def __init__(self) -> None:
+    starts = rb"\xff(?:\xff|\Z)"
+
+    def __init__(self, codec: Codec, listening: Listening) -> None:
         # Servo id to the register and number of bytes that its next status packet holds.
         self._expected: dict[int, tuple[int | None, int]] = {}
 
@@ -92,8 +159,12 @@ class ServoBus:
             parameters=parameters,
         )
 
-    def received(self, packet: ServoPacket) -> None:
-        """Remember what ``packet`` requests."""
+    def found(self, finding: Finding) -> None:
+        """Remember what a packet requests."""
+        if isinstance(finding, ServoPacket):
+            self._remember(finding)
+
+    def _remember(self, packet: ServoPacket) -> None:
         if packet.role == "status":
             self._expected.pop(packet.servo, None)
         elif packet.instruction == "sync read":

@@ -5,15 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from cobotwire.diagnose.findings import (
-    SUMMARIZED,
-    Boot,
-    CommandError,
-    Finding,
-    Nuls,
-    Panic,
-    Unrecognised,
-)
+from cobotwire.diagnose.findings import Finding
+from cobotwire.diagnose.registry import CLASSES
 
 
 class Summary:
@@ -23,7 +16,10 @@ class Summary:
         self.kinds: Counter[str] = Counter()
         self.bytes: Counter[str] = Counter()
         self._first: dict[str, Finding] = {}
-        self._reboots = 0
+        # The signs that the controller failed, by kind: their number and the first cause.
+        self._failures: Counter[str] = Counter()
+        self._causes: dict[str, str] = {}
+        self._rebooted = False
         for finding in findings:
             self.add(finding)
 
@@ -35,50 +31,28 @@ class Summary:
             return
         self.kinds[kind] += 1
         self._first.setdefault(kind, finding)
-        self._reboots += isinstance(finding, Nuls) and finding.reboot
+        failure = finding.failure
+        if failure is not None:
+            self._failures[kind] += 1
+            self._causes.setdefault(kind, failure)
+            self._rebooted |= finding.reboots
 
     def __str__(self) -> str:
         """Return the sentence, most important findings first; empty if there are none."""
-        parts = [self._reboot(), self._command_errors()]
-        parts += [self._several(kind) for kind in SUMMARIZED]
-        parts += [self._nuls(), self._unrecognised()]
-        return "; ".join(part for part in parts if part)
+        parts = [self._failed()] if self._failures else []
+        for kind in (each.kind for each in CLASSES):
+            count = self.kinds[kind] - self._failures[kind]
+            if count:
+                parts.append(self._first[kind].summarize(count, self.bytes[kind]))
+        return "; ".join(parts)
 
-    def _reboot(self) -> str:
-        panics, boots = self.kinds[Panic.kind], self.kinds[Boot.kind]
-        panic, boot = self._first.get(Panic.kind), self._first.get(Boot.kind)
-        cause = panic.cause_text() if isinstance(panic, Panic) else ""
-        if isinstance(panic, Panic) and not (self._reboots or boots or panic.rebooting):
-            return f"the controller failed: {cause}"
-        most = max(panics, boots, self._reboots)
-        if not most:
-            return ""
-        reason = cause or (boot.cause if isinstance(boot, Boot) else "")
+    def _failed(self) -> str:
+        # One failure may leave several signs: a panic, a boot message and NULs.
+        most = max(self._failures.values())
         times = "" if most == 1 else f" {most} times"
-        return f"the controller rebooted{times}" + (f": {reason}" if reason else "")
-
-    def _command_errors(self) -> str:
-        count = self.kinds[CommandError.kind]
-        times = "" if count == 1 else f" {count} times"
-        return f"the firmware reported cmd_len error{times}" if count else ""
-
-    def _several(self, kind: type[Finding]) -> str:
-        count, noun = self.kinds[kind.kind], kind.summary_noun
-        if not count:
-            return ""
-        example = self._first[kind.kind].example()
-        if count == 1:
-            return f"{kind.summary_prefix}{example}"
-        plural = f"{noun}{'es' if noun.endswith('h') else 's'}"
-        return f"{kind.summary_prefix}{count} {plural}, e.g. {example}"
-
-    def _nuls(self) -> str:
-        short = self.kinds[Nuls.kind] - self._reboots
-        return "" if short <= 0 else f"{short} short run{'s' * (short != 1)} of NULs"
-
-    def _unrecognised(self) -> str:
-        count = self.bytes[Unrecognised.kind]
-        return "" if not count else f"{count} unrecognised byte{'s' * (count != 1)}"
+        cause = next((self._causes[c.kind] for c in CLASSES if self._causes.get(c.kind)), "")
+        verb = "rebooted" if self._rebooted else "failed"
+        return f"the controller {verb}{times}" + (f": {cause}" if cause else "")
 
 
 def summarize(findings: Iterable[Finding]) -> str:

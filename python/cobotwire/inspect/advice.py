@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cobotwire.diagnose import Summary
+from cobotwire.diagnose import CLASSES, Summary
 
 
 class Problem(NamedTuple):
@@ -19,28 +19,6 @@ class Problem(NamedTuple):
     serious: bool = True
 
 
-CONTROLLER = (
-    "the controller's program or its power failed: check the power supply and its plug, then "
-    "update the firmware"
-)
-# By kind of finding, in the order in which to look into them.
-NOISE: dict[str, str] = {
-    "panic": CONTROLLER,
-    "boot": CONTROLLER,
-    "nuls": CONTROLLER,
-    "cmd-len-error": "the arm receives damaged requests: check whether another program writes to "
-    "this port (lsof PORT), whether the cable is too long, and whether the hub has power",
-    "garbage": "the baud rate may be wrong: try --baudrate 1000000 or --baudrate 115200",
-    "damaged-frame": "bytes get lost: try another cable or USB socket, and check whether another "
-    "program reads from this port",
-    "unlisted-frame": "the firmware may use another edition: try --edition mycobot280",
-    "opposite-frame": "the line echoes what is sent, or another host uses it; replies are matched "
-    "all the same, but turn the adapter's echo off if you can",
-    "servo": "the firmware leaks packets of its servo bus; cobotwire skips them, but programs that "
-    "expect clean replies may fail: try a newer firmware",
-    "text": "the firmware prints messages; cobotwire skips them",
-    "unrecognised": "record the traffic (--record FILE), and inspect it with cobotwire decode FILE",
-}
 NO_REPLIES = (
     "check that the arm has power, that its emergency stop is released, that an M5 version shows "
     "Transponder on its screen, that this is the right port (cobotwire ports), and that the baud "
@@ -59,9 +37,9 @@ PORT = (
 
 
 def problems_in(findings: Summary) -> list[Problem]:
-    """Return a problem for each kind of finding."""
+    """Return a problem for each kind of finding, the one to look into first at the start."""
     return [
-        Problem(kind, f"{findings.kinds[kind]} x {kind}", advice, serious=kind != "text")
-        for kind, advice in NOISE.items()
-        if findings.kinds[kind]
+        Problem(each.kind, f"{findings.kinds[each.kind]} x {each.kind}", each.advice, each.serious)
+        for each in CLASSES
+        if findings.kinds[each.kind]
     ]

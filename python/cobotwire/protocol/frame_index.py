@@ -46,7 +46,3 @@ class FrameIndex:
     def has(self, id: int) -> bool:
         """Return whether any message of this direction has that command id."""
         return id in self._ids
-
-    def lengths_of(self, id: int) -> list[int]:
-        """Return every LEN that is legal with that command id, ascending."""
-        return sorted(length for other, length in self._found if other == id)

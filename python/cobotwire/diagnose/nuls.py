@@ -1,0 +1,68 @@
+"""Recognise runs of NULs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cobotwire.diagnose.findings import CHECK_CONTROLLER, Finding
+from cobotwire.diagnose.recogniser import Recogniser
+from cobotwire.diagnose.residue import Residue, Verdict, Wait
+
+# This many NULs in a row are a finding, also inside other noise.
+NUL_MINIMUM = 4
+NUL_LIMIT = 4096
+# This many NULs in a row mean a reboot. About 277 were seen when an arm restarted; other traffic
+# has fewer: a frame has at most 16 data bytes, a sync write to six servos 50.
+REBOOT_NULS = 64
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Nuls(Finding):
+    """NUL bytes in a row; from ``REBOOT_NULS`` on they mean that the controller restarts."""
+
+    count: int
+    reboot: bool
+    kind: ClassVar[str] = "nuls"
+    advice: ClassVar[str] = CHECK_CONTROLLER
+    piece: ClassVar[int | None] = NUL_LIMIT
+
+    @property
+    def failure(self) -> str | None:
+        """Return "" if the controller restarts, since NULs do not say why."""
+        return "" if self.reboot else None
+
+    @property
+    def reboots(self) -> bool:
+        """Return whether the controller reboots."""
+        return self.reboot
+
+    def describe(self) -> str:
+        """Describe the run."""
+        return f"{self.count} NULs" + (": the controller restarts" if self.reboot else "")
+
+    def summarize(self, count: int, size: int) -> str:
+        """Describe short runs."""
+        return f"{count} short run{'s' * (count != 1)} of NULs"
+
+
+class NulRuns(Recogniser):
+    """Recognises runs of NULs, in pieces of ``NUL_LIMIT``."""
+
+    starts = rb"\0{%d}|\0+\Z" % NUL_MINIMUM
+
+    def recognise(self, residue: Residue, at: int) -> Verdict:
+        """Recognise the run at ``at``."""
+        limit, final = residue.stretch(at)
+        rest = residue.data[at : min(limit, at + NUL_LIMIT)]
+        count = len(rest) - len(rest.lstrip(b"\0"))
+        if at + count == limit and count < NUL_LIMIT and not final:
+            return Wait.WAIT
+        return nuls(residue, at, at + count) if count >= NUL_MINIMUM else None
+
+
+def nuls(residue: Residue, start: int, end: int) -> Nuls:
+    """Return the run of NULs from ``start`` to ``end``, of any length."""
+    count = end - start
+    spans, reason = residue.spans(start, end), residue.reason(start)
+    return Nuls(spans=spans, reason=reason, count=count, reboot=count >= REBOOT_NULS)
