@@ -101,6 +101,14 @@ def test_text_is_split_into_lines_and_continues_after_a_frame(codec: Codec) -> N
     assert texts == ["ets Jul 29 2019\r\n", "ok\r\n", "load:0x3fff0030,len:4\r\n"]
 
 
+@pytest.mark.parametrize("line", noise.LOG)
+def test_line_of_the_log_is_text_and_no_failure(codec: Codec, line: bytes) -> None:
+    text = only(codec, line)
+    assert isinstance(text, Text)
+    assert text.text.encode() == line
+    assert summarize([text]).startswith("text: ")
+
+
 def test_boot_line_has_its_cause(codec: Codec) -> None:
     boot = only(codec, b"rst:0xc (SW_CPU_RESET),boot:0x13 (SPI_FAST_FLASH_BOOT)\r\n")
     assert isinstance(boot, Finding)

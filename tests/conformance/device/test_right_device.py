@@ -9,21 +9,12 @@ from cobotwire import editions
 from cobotwire.conformance import Verdict
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from cobotwire.simulator.faults import AppliedFault, Noise, Scenario
+from cobotwire.simulator.faults import AppliedFault
 from cobotwire.simulator.peer import Peer
 from conformance.device.testing import bad, permissions, prepared, settings_of
+from mutation.device.suite import LIGHT_NOISE
 
 EDITIONS = ["mycobot", "mycobot280"]
-# Before and after some replies. The class "text" is left out: it also draws panics, and a device
-# that panics does not conform.
-CLASSES = ("servo", "command error", "nuls")
-LIGHT_NOISE = Scenario(
-    name="light noise",
-    faults=(
-        Noise(probability=1 / 12, classes=CLASSES),
-        Noise(probability=1 / 12, classes=CLASSES, where="after"),
-    ),
-)
 
 
 @pytest.mark.parametrize("edition", EDITIONS)

@@ -63,6 +63,14 @@ REBOOT_NULS: Final = 277
 BOOT: Final = (
     b"ets Jul 29 2019 12:21:46\r\n\r\nrst:0xc (SW_CPU_RESET),boot:0x13 (SPI_FAST_FLASH_BOOT)\r\n"
 )
+LOG: Final = (
+    b"wifi: connecting\r\n",
+    b"load:0x3fff0030,len:1184\r\n",
+    b"entry 0x400805e4\r\n",
+    b"I (312) cpu_start: Starting scheduler on PRO CPU.\r\n",
+    b"\x1b[0;33mW (1520) wifi: reconnecting\x1b[0m\r\n",
+)
+"""Lines that firmware of an ESP32 prints while it starts and works. None reports an error."""
 
 
 def at_other_rate(data: bytes, ratio: float) -> bytes:
@@ -153,6 +161,12 @@ def _servo_with_header_byte(random: Random, table: Table) -> bytes:
 def _command_error(random: Random, table: Table) -> bytes:
     """Draw the firmware's error text for a malformed request, up to three times."""
     return COMMAND_ERROR * random.randrange(1, 4)
+
+
+@_noise("log")
+def _log(random: Random, table: Table) -> bytes:
+    """Draw a line that the firmware prints while it works: no error, no reboot."""
+    return random.choice(LOG)
 
 
 @_noise("panic")
