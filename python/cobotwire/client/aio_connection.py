@@ -10,7 +10,7 @@ from cobotwire.client.opening import check_port, open_port
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
-from cobotwire.transport import Transport
+from cobotwire.transport import Transport, forks
 from cobotwire.transport.aio import attach
 from cobotwire.transport.interface import AsyncTransport
 from cobotwire.transport.timing import times_of
@@ -49,6 +49,7 @@ class AsyncConnection:
         self._lost: LinkError | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._timer_at = 0.0
+        forks.watch(self)
 
     async def open(self) -> None:
         """Open the port, unless it is open.
@@ -122,6 +123,11 @@ class AsyncConnection:
         if self._attached is not None:
             self._attached.close()
             self._lose(LinkError(self.url, "it is closed"))
+
+    def leave_to_parent(self) -> None:
+        """Let every call in a forked child fail: loop and transport are those of the parent."""
+        if self._attached is not None and self._lost is None:
+            self._lost = LinkError(self.url, f"cannot be used: {forks.opened_by_parent()}")
 
     def _transport(self) -> AsyncTransport:
         if self._attached is None:

@@ -20,7 +20,7 @@ from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.session.exchange import DRAIN_SECONDS
-from cobotwire.transport import Transport
+from cobotwire.transport import Transport, forks
 from cobotwire.transport.timing import times_of
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
@@ -56,6 +56,7 @@ class Connection:
         self._writing = threading.Lock()
         self._reader: int | None = None
         self._followers: list[threading.Lock] = []
+        forks.watch(self)
 
     def send(self, request: EncodedRequest, ack_within: float | None) -> None:
         """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement."""
@@ -108,6 +109,11 @@ class Connection:
     def close(self) -> None:
         """Close the transport. The arm is sent nothing. Closing twice is harmless."""
         self._transport.close()
+
+    def leave_to_parent(self) -> None:
+        """Free what other threads of the parent held; in a forked child the transport is closed."""
+        self._state, self._writing = threading.Lock(), threading.Lock()
+        self._reader, self._followers = None, []
 
     def _await(self, pending: Pending, longest: float) -> None:
         try:

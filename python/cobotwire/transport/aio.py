@@ -10,6 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from cobotwire.protocol.errors import LinkError
+from cobotwire.transport import forks
 from cobotwire.transport.interface import AsyncTransport, PollableTransport, Transport
 
 WRITE_TIMEOUT = 1.0
@@ -44,6 +45,7 @@ class PolledTransport:
         self._waiting: deque[tuple[bytes, Done]] = deque()
         self._stuck: asyncio.TimerHandle | None = None
         self._closed = False
+        forks.watch(self)
 
     def read(self) -> bytes:
         """Return what has come by now."""
@@ -96,6 +98,10 @@ class PolledTransport:
             self._end_writing(LinkError(self._transport.url, "was closed"))
             self._transport.close()
 
+    def leave_to_parent(self) -> None:
+        """Leave the loop alone, whose epoll a forked child shares with its parent."""
+        self._closed = True
+
 
 class ThreadedTransport:
     """An :class:`AsyncTransport` that two threads read and write."""
@@ -108,6 +114,7 @@ class ThreadedTransport:
         self._write_queue: queue.SimpleQueue[tuple[bytes, Done] | None] = queue.SimpleQueue()
         self._lost: LinkError | None = None
         self._closed = False
+        forks.watch(self)
         for work in (self._read_on, self._write_on):
             threading.Thread(target=work, name=f"cobotwire {transport.url}", daemon=True).start()
 
@@ -136,6 +143,10 @@ class ThreadedTransport:
             self._closed = True
             self._write_queue.put(None)
             self._transport.close()
+
+    def leave_to_parent(self) -> None:
+        """Leave the transport alone: its threads do not exist in a forked child."""
+        self._closed = True
 
     def _read_on(self) -> None:
         while not self._closed:

@@ -14,6 +14,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 from cobotwire.protocol.errors import LinkError
+from cobotwire.transport import forks
 
 READ_SIZE = 4096
 # A write may take this long, and twice the time besides that the line needs for the bytes.
@@ -42,6 +43,7 @@ class DescriptorTransport(ABC):
         self.url = url
         self._baudrate = baudrate
         self._closed = True
+        self._why_closed = "it is closed"
         # -1 while it is closed, which no wait takes.
         self._descriptor = -1
         self._waiter = Waiter()
@@ -49,6 +51,7 @@ class DescriptorTransport(ABC):
         self._reading = threading.RLock()
         self._writing = threading.RLock()
         self.reopen()
+        forks.watch(self)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.url}{', closed' if self._closed else ''}>"
@@ -146,12 +149,22 @@ class DescriptorTransport(ABC):
             self.close()
             self._descriptor = self._connect()
             self._waiter = Waiter()
-            self._closed = False
+            self._closed, self._why_closed = False, "it is closed"
         _log.info("%s: opened", self.url)
 
-    def _must_be_open(self, what: str, reason: str = "it is closed") -> None:
+    def leave_to_parent(self) -> None:
+        """Close a forked child's copies, which the parent does not notice."""
+        # Another thread of the parent may have held the locks; it does not exist here.
+        self._reading, self._writing = threading.RLock(), threading.RLock()
+        if not self._closed:
+            self._closed, self._why_closed = True, forks.opened_by_parent()
+            self._waiter.close()
+            self._descriptor = -1
+            self._release()
+
+    def _must_be_open(self, what: str, reason: str = "") -> None:
         if self._closed:
-            raise LinkError(self.url, f"{what}: {reason}")
+            raise LinkError(self.url, f"{what}: {reason or self._why_closed}")
 
     def _fail(self, what: str, error: Exception) -> NoReturn:
         reason = "it was closed meanwhile" if self._closed else reason_of(error)

@@ -12,6 +12,7 @@ from typing import Any
 import serial
 
 from cobotwire.protocol.errors import LinkError
+from cobotwire.transport import forks
 from cobotwire.transport.descriptor import READ_SIZE, Waiter, reason_of, write_limit
 from cobotwire.transport.serial.opening import configure, opening, request_low_latency
 
@@ -37,9 +38,11 @@ class UrlTransport:
         self.low_latency = False
         self._baudrate = baudrate
         self._closed = True
+        self._why_closed = "it is closed"
         self._port: Any = None
         self._waiter = Waiter()
         self.reopen()
+        forks.watch(self)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.url}{', closed' if self._closed else ''}>"
@@ -60,7 +63,7 @@ class UrlTransport:
                 port.timeout = SLICE_SECONDS
             self.low_latency = request_low_latency(port)
         self._waiter = Waiter()
-        self._closed = False
+        self._closed, self._why_closed = False, "it is closed"
         _log.info("%s: opened", self.url)
 
     def write(self, data: bytes) -> None:
@@ -111,10 +114,25 @@ class UrlTransport:
         with suppress(Exception):
             self._port.close()
 
+    def leave_to_parent(self) -> None:
+        """Close a forked child's copies, which the parent does not notice."""
+        if self._closed:
+            return
+        self._closed, self._why_closed = True, forks.opened_by_parent()
+        self._waiter.close()
+        if (connection := getattr(self._port, "_socket", None)) is None:
+            with suppress(Exception):
+                self._port.close()
+        else:
+            # rfc2217 would shut the connection down, for the parent as well.
+            self._port.close = _nothing
+            connection.close()
+        self._port = None
+
     @contextmanager
     def _faults(self, what: str) -> Iterator[None]:
         if self._closed:
-            raise LinkError(self.url, f"{what}: it is closed")
+            raise LinkError(self.url, f"{what}: {self._why_closed}")
         try:
             yield
         # On a port that goes away, each backend of pyserial fails in its own way: rfc2217 with an
@@ -122,6 +140,10 @@ class UrlTransport:
         except Exception as error:
             reason = "it was closed meanwhile" if self._closed else reason_of(error)
             raise LinkError(self.url, f"{what}: {reason}") from error
+
+
+def _nothing() -> None:
+    """Close nothing."""
 
 
 def _descriptor(port: Any) -> int | None:
