@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.client import ScriptLine
 from cobotwire.conformance.codec.questions.frames import frame_of
-from cobotwire.conformance.codec.questions.samples import (
+from cobotwire.conformance.samples import (
     RawValues,
     named_values,
     ordinary,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cobotwire.conformance.codec.questions.frames import frame_of
-from cobotwire.conformance.codec.questions.samples import beyond, with_one
+from cobotwire.conformance.samples import beyond, with_one
 from cobotwire.protocol.table import Field, Number, Variant
 from mutation.client.mutant import ClientMutant
 from mutation.client.sessions import Session

@@ -8,7 +8,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec.named import encode_named, plain_fields
 from cobotwire.conformance.codec.questions.frames import frame_of
-from cobotwire.conformance.codec.questions.samples import (
+from cobotwire.conformance.samples import (
     RawValues,
     named_values,
     ordinary,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
@@ -10,9 +10,10 @@ from cobotwire.codec.interface import Codec
 from cobotwire.conformance.device.connection import DeviceConnection
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.requester import Requester, Timing
+from cobotwire.conformance.device.requests import Known, units
 from cobotwire.conformance.device.response import Response
-from cobotwire.conformance.device.samples import Known, units
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.messages import Reply, Request, Result
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.request import EncodedRequest
 
@@ -62,23 +63,18 @@ class Device:
         """Return the first command in a role; None if the edition has none."""
         return next((c for c in self.table.commands if c.role == role), None)
 
-    def request(
-        self,
-        command: Command,
-        values: Sequence[Any] = (),
-        text: Mapping[str, str] | None = None,
-    ) -> Response:
+    def request(self, request: Request[Any]) -> Response:
         """Send a request and return what came; a query is repeated as often as the run allows."""
-        request = self.requester.prepare(command, values, text)
-        if command.text is not None:
-            return self._request_text(request)
-        response = self.count(self.requester.send(request))
-        retries = self.retries if command.safety == "query" else 0
+        encoded = self.requester.prepare(request)
+        if encoded.command.text is not None:
+            return self._request_text(encoded)
+        response = self.count(self.requester.send(encoded))
+        retries = self.retries if encoded.command.safety == "query" else 0
         while retries and not response.replies:
             retries -= 1
-            response = self.count(self.requester.send(request))
+            response = self.count(self.requester.send(encoded))
             if response.valid is not None:
-                self.retried.add(command.name)
+                self.retried.add(request.command)
         return response
 
     def _request_text(self, request: EncodedRequest) -> Response:
@@ -98,15 +94,26 @@ class Device:
             self.reply_seconds.setdefault(command.name, []).append(response.valid.seconds)
         return response
 
-    def read(self, command: Command, values: Sequence[Any] = ()) -> dict[str, Any] | None:
-        """Return the fields of a query's valid reply; None if none came."""
-        valid = self.request(command, values).valid
-        return None if valid is None else valid.fields
+    def read(self, query: Request[Result]) -> Reply[Result] | None:
+        """Return the valid reply to a query; None if none came."""
+        valid = self.request(query).valid
+        return None if valid is None else valid.message
 
-    def is_set(self, query: Command) -> bool | None:
+    def require(self, query: Request[Result]) -> Reply[Result]:
+        """Return the valid reply to a query.
+
+        Raises:
+            NotSupported: none came.
+        """
+        reply = self.read(query)
+        if reply is None:
+            raise NotSupported(f"{query.command} reports nothing")
+        return reply
+
+    def is_set(self, query: Request[Any]) -> bool | None:
         """Return whether any flag of a query's reply is set; None if no valid reply came."""
-        fields = self.read(query)
-        return None if fields is None else any(fields.values())
+        reply = self.read(query)
+        return None if reply is None else any(reply.fields.values())
 
     def known(self) -> Known:
         """Return the arm's position as rows of numbers, by their units, for its calculations."""
@@ -115,10 +122,10 @@ class Device:
             command = self.command(role)
             if command is None:
                 continue
-            fields = self.read(command)
+            reply = self.read(command.request_type())
             field = command.reply[0].fields[0]
-            if fields is not None:
-                found[units(field.cases[0].numbers)] = fields[field.name]
+            if reply is not None:
+                found[units(field.cases[0].numbers)] = getattr(reply, field.name)
         return found
 
     def setter(self, query: Command, value: int) -> Command | None:
@@ -143,4 +150,4 @@ class Device:
 
 
 def _same_text(one: Response, other: Response) -> bool:
-    return one.replies[0].fields == other.replies[0].fields
+    return one.replies[0].message == other.replies[0].message

@@ -8,7 +8,9 @@ from typing import Any
 
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.protocol.table import Command
+from cobotwire.conformance.device.requests import request_of
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Command, Role
 
 Pose = tuple[float, ...]
 # Shares of each joint's range in the workspace: no two joints are alike, and none is at zero. In
@@ -54,8 +56,12 @@ class Mover:
 
     def go(self, pose: Pose) -> None:
         """Move to a pose, and wait until the arm is at rest."""
-        self.device.request(self.targets, (pose, self.speed))
+        self.device.request(self.to(pose))
         self.wait()
+
+    def to(self, pose: Pose, speed: int | None = None) -> Request[Any]:
+        """Return the request that sends the arm to a pose; by default at the run's speed."""
+        return request_of(self.targets, pose, speed or self.speed)
 
     def wait(self) -> None:
         """Wait until the arm reports that it is at rest."""
@@ -63,7 +69,7 @@ class Mover:
         until = self.device.connection.now + LONGEST
         while moving is not None and self.device.connection.now < until:
             self.rest(POLL)
-            if self.device.is_set(moving) is False:
+            if self.device.is_set(moving.request_type()) is False:
                 return
 
     def settle(self, read: Callable[[], object]) -> None:
@@ -81,12 +87,9 @@ class Mover:
 
     def angles(self) -> Pose:
         """Return the joints' angles, in degrees."""
-        fields = self.device.read(self.joints)
-        if fields is None:
-            raise NotSupported(f"{self.joints.name} reports nothing")
-        return tuple(next(iter(fields.values())))
+        return tuple(self.device.require(self.joints.request_type()).result)
 
-    def _in_role(self, role: Any) -> Command:
+    def _in_role(self, role: Role) -> Command:
         command = self.device.command(role)
         if command is None:
             raise NotSupported(f"the edition has no command in the role {role}")
@@ -117,15 +120,11 @@ def give_power(device: Device) -> None:
         NotSupported: it is off, and the run may not switch it on.
     """
     powered = device.command("powered")
-    if powered is None or device.is_set(powered):
+    if powered is None or device.is_set(powered.request_type()):
         return
     on, off = device.setter(powered, 1), device.setter(powered, 0)
     if on is None or "power" not in device.permissions.classes:
         raise NotSupported("the arm has no power, and the run may not switch it on")
     if off is not None:
-        device.restore_at_end["power"] = partial(_send, device, off)
-    device.request(on)
-
-
-def _send(device: Device, command: Command) -> None:
-    device.request(command)
+        device.restore_at_end["power"] = partial(device.request, off.request_type())
+    device.request(on.request_type())

@@ -6,16 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cobotwire.conformance.device.samples import (
+from cobotwire.conformance.device.requests import (
     Limits,
-    arguments,
-    gentle,
-    numbers_of,
+    as_row,
+    gentle_values,
+    requests,
     revealing,
 )
+from cobotwire.conformance.samples import numbers_of
+from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Field, Number, Table, Variant
 
-Values = dict[str, Any]
 # Texts that differ in every place, of characters that a name may have.
 TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
 # Both values are multiples of the wire's step, so only floating-point errors are tolerated.
@@ -26,8 +27,8 @@ EXACT = 1e-6
 class Setting:
     """One variant of a command, and the variant of the query that reports what it has set.
 
-    ``pairs`` are the reply's fields with the arguments that they report; ``keys`` the arguments
-    that choose what is read, such as a joint.
+    ``pairs`` are the reply's fields with the arguments that they report. The query's arguments, if
+    it has any, choose what is read, such as a joint; the setting has them too.
     """
 
     command: Command
@@ -37,15 +38,14 @@ class Setting:
     pairs: tuple[tuple[str, str], ...]
 
     @property
-    def keys(self) -> list[Values]:
-        """What can be set: each joint, pin or register in turn."""
-        fields = {field.name: field for field in self.variant.fields}
-        variant = Variant(tuple(fields[field.name] for field in self.query_variant.fields))
-        names = [field.name for field in variant.fields]
-        return [dict(zip(names, values)) for values in arguments(variant, limits=self.limits)]
+    def queries(self) -> list[Request[Any]]:
+        """The queries of all that can be set: each joint, pin or register in turn."""
+        names = {field.name for field in self.query_variant.fields}
+        fields = tuple(field for field in self.variant.fields if field.name in names)
+        return requests(self.query, Variant(fields), limits=self._limits)
 
     @property
-    def limits(self) -> Limits:
+    def _limits(self) -> Limits:
         """The limits of the arguments whose legal numbers are not all harmless."""
         names = {field.name for field in self.variant.fields}
         for samples in self.command.samples:
@@ -53,54 +53,61 @@ class Setting:
                 return dict(samples)
         return {}
 
-    def query_arguments(self, key: Values) -> list[Any]:
-        """Return the arguments of the query for a key."""
-        return [key[field.name] for field in self.query_variant.fields]
+    def again(self, query: Request[Any], reply: Reply[Any], speed: int = 1) -> Request[Any]:
+        """Return the request that sets what a query has reported."""
+        return self._request(query, self._reported(reply), speed)
 
-    def reported(self, fields: Mapping[str, Any]) -> Values:
-        """Return what a reply reports, by the names of the setting's arguments."""
-        return {argument: fields[name] for name, argument in self.pairs}
+    def samples(self, query: Request[Any], old: Reply[Any], speed: int = 1) -> list[Request[Any]]:
+        """Return requests that reveal mistakes: ends, both signs, and a difference in each byte.
 
-    def request(self, key: Values, values: Values) -> tuple[list[Any], Values]:
-        """Return the arguments and the text of the request that sets ``values``."""
-        if self.command.request_text is not None:
-            return [], values
-        return [{**key, **values}[field.name] for field in self.variant.fields], {}
+        They set what ``query`` reads, where ``old`` was read.
+        """
+        return [self._request(query, values, speed) for values in self._values(query, old)]
 
-    def samples(self, key: Values, old: Values) -> list[Values]:
-        """Return values that reveal mistakes: ends, both signs, and a difference in each byte."""
+    def _values(self, query: Request[Any], old: Reply[Any]) -> list[dict[str, Any]]:
         names = [argument for _, argument in self.pairs]
         if self.command.request_text is not None:
             return [dict(zip(names, texts)) for texts in TEXTS]
         fields = [self._field(name) for name in names]
         if len(fields) == 1 and fields[0].choices:
             return [{names[0]: value} for value in fields[0].choices]
-        rows = [list(zip(self._numbers(name, key), self._reported_as(name))) for name in names]
-        present = [_row(old[name]) for name in names]
+        rows = [list(zip(self._numbers(name, query), self._reported_as(name))) for name in names]
+        present = [as_row(value) for value in self._reported(old).values()]
         return [
             {name: row if field.many else row[0] for name, field, row in zip(names, fields, sample)}
             for sample in revealing(rows, present)
         ]
 
-    def rest(self, speed: int) -> Values:
-        """Return the other arguments: speeds as given, else the values that do the least."""
-        set_here = {argument for _, argument in self.pairs}
-        mild = dict(zip((field.name for field in self.variant.fields), gentle(self.variant)))
+    def _reported(self, reply: Reply[Any]) -> dict[str, Any]:
+        """Return what a reply reports, by argument and in the units of the wire."""
+        fields = reply.fields
+        return {argument: fields[name] for name, argument in self.pairs}
+
+    def _request(self, query: Request[Any], values: Mapping[str, Any], speed: int) -> Request[Any]:
+        """Return the request that sets ``values`` of what ``query`` reads.
+
+        Its other arguments are speeds as given, and the values that do the least.
+        """
         speeds = {f.name: speed for f in self.variant.fields if _is_speed(f) and not f.many}
-        return {name: value for name, value in {**mild, **speeds}.items() if name not in set_here}
+        return self.command.request_type.from_fields(
+            {**gentle_values(self.variant), **speeds, **query.fields, **values}
+        )
 
     def differences(
-        self, wanted: Values, got: Values | None, near: Mapping[str, float] | None = None
+        self,
+        wanted: Request[Any],
+        reply: Reply[Any] | None,
+        near: Mapping[str, float] | None = None,
     ) -> list[str]:
-        """Describe each part that is not as wanted, with both values.
+        """Describe each part of a reply that is not as requested, with both values.
 
         ``near`` holds the tolerance by unit.
         """
-        if got is None:
+        if reply is None:
             return ["nothing was reported"]
-        found = []
-        for _, name in self.pairs:
-            for at, (want, have) in enumerate(zip(_row(wanted[name]), _row(got[name]))):
+        found, sent = [], wanted.fields
+        for name, value in self._reported(reply).items():
+            for at, (want, have) in enumerate(zip(as_row(sent[name]), as_row(value))):
                 most = (near or {}).get(self._unit(name, at), EXACT)
                 if want != have and not (_number(want) and abs(want - have) <= most):
                     found.append(f"{self._label(name, at)}: set {want}, read {have}")
@@ -121,10 +128,11 @@ class Setting:
     def _field(self, name: str) -> Field:
         return next(field for field in self.variant.fields if field.name == name)
 
-    def _numbers(self, name: str, key: Values) -> tuple[Number, ...]:
-        places = {field.name: at for at, field in enumerate(self.variant.fields)}
-        selected = {places[argument]: value for argument, value in key.items()}
-        return numbers_of(self._field(name), selected)
+    def _numbers(self, name: str, query: Request[Any]) -> tuple[Number, ...]:
+        chosen = query.fields
+        fields = enumerate(self.variant.fields)
+        picked = {at: chosen[field.name] for at, field in fields if field.name in chosen}
+        return numbers_of(self._field(name), picked)
 
     def _reported_as(self, name: str) -> tuple[Number, ...]:
         reported = next(reported for reported, argument in self.pairs if argument == name)
@@ -172,10 +180,6 @@ def _pairs(command: Command, variant: Variant, query: Command) -> tuple[tuple[st
         return tuple((name, str(argument)) for name, argument in command.read_by.fields)
     reported = {f.name for reply in query.reply for f in reply.fields if not f.echo}
     return tuple((f.name, f.name) for f in variant.fields if f.name in reported)
-
-
-def _row(value: Any) -> tuple[Any, ...]:
-    return tuple(value) if isinstance(value, tuple | list) else (value,)
 
 
 def _is_speed(field: Field) -> bool:

@@ -8,9 +8,10 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, Event, Frame
 from cobotwire.conformance.device.connection import DeviceConnection
-from cobotwire.conformance.device.response import Reply, Response
+from cobotwire.conformance.device.response import ReceivedReply, Response
 from cobotwire.diagnose import Diagnoser, Finding
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, TextReply
 from cobotwire.session.request import EncodedRequest, RequestEncoder, as_call
 from cobotwire.session.text import TextCollector
@@ -43,15 +44,13 @@ class Requester:
         self._framer = codec.framer("reply")
         self._diagnoser = Diagnoser(codec)
 
-    def prepare(
-        self, command: Command, values: Sequence[Any], text: Mapping[str, str] | None = None
-    ) -> EncodedRequest:
+    def prepare(self, request: Request[Any]) -> EncodedRequest:
         """Validate and encode a request.
 
         Raises:
             UsageError: the edition does not allow the arguments.
         """
-        return self._requests.encode(command.name, values, text)
+        return self._requests.encode_request(request)
 
     def describe(self, request: EncodedRequest) -> str:
         """Return a request as a person writes it: ``get_encoder(joint=1)``."""
@@ -127,10 +126,10 @@ class Requester:
         collector = TextCollector(variant)
         collector.add(text, 0.0)
         try:
-            reply = Reply(seconds, text, None, None, collector.decode())
+            message = _typed(response.request.command, collector.decode())
+            response.replies.append(ReceivedReply(seconds, text, message=message))
         except ProtocolError as error:
-            reply = Reply(seconds, text, None, error, {})
-        response.replies.append(reply)
+            response.replies.append(ReceivedReply(seconds, text, error))
         others = self._framer.feed(received[:begins] + rest)
         self._sort(response, others, self._connection.now)
 
@@ -149,12 +148,18 @@ class Requester:
     def _keep(self, response: Response, items: Sequence[Frame | Finding]) -> None:
         response.findings.extend(item for item in items if isinstance(item, Finding))
 
-    def _read(self, frame: Frame, seconds: float, command: Command) -> Reply:
+    def _read(self, frame: Frame, seconds: float, command: Command) -> ReceivedReply:
         try:
-            message = frame.decode("reply", of=command.name)
+            decoded = frame.decode("reply", of=command.name)
         except ProtocolError as error:
-            return Reply(seconds, frame.data, None, error, {})
-        return Reply(seconds, frame.data, message, None, message.fields)
+            return ReceivedReply(seconds, frame.data, error)
+        message = _typed(command, decoded.fields)
+        return ReceivedReply(seconds, frame.data, message=message, decoded=decoded)
+
+
+def _typed(command: Command, fields: Mapping[str, Any]) -> Reply[Any]:
+    assert command.reply_type is not None, "only a command with a reply is waited for"
+    return command.reply_type.from_fields(fields)
 
 
 def _first_line(text: bytes) -> tuple[bytes, bytes]:

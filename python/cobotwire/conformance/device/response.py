@@ -8,6 +8,7 @@ from typing import Any
 from cobotwire.codec.interface import DecodedMessage, Frame
 from cobotwire.diagnose import CommandError, DamagedFrame, Finding, Nuls, ServoPacket, Text
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.messages import Reply
 from cobotwire.session.matching import repeats_arguments
 from cobotwire.session.request import EncodedRequest
 
@@ -16,17 +17,18 @@ NOISE = (ServoPacket, Text, CommandError)
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class ReceivedReply:
     """A frame with the request's id, ``seconds`` after the request; or the text that replies to it.
 
-    ``message`` is None if the edition does not allow the frame; ``error`` then says why.
+    If the edition does not allow it, ``error`` says why, and there is no ``message``. ``decoded``
+    holds the values of a frame as the codec returns them; a text has none.
     """
 
     seconds: float
     data: bytes
-    message: DecodedMessage | None
-    error: ProtocolError | None
-    fields: dict[str, Any]
+    error: ProtocolError | None = None
+    message: Reply[Any] | None = None
+    decoded: DecodedMessage | None = None
 
 
 @dataclass(slots=True)
@@ -34,7 +36,7 @@ class Response:
     """Everything that was received between a request and the next one."""
 
     request: EncodedRequest
-    replies: list[Reply] = field(default_factory=list)
+    replies: list[ReceivedReply] = field(default_factory=list)
     others: list[Frame] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
@@ -63,7 +65,7 @@ class Response:
         ]
 
     @property
-    def valid(self) -> Reply | None:
+    def valid(self) -> ReceivedReply | None:
         """The first legal reply with the right echo."""
         return next((reply for reply in self.replies if self.accepts(reply)), None)
 
@@ -72,11 +74,11 @@ class Response:
         """Whether one valid reply came, and nothing unexpected."""
         return len(self.replies) == 1 and self.valid is not None and not self.unexpected
 
-    def accepts(self, reply: Reply) -> bool:
+    def accepts(self, reply: ReceivedReply) -> bool:
         """Return whether a reply is legal and repeats the arguments."""
         if reply.error is not None:
             return False
-        return reply.message is None or repeats_arguments(reply.message, self.request)
+        return reply.decoded is None or repeats_arguments(reply.decoded, self.request)
 
     @property
     def summary(self) -> str:

@@ -163,13 +163,13 @@ class Tester:
         self.device.restore_at_end.clear()
         stop = self.device.command("stop")
         if stop is not None and self.device.permissions.workspace:
-            self.device.request(stop)
+            self.device.request(stop.request_type())
 
     def _read_version(self) -> None:
         query = self.device.command("version")
-        fields = None if query is None else self.device.read(query)
-        if fields is not None:
-            self.report.firmware = str(next(iter(fields.values())))
+        reply = None if query is None else self.device.read(query.request_type())
+        if reply is not None:
+            self.report.firmware = str(reply.result)
 
     def _excused(self, result: Result) -> Result:
         """Turn a failure into not supported if the device may lack the command and was silent."""

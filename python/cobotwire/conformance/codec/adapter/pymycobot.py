@@ -16,7 +16,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from cobotwire.conformance.codec.questions.question import Json
-from cobotwire.conformance.codec.questions.samples import named_values, plainest
+from cobotwire.conformance.samples import named_values, plainest
 from cobotwire.protocol.table import Command, Field, Table, Variant
 
 # Exceptions that it raises by accident. Its own checks raise its own classes.

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.codec.named import encode_named, plain_fields
 from cobotwire.conformance.codec.questions.question import Json, Question
-from cobotwire.conformance.codec.questions.samples import (
+from cobotwire.conformance.samples import (
     Sample,
     illegal_samples,
     named_values,
@@ -86,7 +86,7 @@ def _encoding(codec: Codec) -> Iterator[Question]:
 def _rejected_values(codec: Codec) -> Iterator[Question]:
     """Yield values that must be rejected, though the wire could carry most of them."""
     for variant in variants_of(codec.table):
-        for sample, _, _ in illegal_samples(variant.variant):
+        for sample in illegal_samples(variant.variant):
             yield _encode(
                 codec, variant, sample.name, named_values(variant.variant, sample.raw_values)
             )
@@ -150,7 +150,7 @@ def _decoding(codec: Codec) -> Iterator[Question]:
 def _rejected_numbers(codec: Codec) -> Iterator[Question]:
     """Yield frames that hold a number which the edition does not allow."""
     for variant in variants_of(codec.table):
-        for sample, _, _ in illegal_samples(variant.variant):
+        for sample in illegal_samples(variant.variant):
             yield _of_sample(codec, variant, sample)
 
 

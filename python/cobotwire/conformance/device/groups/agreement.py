@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.mover import POSES, TICK_DEGREES, Mover
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.samples import units
+from cobotwire.conformance.device.requests import as_row, request_of, units
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 
@@ -37,25 +36,25 @@ def _agree(probe: Probe) -> None:
         rows = _reading(probe, other)
         if probe.command.request[0].fields:
             for part, row in enumerate(rows[: probe.device.table.joints], 1):
-                _compare(probe, other, _reading(probe, probe.command, (part,)), [row])
+                _compare(probe, other, _reading(probe, probe.command, part), [row])
         else:
             _compare(probe, other, _reading(probe, probe.command), rows)
 
 
-def _reading(probe: Probe, query: Command, values: Sequence[Any] = ()) -> Reading:
+def _reading(probe: Probe, query: Command, *values: Any) -> Reading:
     """Return the numbers of a query's reply, each with its name and unit.
 
     Raises:
         NotSupported: no valid reply comes.
     """
-    valid = probe.device.request(query, values).valid
-    if valid is None or valid.message is None:
+    valid = probe.device.request(request_of(query, *values)).valid
+    if valid is None or valid.decoded is None:
         raise NotSupported(f"{query.name} reports nothing")
     return [
         (f"{field.name}.{number.name}" if number.name else field.name, number.unit, value)
-        for field in valid.message.variant.fields
+        for field in valid.decoded.variant.fields
         if not field.echo
-        for number, value in zip(field.cases[0].numbers, _row(valid.fields[field.name]))
+        for number, value in zip(field.cases[0].numbers, as_row(valid.decoded.fields[field.name]))
     ]
 
 
@@ -77,10 +76,6 @@ def _matching(mine: Reading, theirs: Reading) -> Reading:
         if [unit for _, unit, _ in mine[at : at + len(units)]] == units:
             return mine[at : at + len(units)]
     return mine if len(mine) == len(theirs) else []
-
-
-def _row(value: Any) -> tuple[Any, ...]:
-    return tuple(value) if isinstance(value, tuple | list) else (value,)
 
 
 # The tolerance between calculated and reported rows, by unit. Joints rest on ticks; near a
@@ -110,7 +105,7 @@ def _calculate(probe: Probe) -> None:
         given = [field.cases[0].numbers for field in probe.command.request[0].fields]
         if any(units(numbers) not in known for numbers in given):
             raise NotSupported("no query reports where the arm is")
-        mine = _reading(probe, probe.command, [known[units(numbers)] for numbers in given])
+        mine = _reading(probe, probe.command, *(known[units(numbers)] for numbers in given))
         reported = known[tuple(unit for _, unit, _ in mine)]
         wrong = [
             f"{name} is {value} {unit}, but the arm is at {actual}"

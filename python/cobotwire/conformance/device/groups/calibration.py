@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from cobotwire.conformance.device.device import NotSupported
+from typing import Any
+
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
 from cobotwire.conformance.device.groups.settings import NEIGHBOURS
 from cobotwire.conformance.device.groups.switching import EFFECT
 from cobotwire.conformance.device.mover import Mover
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import has_fixed_effect, settings_of
-from cobotwire.conformance.device.samples import Values, arguments, harmless
+from cobotwire.conformance.device.requests import arguments_of, harmless, requests
 from cobotwire.conformance.suite import Group
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
 
@@ -33,41 +35,33 @@ def _calibrate(probe: Probe) -> None:
         _set_off(probe, mover, query)
     for part in harmless(command):
         before = _reported(probe, query, name)
-        request_change(probe, command, part)
+        request_change(probe, part)
         for other, value in _reported(probe, query, name).items():
-            mine = other == part
+            mine = other.values == part.values
             right = int(wanted) if mine else before[other]
-            expected = f"after {command.name}{part}: expected {query.name}{other} to report {right}"
+            expected = f"expected {query.name}({arguments_of(other)}) to report {right}"
+            expected = f"after {command.name}({arguments_of(part)}): {expected}"
             case = EFFECT if mine else NEIGHBOURS
             probe.expect(case, value == right, f"{expected}; came {value}")
 
 
-def _reported(probe: Probe, query: Command, name: str) -> dict[Values, object]:
+def _reported(probe: Probe, query: Command, name: str) -> dict[Request[Any], object]:
     """Return what the query reports of each part."""
-    found: dict[Values, object] = {}
-    for part in arguments(query.request[-1]):
-        fields = probe.device.read(query, part)
-        if fields is None:
-            raise NotSupported(f"{query.name} reports nothing")
-        found[part] = fields[name]
-    return found
+    parts = requests(query, query.request[-1])
+    return {part: getattr(probe.device.require(part), name) for part in parts}
 
 
 def _set_off(probe: Probe, mover: Mover, query: Command) -> None:
     """Move what is calibrated, such as a gripper, away from its zero, if a motion sets it."""
-    device = probe.device
+    device, position = probe.device, query.request_type
     for command in device.table.commands:
         if command.safety != "motion" or command.role or command.request[0].fields[1:] == ():
             continue
         for motion in settings_of(device.table, command):
-            if motion.query is query and not motion.keys[0]:
-                fields = device.read(query)
-                if fields is None:
-                    raise NotSupported(f"{query.name} reports nothing")
-                old = motion.reported(fields)
-                values = motion.request(motion.rest(mover.speed), motion.samples({}, old)[0])[0]
-                device.request(command, values)
-                mover.settle(lambda: device.read(query))
+            if motion.query is query and not motion.query_variant.fields:
+                old = device.require(position())
+                device.request(motion.samples(position(), old, mover.speed)[0])
+                mover.settle(lambda: device.read(position()))
                 return
 
 

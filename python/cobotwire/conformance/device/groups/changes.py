@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.response import Response
 from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command
 
 # What an acknowledgement reports: done.
@@ -47,11 +47,10 @@ AFTER_CHANGE = (SILENT, ACKNOWLEDGED)
 AFTER_CHANGE_OR_REPLY = (*AFTER_CHANGE, REPLIED)
 
 
-def request_change(
-    probe: Probe, command: Command, values: Sequence[Any], text: Mapping[str, str] | None = None
-) -> Response:
+def request_change(probe: Probe, request: Request[Any]) -> Response:
     """Send a request that changes something, and judge what comes."""
-    response = probe.device.request(command, values, text)
+    response = probe.device.request(request)
+    command = response.request.command
     call = probe.device.requester.describe(response.request)
     if command.answers:
         _judge_reply(probe, response, call)
@@ -79,7 +78,7 @@ def _judge_acknowledgement(probe: Probe, response: Response, call: str) -> None:
     probe.device.acknowledged.setdefault(name, bool(response.replies))
     at_most_one = len(response.replies) <= 1 and not response.unexpected
     done = all(
-        reply.error is None and all(value == DONE for value in reply.fields.values())
+        reply.message is not None and all(v == DONE for v in reply.message.fields.values())
         for reply in response.replies
     )
     reason = f"{call}: expected one acknowledgement, 1, or none; came {response.summary}"

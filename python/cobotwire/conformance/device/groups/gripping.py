@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from cobotwire.conformance.device.device import NotSupported
+from typing import Any
+
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
-from cobotwire.conformance.device.groups.motion import ARRIVES, MOVING, UNDER_WAY, is_replayed
+from cobotwire.conformance.device.groups.motion import ARRIVES, MOVING, expect_moving, is_replayed
 from cobotwire.conformance.device.mover import Mover
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import Setting, settings_of
+from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.suite import Group
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
 # Slow enough to be reported as moving, in percent of the fastest.
@@ -25,30 +28,20 @@ def _has_own_moving(table: Table, command: Command) -> bool:
 def _reports_moving(probe: Probe) -> None:
     """Expect the query to report motion on the way, and no motion at the target."""
     mover, motion = Mover(probe), settings_of(probe.device.table, probe.command)[-1]
-    query = _moving(probe.device.table, probe.command)
-    assert query is not None
-    for wanted in _ends(probe, motion):
-        values = motion.request(motion.rest(min(SLOW, mover.speed)), wanted)[0]
-        probe.device.request(probe.command, values)
-        mover.rest(UNDER_WAY)
-        _expect_moving(probe, query, True)
-        mover.settle(lambda: probe.device.read(motion.query))
-        _expect_moving(probe, query, False)
+    moving, position = _moving(probe.device.table, probe.command), motion.query.request_type()
+    assert moving is not None
+    for target in _ends(probe, motion, position, min(SLOW, mover.speed)):
+        probe.device.request(target)
+        expect_moving(probe, mover, moving, True)
+        mover.settle(lambda: probe.device.read(position))
+        expect_moving(probe, mover, moving, False)
 
 
-def _ends(probe: Probe, motion: Setting) -> list[dict[str, object]]:
-    """Return two values far from each other, the more distant one first."""
-    fields = probe.device.read(motion.query)
-    if fields is None:
-        raise NotSupported(f"{motion.query.name} reports nothing")
-    old = motion.reported(fields)
-    ends = motion.samples({}, old)[2:4]
-    return ends if ends[0] != old else ends[::-1]
-
-
-def _expect_moving(probe: Probe, query: Command, moves: bool) -> None:
-    reported = bool(probe.device.is_set(query))
-    probe.expect(MOVING, reported is moves, f"{query.name}: expected {moves}; came {reported}")
+def _ends(probe: Probe, motion: Setting, position: Request[Any], speed: int) -> list[Request[Any]]:
+    """Return requests for two values far from each other, the more distant one first."""
+    old = probe.device.require(position)
+    ends = motion.samples(position, old, speed)[2:4]
+    return ends if ends[0] != motion.again(position, old, speed) else ends[::-1]
 
 
 def _moving(table: Table, command: Command) -> Command | None:
@@ -71,17 +64,14 @@ def _open_and_close(probe: Probe) -> None:
     """Expect open to be wider than closed."""
     mover, query = Mover(probe), _opening(probe.device.table, probe.command)
     assert query is not None
+    position = query.request_type()
     state = probe.command.request[-1].fields[0]
     wide = {}
     for label in (OPEN, CLOSE, OPEN, CLOSE):
-        request_change(
-            probe, probe.command, (state.choices[state.labels.index(label)], mover.speed)
-        )
-        mover.settle(lambda: probe.device.read(query))
-        fields = probe.device.read(query)
-        if fields is None:
-            raise NotSupported(f"{query.name} reports nothing")
-        wide[label] = next(iter(fields.values()))
+        choice = state.choices[state.labels.index(label)]
+        request_change(probe, request_of(probe.command, choice, mover.speed))
+        mover.settle(lambda: probe.device.read(position))
+        wide[label] = probe.device.require(position).result
     wider = wide[OPEN] > wide[CLOSE]
     probe.expect(ARRIVES, wider, f"{probe.command.name}: expected open to be wider; came {wide}")
 

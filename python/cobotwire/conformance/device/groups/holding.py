@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
@@ -10,8 +11,9 @@ from cobotwire.conformance.device.groups.settings import NEIGHBOURS
 from cobotwire.conformance.device.groups.switching import EFFECT
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.samples import Values, arguments
+from cobotwire.conformance.device.requests import arguments_of, request_of, requests
 from cobotwire.conformance.suite import Group
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table, Variant
 
 
@@ -32,13 +34,13 @@ def _switch_each(probe: Probe) -> None:
     for part in _parts(probe.command):
         probe.device.restore_after_body[probe.command.name] = restore
         _send_to_all(probe, back)
-        request_change(probe, probe.command, part)
+        request_change(probe, part)
+        call = f"{probe.command.name}({arguments_of(part)})"
         for other in _parts(probe.command):
-            fields = probe.device.read(single, other)
-            if fields is None:
-                raise NotSupported(f"{single.name} reports nothing")
-            value, right = int(fields[name]), int(wanted) if other == part else 1 - int(wanted)
-            reason = f"after {probe.command.name}{part}: expected {single.name}{other} to report"
+            query = request_of(single, *other.values)
+            value = int(getattr(probe.device.require(query), name))
+            right = int(wanted) if other == part else 1 - int(wanted)
+            reason = f"after {call}: expected {single.name}({arguments_of(query)}) to report"
             case = EFFECT if other == part else NEIGHBOURS
             probe.expect(case, value == right, f"{reason} {right}; came {value}")
 
@@ -60,8 +62,8 @@ def _names(variant: Variant) -> list[str]:
     return [field.name for field in variant.fields]
 
 
-def _parts(command: Command) -> list[Values]:
-    return arguments(command.request[-1])
+def _parts(command: Command) -> list[Request[Any]]:
+    return requests(command, command.request[-1])
 
 
 def _counterpart(probe: Probe, wanted: int) -> Command:
@@ -75,7 +77,7 @@ def _counterpart(probe: Probe, wanted: int) -> Command:
 
 def _send_to_all(probe: Probe, command: Command) -> None:
     for part in _parts(command):
-        probe.device.request(command, part)
+        probe.device.request(part)
 
 
 HOLDING = Group("single parts", (EFFECT, NEIGHBOURS, *AFTER_CHANGE), _switch_each, _is_for_one)

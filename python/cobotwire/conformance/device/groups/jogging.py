@@ -9,6 +9,7 @@ from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_ch
 from cobotwire.conformance.device.groups.motion import ARRIVES, STOPS, UNDER_WAY, resume
 from cobotwire.conformance.device.mover import POSES, Mover
 from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.suite import Group
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command, Field, Number, Table
@@ -86,9 +87,8 @@ def _stays(
         distance = sign * DISTANCES[numbers[at].unit]
         target = round(before[at] + distance, 2)
         try:
-            request_change(
-                probe, probe.command, (chosen, target if absolute else distance, mover.speed)
-            )
+            way = target if absolute else distance
+            request_change(probe, request_of(probe.command, chosen, way, mover.speed))
         except UsageError:
             # The edition does not allow it there; another pose is nearer to the middle.
             continue
@@ -119,7 +119,8 @@ def _jog(probe: Probe, mover: Mover, part: Field, chosen: int, direction: int) -
     for which in range(len(POSES)):
         mover.go(mover.pose(which))
         before, numbers = _where(probe, part)
-        request_change(probe, probe.command, (chosen, direction, min(SLOW, mover.speed)))
+        speed = min(SLOW, mover.speed)
+        request_change(probe, request_of(probe.command, chosen, direction, speed))
         mover.rest(4 * UNDER_WAY)
         after = _stopped(probe, mover, part)
         moved = [now - then for now, then in zip(after, before)]
@@ -142,7 +143,7 @@ def _stopped(probe: Probe, mover: Mover, part: Field) -> Sequence[float]:
     if ending is None:
         _halt(probe)
     else:
-        probe.device.request(ending)
+        probe.device.request(ending.request_type())
     mover.rest(2 * UNDER_WAY)
     stopped, numbers = _where(probe, part)
     mover.rest(4 * UNDER_WAY)
@@ -157,7 +158,7 @@ def _stopped(probe: Probe, mover: Mover, part: Field) -> Sequence[float]:
 def _halt(probe: Probe) -> None:
     stop = probe.device.command("stop")
     if stop is not None:
-        probe.device.request(stop)
+        probe.device.request(stop.request_type())
 
 
 def _not_so(
@@ -211,10 +212,10 @@ def _choices(part: Field) -> Sequence[int]:
 def _where(probe: Probe, part: Field) -> tuple[Sequence[float], tuple[Number, ...]]:
     """Return the position of the joints or of the end, whichever has the part; and its numbers."""
     query = probe.device.command("coordinates" if part.choices else "joints")
-    fields = None if query is None else probe.device.read(query)
-    if query is None or fields is None:
+    reply = None if query is None else probe.device.read(query.request_type())
+    if query is None or reply is None:
         raise NotSupported("no query reports where the arm is")
-    return next(iter(fields.values())), query.reply[0].fields[0].cases[0].numbers
+    return tuple(reply.result), query.reply[0].fields[0].cases[0].numbers
 
 
 def _place(part: Field, chosen: int, numbers: tuple[Number, ...]) -> int:

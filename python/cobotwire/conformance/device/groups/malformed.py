@@ -9,8 +9,8 @@ from collections.abc import Iterator
 
 from cobotwire.conformance.device.groups.queries import is_query
 from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.requests import requests
 from cobotwire.conformance.device.response import Response
-from cobotwire.conformance.device.samples import arguments
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, FrameFormat, Table
 from cobotwire.session.request import EncodedRequest
@@ -46,8 +46,8 @@ def _damaged(probe: Probe) -> None:
 
 def _sample(probe: Probe) -> EncodedRequest:
     """Return the request to damage: the first sample."""
-    values = arguments(probe.command.request[0], probe.device.known())[0]
-    return probe.device.requester.prepare(probe.command, values)
+    first, *_ = requests(probe.command, probe.command.request[0], probe.device.known())
+    return probe.device.requester.prepare(first)
 
 
 def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, bytes]]:
@@ -171,7 +171,7 @@ def _unknown_ids(probe: Probe) -> None:
     carrier = next(
         c for c in table.commands if _is_framed_query(table, c) and not c.request[0].fields
     )
-    request = probe.device.requester.prepare(carrier, ())
+    request = probe.device.requester.prepare(carrier.request_type())
     if table.frame.check != "footer":
         return
     for id in _free_ids(table):

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from cobotwire.conformance.device.device import NotSupported
+from typing import Any
+
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.mover import ANGLE_TOLERANCE, Mover, Pose, off_by
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.read_back import Setting, Values, settings_of
+from cobotwire.conformance.device.read_back import Setting, settings_of
+from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.suite import Group, Selects, TestCase
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.motion import kind_of
 
@@ -28,16 +31,16 @@ def _has(role: Role) -> Selects:
 
 def _to_poses(probe: Probe) -> None:
     """Move all joints at once, from pose to pose."""
-    mover = Mover(probe)
+    mover, moving = Mover(probe), probe.device.command("moving")
     for which in (0, 1):
         pose, other = mover.pose(which), mover.pose(1 - which)
         mover.go(other)
-        request_change(probe, probe.command, (pose, mover.speed))
-        _expect_moving(probe, mover, True)
+        request_change(probe, request_of(probe.command, pose, mover.speed))
+        expect_moving(probe, mover, moving, True)
         mover.wait()
         wrong = off_by(mover.angles(), pose)
         probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
-        _expect_moving(probe, mover, False)
+        expect_moving(probe, mover, moving, False)
         _expect_reached(probe, pose, True)
         _expect_reached(probe, other, False)
 
@@ -48,7 +51,7 @@ def _to_angles(probe: Probe) -> None:
     expected, target = mover.pose(0), mover.pose(1)
     mover.go(expected)
     for at, angle in enumerate(target):
-        request_change(probe, probe.command, (at + 1, angle, mover.speed))
+        request_change(probe, request_of(probe.command, at + 1, angle, mover.speed))
         mover.wait()
         expected = (*expected[:at], angle, *expected[at + 1 :])
         wrong = off_by(mover.angles(), expected)
@@ -66,41 +69,42 @@ def _replays(probe: Probe) -> None:
     """Send what was read at another pose: the arm returns there, and reads the same."""
     mover = Mover(probe)
     for motion in settings_of(probe.device.table, probe.command):
-        for key in motion.keys:
-            for target in _targets(probe, mover, motion, key):
-                _replay(probe, mover, motion, key, target)
+        for query in motion.queries:
+            for target in _targets(probe, mover, motion, query):
+                _replay(probe, mover, motion, query, target)
 
 
-def _targets(probe: Probe, mover: Mover, motion: Setting, key: Values) -> list[Values]:
-    """Return what is read at the first pose; or samples, if it is the same at the second."""
-    found = []
-    for which in (0, 1):
-        mover.go(mover.pose(which))
-        fields = probe.device.read(motion.query, motion.query_arguments(key))
-        if fields is None:
-            raise NotSupported(f"{motion.query.name} reports nothing")
-        found.append(motion.reported(fields))
-    return found[:1] if found[0] != found[1] else motion.samples(key, found[0])
+def _targets(
+    probe: Probe, mover: Mover, motion: Setting, query: Request[Any]
+) -> list[Request[Any]]:
+    """Return the request for the first pose; or samples, if the second is read as the same."""
+    mover.go(mover.pose(0))
+    first = probe.device.require(query)
+    mover.go(mover.pose(1))
+    second = probe.device.require(query)
+    target = motion.again(query, first, mover.speed)
+    if target != motion.again(query, second, mover.speed):
+        return [target]
+    return motion.samples(query, first, mover.speed)
 
 
-def _replay(probe: Probe, mover: Mover, motion: Setting, key: Values, target: Values) -> None:
-    values, _ = motion.request({**motion.rest(mover.speed), **key}, target)
-    request_change(probe, probe.command, values)
-    mover.settle(lambda: probe.device.read(motion.query, motion.query_arguments(key)))
-    fields = probe.device.read(motion.query, motion.query_arguments(key))
-    got = None if fields is None else motion.reported(fields)
-    wrong = motion.differences(target, got, NEAR)
+def _replay(
+    probe: Probe, mover: Mover, motion: Setting, query: Request[Any], target: Request[Any]
+) -> None:
+    request_change(probe, target)
+    mover.settle(lambda: probe.device.read(query))
+    wrong = motion.differences(target, probe.device.read(query), NEAR)
     probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
 
 
 def _stops(probe: Probe) -> None:
     """Stop on the way: the arm is short of its target, and stays there."""
-    mover = Mover(probe)
+    mover, moving = Mover(probe), probe.device.command("moving")
     mover.go(mover.pose(0))
-    probe.device.request(mover.targets, (mover.pose(1), 1))
+    probe.device.request(mover.to(mover.pose(1), 1))
     mover.rest(UNDER_WAY)
-    request_change(probe, probe.command, ())
-    _expect_moving(probe, mover, False)
+    request_change(probe, probe.command.request_type())
+    expect_moving(probe, mover, moving, False)
     stopped = mover.angles()
     mover.rest(4 * UNDER_WAY)
     wrong = off_by(mover.angles(), stopped)
@@ -115,15 +119,15 @@ def resume(probe: Probe) -> None:
     for query in probe.device.table.commands:
         going = probe.device.setter(query, 0)
         if going is not None and going.safety == "motion" and query.safety == "query":
-            probe.device.request(going)
+            probe.device.request(going.request_type())
 
 
-def _expect_moving(probe: Probe, mover: Mover, moves: bool) -> None:
-    query = probe.device.command("moving")
+def expect_moving(probe: Probe, mover: Mover, query: Command | None, moves: bool) -> None:
+    """Expect a query, if the edition has it, to report whether something moves."""
     if query is not None:
         if moves:
             mover.rest(UNDER_WAY)
-        reported = probe.device.is_set(query)
+        reported = probe.device.is_set(query.request_type())
         reason = f"{query.name}: expected {moves}; came {_came(reported)}"
         probe.expect(MOVING, reported is moves, reason)
 
@@ -131,8 +135,8 @@ def _expect_moving(probe: Probe, mover: Mover, moves: bool) -> None:
 def _expect_reached(probe: Probe, pose: Pose, there: bool) -> None:
     query = probe.device.command("reached")
     if query is not None:
-        fields = probe.device.read(query, (pose, kind_of(probe.device.table, "ANGLES")))
-        reported = None if fields is None else any(fields.values())
+        kind = kind_of(probe.device.table, "ANGLES")
+        reported = probe.device.is_set(request_of(query, pose, kind))
         reason = f"{query.name}{pose}: expected {there}; came {_came(reported)}"
         probe.expect(REACHED, reported is there, reason)
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.response import Reply, Response, shown
-from cobotwire.conformance.device.samples import arguments
+from cobotwire.conformance.device.requests import as_row, requests
+from cobotwire.conformance.device.response import ReceivedReply, Response, shown
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Field, Table
 
@@ -44,15 +44,16 @@ def is_query(table: Table, command: Command) -> bool:
 def _query(probe: Probe) -> None:
     """Request with each set of arguments, and with the last one again."""
     known = probe.device.known()
-    every = [values for variant in probe.command.request for values in arguments(variant, known)]
-    for values in every:
-        first = probe.device.request(probe.command, values)
+    command = probe.command
+    every = [query for variant in command.request for query in requests(command, variant, known)]
+    for query in every:
+        first = probe.device.request(query)
         _judge(probe, first)
-    again = probe.device.request(probe.command, every[-1])
+    again = probe.device.request(every[-1])
     _judge(probe, again)
     if first.valid is not None and again.valid is not None:
         _judge_repetition(probe, first.valid, again.valid)
-    if probe.command.name in probe.device.retried:
+    if command.name in probe.device.retried:
         probe.note(REPLIED, "A reply came, but only when the query was repeated.")
 
 
@@ -80,10 +81,10 @@ def _expected_frame(table: Table, command: Command) -> str:
     return f"expected a whole frame with id {command.id:02X} and LEN {lengths}"
 
 
-def _wrong_echo(call: str, response: Response, reply: Reply) -> str:
-    sent = {name: response.request.arguments.get(name) for name in reply.fields}
-    sent = {name: value for name, value in sent.items() if value is not None}
-    return f"{call}: expected the echo of {sent}; came {reply.fields}"
+def _wrong_echo(call: str, response: Response, reply: ReceivedReply) -> str:
+    came = reply.decoded.fields if reply.decoded else {}
+    sent = {name: v for name, v in response.request.arguments.items() if name in came}
+    return f"{call}: expected the echo of {sent}; came {came}"
 
 
 def _late(call: str, response: Response, deadline: int) -> str:
@@ -93,18 +94,19 @@ def _late(call: str, response: Response, deadline: int) -> str:
     return f"{call}: expected a reply within {deadline} ms; {came}"
 
 
-def _judge_repetition(probe: Probe, first: Reply, again: Reply) -> None:
+def _judge_repetition(probe: Probe, first: ReceivedReply, again: ReceivedReply) -> None:
     """Compare the replies to two equal requests, one right after the other."""
-    both = f"came {first.fields}, then {again.fields}"
-    same_variant = first.fields.keys() == again.fields.keys()
-    probe.expect(REPEATS, same_variant, f"expected the same variant of reply; {both}")
-    if first.message is None or again.message is None:
-        probe.expect(REPEATS, first.fields == again.fields, both)
+    if first.decoded is None or again.decoded is None:
+        both = f"expected the same text again; came {first.message}, then {again.message}"
+        probe.expect(REPEATS, first.message == again.message, both)
         return
-    for field in again.message.variant.fields:
-        if field.name not in first.fields:
+    old, new = first.decoded.fields, again.decoded.fields
+    both = f"expected the same variant of reply; came {old}, then {new}"
+    probe.expect(REPEATS, old.keys() == new.keys(), both)
+    for field in again.decoded.variant.fields:
+        if field.name not in old:
             continue
-        before, after = first.fields[field.name], again.fields[field.name]
+        before, after = old[field.name], new[field.name]
         reason = f"{field.name}: expected the same again; came {before}, then {after}"
         probe.expect(REPEATS, _alike(field, before, after), reason)
 
@@ -113,12 +115,7 @@ def _alike(field: Field, before: object, after: object) -> bool:
     """Return whether two values are the same; a measured one, with a unit, may move a little."""
     if before == after:
         return True
-    rows = zip(
-        field.cases[0].numbers,
-        before if isinstance(before, tuple) else (before,),
-        after if isinstance(after, tuple) else (after,),
-    )
-    for number, one, other in rows:
+    for number, one, other in zip(field.cases[0].numbers, as_row(before), as_row(after)):
         span = number.physical(number.maximum - number.minimum)
         if one != other and not (number.unit and abs(one - other) <= DRIFT * span):
             return False

@@ -8,6 +8,7 @@ from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_ch
 from cobotwire.conformance.device.groups.switching import EFFECT
 from cobotwire.conformance.device.mover import Mover
 from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.suite import Group
 from cobotwire.protocol.table import Command, Table
 
@@ -29,15 +30,16 @@ def _next_target(probe: Probe) -> None:
     """Send joint 1 up and at once down: it goes up first if targets are queued."""
     mover, mode = Mover(probe), probe.command.request[0].fields[0]
     # The mode that the edition names first is its default.
-    default = partial(probe.device.request, probe.command, (mode.choices[0],))
+    default = partial(probe.device.request, request_of(probe.command, mode.choices[0]))
     probe.device.restore_after_body[probe.command.name] = default
     pose = mover.pose(2)
     up, down = ((pose[0] + way, *pose[1:]) for way in (WAY, -WAY))
     for label in (NEWEST, QUEUED):
-        request_change(probe, probe.command, (mode.choices[mode.labels.index(label)],))
+        choice = mode.choices[mode.labels.index(label)]
+        request_change(probe, request_of(probe.command, choice))
         mover.go(pose)
         for target in (up, down):
-            probe.device.request(mover.targets, (target, mover.speed))
+            probe.device.request(mover.to(target))
         went_up = _first_motion(mover, pose[0]) > 0
         mover.wait()
         reason = f"{label}: expected joint 1 to go {'up' if label == QUEUED else 'down'} first"

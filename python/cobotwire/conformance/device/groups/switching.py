@@ -10,7 +10,7 @@ from cobotwire.conformance.device.groups.motion import resume
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import has_fixed_effect, settings_of
-from cobotwire.conformance.device.samples import gentle, harmless
+from cobotwire.conformance.device.requests import gentle, harmless
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 
@@ -34,10 +34,7 @@ def _switch(probe: Probe) -> None:
         give_power(device)
     query = device.table.command(command.read_by.query)
     name, wanted = command.read_by.fields[0]
-    fields = device.read(query)
-    if fields is None:
-        raise NotSupported(f"{query.name} reports nothing")
-    before = int(fields[name])
+    before = int(getattr(device.require(query.request_type()), name))
     back = device.setter(query, 1 - int(wanted)) if wanted in (0, 1) else None
     if back is None and before != wanted and "irreversible" not in device.permissions.classes:
         raise NotSupported("no command switches it back: that needs the permission irreversible")
@@ -54,8 +51,8 @@ def _switch(probe: Probe) -> None:
 
 def _send(probe: Probe, command: Command) -> None:
     """Send a command for each joint that it accepts."""
-    for values in harmless(command):
-        request_change(probe, command, values)
+    for request in harmless(command):
+        request_change(probe, request)
 
 
 def _await(probe: Probe, query: Command, name: str, wanted: int) -> int | None:
@@ -63,8 +60,8 @@ def _await(probe: Probe, query: Command, name: str, wanted: int) -> int | None:
     connection = probe.device.connection
     end = connection.now + SHOWS
     while True:
-        fields = probe.device.read(query)
-        value = None if fields is None else int(fields[name])
+        reply = probe.device.read(query.request_type())
+        value = None if reply is None else int(getattr(reply, name))
         if value == wanted or connection.now >= end:
             return value
         connection.clock.sleep(POLL)
@@ -83,13 +80,10 @@ def _is_unread(table: Table, command: Command) -> bool:
 
 def _send_unread(probe: Probe) -> None:
     """Send the command once, with the mildest arguments, and judge what comes."""
-    command = probe.command
-    text = command.request_text
-    words = None if text is None else dict.fromkeys(text.fields, "cobot")
-    request_change(probe, command, gentle(command.request[-1]), words)
+    request_change(probe, gentle(probe.command))
     stop = probe.device.command("stop")
-    if command.safety == "motion" and stop is not None:
-        probe.device.request(stop)
+    if probe.command.safety == "motion" and stop is not None:
+        probe.device.request(stop.request_type())
         resume(probe)
 
 

@@ -6,7 +6,8 @@ as far as the ranges allow, so that a wrong order, sign or scale shows.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from itertools import product
 from typing import Any, NamedTuple
 
 from cobotwire.protocol.table import Field, Number, Variant
@@ -51,79 +52,104 @@ def _ordinary(field: Field, number: Number, count: int) -> int:
     return number.minimum + (middle - number.minimum + count * _STRIDE) % span
 
 
-def plainest(variant: Variant) -> RawValues:
-    """Return zeros, or the nearest legal values: every implementation accepts them."""
+def plainest(variant: Variant, near: int = 0) -> RawValues:
+    """Return the legal raw values nearest to ``near``; of a closed list, the first."""
+    picked = next(picks(variant))
     return tuple(
-        tuple(_near_zero(field, number) for number in field.cases[0].numbers)
-        for field in variant.fields
+        (picked[index],)
+        if index in picked
+        else tuple(
+            field.choices[0] if field.choices else number.clamp(near)
+            for number in numbers_of(field, picked)
+        )
+        for index, field in enumerate(variant.fields)
     )
 
 
-def _near_zero(field: Field, number: Number) -> int:
-    return field.choices[0] if field.choices else number.clamp(0)
+def picks(variant: Variant) -> Iterator[dict[int, int]]:
+    """Yield every combination of values of the selectors, by their index in the variant."""
+    selectors = sorted({field.selector for field in variant.fields} - {-1})
+    for chosen in product(*(_selecting(variant, index) for index in selectors)):
+        yield dict(zip(selectors, chosen))
+
+
+def _selecting(variant: Variant, index: int) -> list[int]:
+    """Return the values of a selector that pick a case."""
+    field = variant.fields[index]
+    number = field.cases[0].numbers[0]
+    known = {raw for f in variant.fields if f.selector == index for c in f.cases for raw in c.when}
+    every = field.choices or range(number.minimum, number.maximum + 1)
+    return [raw for raw in every if raw in known]
+
+
+def numbers_of(field: Field, picked: Mapping[int, int]) -> tuple[Number, ...]:
+    """Return the numbers of a field while the selectors hold the values in ``picked``."""
+    case = field.case(picked.get(field.selector))
+    assert case is not None, "a pick has a case"
+    return case.numbers
 
 
 def samples(variant: Variant) -> Iterator[Sample]:
     """Yield a sample for every case of every selector, and for every corner value in it."""
     seen: set[RawValues] = set()
-    for name, picked in _picks(variant):
-        for sample in _corners(variant, name, picked):
+    for picked in picks(variant):
+        name, base = _prefix(variant, picked), ordinary(variant, picked)
+        found = [
+            Sample(f"{name}ordinary", base),
+            Sample(f"{name}ordinary-again", ordinary(variant, picked, turn=7)),
+        ]
+        for place in _places(variant, picked):
+            if place.at not in picked:
+                found += [place.sample(name, base, raw) for raw in legal(place.field, place.number)]
+        for sample in found:
             if sample.raw_values not in seen:
                 seen.add(sample.raw_values)
                 yield sample
 
 
-def _picks(variant: Variant) -> Iterator[tuple[str, dict[int, int]]]:
-    """Yield the values of each selector; one at a time, since no message has two that interact."""
-    selectors = sorted({field.selector for field in variant.fields if field.selector >= 0})
-    if not selectors:
-        yield "", {}
-    for index in selectors:
-        field = variant.fields[index]
-        for raw in _all_of(field):
-            if any(raw in case.when for f in variant.fields for case in f.cases):
-                yield f"{field.name}={raw}-", {index: raw}
+def illegal_samples(variant: Variant) -> Iterator[Sample]:
+    """Yield ordinary samples with one raw value that fits the wire but is illegal in its field."""
+    for picked in picks(variant):
+        name, base = _prefix(variant, picked), ordinary(variant, picked)
+        for place in _places(variant, picked):
+            for raw in beyond(place.field, place.number):
+                yield place.sample(name, base, raw)
 
 
-def _all_of(field: Field) -> tuple[int, ...]:
-    number = field.cases[0].numbers[0]
-    return field.choices or tuple(range(number.minimum, number.maximum + 1))
+class _Place(NamedTuple):
+    """One number of a variant."""
+
+    field: Field
+    number: Number
+    at: int
+    element: int
+
+    def sample(self, prefix: str, base: RawValues, raw: int) -> Sample:
+        """Return a sample with another raw value in this place."""
+        part = f".{self.number.name or self.element}" if self.field.many else ""
+        name = f"{prefix}{self.field.name}{part}={raw}"
+        return Sample(name, with_one(base, self.at, self.element, raw))
 
 
-def _corners(variant: Variant, name: str, picked: dict[int, int]) -> Iterator[Sample]:
-    base = ordinary(variant, picked)
-    yield Sample(f"{name}ordinary", base)
-    yield Sample(f"{name}ordinary-again", ordinary(variant, picked, turn=7))
+def _places(variant: Variant, picked: Mapping[int, int]) -> Iterator[_Place]:
     for index, field in enumerate(variant.fields):
-        case = variant.raw_case(field, base)
-        assert case is not None, "an ordinary selector has a case"
-        for element, number in enumerate(case.numbers):
-            for raw in legal(field, number) if index not in picked else ():
-                place = _place(field, number, element)
-                yield Sample(f"{name}{place}={raw}", with_one(base, index, element, raw))
+        for element, number in enumerate(numbers_of(field, picked)):
+            yield _Place(field, number, index, element)
 
 
-def illegal_samples(variant: Variant) -> Iterator[tuple[Sample, int, int]]:
-    """Yield ordinary samples with one raw value that fits the wire but is illegal in its field.
+def _prefix(variant: Variant, picked: Mapping[int, int]) -> str:
+    return "".join(f"{variant.fields[index].name}={raw}-" for index, raw in picked.items())
 
-    Each sample comes with the index of the field and the index of the element.
-    """
-    for name, picked in _picks(variant):
-        base = ordinary(variant, picked)
-        for index, field in enumerate(variant.fields):
-            case = variant.raw_case(field, base)
-            assert case is not None, "an ordinary selector has a case"
-            for element, number in enumerate(case.numbers):
-                for raw in beyond(field, number):
-                    place = _place(field, number, element)
-                    wrong = with_one(base, index, element, raw)
-                    yield Sample(f"{name}{place}={raw}", wrong), index, element
+
+def with_row(raw_values: RawValues, index: int, row: tuple[int, ...]) -> RawValues:
+    """Return the same raw values with another row in one field."""
+    return (*raw_values[:index], row, *raw_values[index + 1 :])
 
 
 def with_one(raw_values: RawValues, index: int, element: int, raw: int) -> RawValues:
     """Return the same raw values with another one in one place."""
-    row = (*raw_values[index][:element], raw, *raw_values[index][element + 1 :])
-    return (*raw_values[:index], row, *raw_values[index + 1 :])
+    row = raw_values[index]
+    return with_row(raw_values, index, (*row[:element], raw, *row[element + 1 :]))
 
 
 def legal(field: Field, number: Number) -> list[int]:
@@ -157,7 +183,3 @@ def named_values(variant: Variant, raw_values: RawValues) -> dict[str, Any]:
         values = [number.physical(raw) for number, raw in zip(case.numbers, row)]
         given[field.name] = values if field.many else values[0]
     return given
-
-
-def _place(field: Field, number: Number, element: int) -> str:
-    return f"{field.name}.{number.name or element}" if field.many else field.name
