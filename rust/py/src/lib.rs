@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 mod bulk;
 mod codec;
+mod column;
 mod convert;
 mod edition;
 mod errors;
@@ -21,7 +22,8 @@ mod parts;
 mod values;
 mod words;
 
-#[pymodule]
+// A free-threaded interpreter takes its lock while this module is loaded: no test has run on one.
+#[pymodule(gil_used = true)]
 mod _native {
     #[pymodule_export]
     use crate::bulk::NativeColumnReader;

@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code)] // the buffer protocol, `madvise` and the collector are C's
 
-use std::ffi::{CStr, c_int, c_void};
+use std::ffi::c_int;
 use std::ptr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -11,11 +11,7 @@ use pyo3::exceptions::PyBufferError;
 use pyo3::ffi;
 use pyo3::prelude::*;
 
-/// What a column holds: offsets, or the numbers of a field.
-pub enum Column {
-    Offsets(Vec<u64>),
-    Cells(Cells),
-}
+use crate::column::Column;
 
 /// Numbers in memory that NumPy, Arrow and memoryviews use as it is.
 #[pyclass(frozen, module = "cobotwire._native")]
@@ -64,51 +60,41 @@ impl Memory {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Fails while somebody looks at it.
-    pub fn check_unviewed(&self) -> PyResult<()> {
-        if self.held().views == 0 {
-            return Ok(());
-        }
-        let text = "out is still used by a memoryview or an array";
-        Err(PyBufferError::new_err(text))
-    }
-
-    /// Take the column out, and leave an empty one.
+    /// Take the column out, and leave an empty one; fail if a view of it exists.
     pub fn take(&self) -> PyResult<Column> {
-        self.check_unviewed()?;
+        // The lock is held once: no view can come between the check and the replacement.
+        let mut held = self.held();
+        if held.views > 0 {
+            let text = "out is still used by a memoryview or an array";
+            return Err(PyBufferError::new_err(text));
+        }
         let empty = Column::Offsets(Vec::new());
-        Ok(std::mem::replace(&mut self.held().column, empty))
+        Ok(std::mem::replace(&mut held.column, empty))
     }
-}
 
-impl Column {
-    /// The numbers of a field.
-    pub fn into_cells(self) -> Cells {
-        match self {
-            Self::Cells(cells) => cells,
-            Self::Offsets(_) => Cells::F64(Vec::new()),
+    fn put_back(&self, column: Column) {
+        let mut held = self.held();
+        // Any view of an empty column is of no bytes, so they may be replaced under it.
+        if held.column.is_empty() {
+            held.column = column;
         }
     }
 
-    /// Where it starts, how many numbers it has, their size, and their type as `struct` has it.
-    fn parts(&mut self) -> (*mut c_void, usize, usize, &'static CStr) {
-        fn of<T>(
-            all: &mut Vec<T>,
-            format: &'static CStr,
-        ) -> (*mut c_void, usize, usize, &'static CStr) {
-            (all.as_mut_ptr().cast(), all.len(), size_of::<T>(), format)
+    /// Take all columns out, or none.
+    pub fn take_all(memories: &[&Self]) -> PyResult<Vec<Column>> {
+        let mut columns = Vec::with_capacity(memories.len());
+        for memory in memories {
+            match memory.take() {
+                Ok(column) => columns.push(column),
+                Err(error) => {
+                    for (memory, column) in memories.iter().zip(columns) {
+                        memory.put_back(column);
+                    }
+                    return Err(error);
+                }
+            }
         }
-        match self {
-            Self::Offsets(all) => of(all, c"Q"),
-            Self::Cells(Cells::F64(all)) => of(all, c"d"),
-            Self::Cells(Cells::U8(all)) => of(all, c"B"),
-            Self::Cells(Cells::I8(all)) => of(all, c"b"),
-            Self::Cells(Cells::U16(all)) => of(all, c"H"),
-            Self::Cells(Cells::I16(all)) => of(all, c"h"),
-            Self::Cells(Cells::U32(all)) => of(all, c"I"),
-            Self::Cells(Cells::I32(all)) => of(all, c"i"),
-            Self::Cells(Cells::I64(all)) => of(all, c"q"),
-        }
+        Ok(columns)
     }
 }
 

@@ -38,8 +38,8 @@ impl Commands {
     /// The index of the command with that name. For an unknown name the table raises the error that
     /// suggests the nearest one.
     pub fn find(&self, table: &Py<PyAny>, name: &Bound<'_, PyAny>) -> PyResult<usize> {
-        if let Some(index) = word(name).and_then(|name| self.by_name.get(name)) {
-            return Ok(*index);
+        if let Some(index) = self.known(name) {
+            return Ok(index);
         }
         let found = table.bind(name.py()).call_method1("command", (name,))?;
         let place = self
@@ -47,6 +47,11 @@ impl Commands {
             .iter()
             .position(|command| command.object.is(&found));
         place.ok_or_else(|| PyKeyError::new_err((name.clone().unbind(),)))
+    }
+
+    /// The index of the command with that name, if there is one.
+    pub fn known(&self, name: &Bound<'_, PyAny>) -> Option<usize> {
+        word(name).and_then(|name| self.by_name.get(name)).copied()
     }
 
     pub fn get(&self, index: usize) -> PyResult<&Command> {

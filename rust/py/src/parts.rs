@@ -4,8 +4,9 @@ use cobotwire_core::{Columns, Direction, Offsets, Rows, Spans, VariantId};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::column::Column;
 use crate::edition::Edition;
-use crate::memory::{Column, Memory};
+use crate::memory::Memory;
 
 /// Spans of noise: where they start, and their sizes.
 pub fn spans<'py>(py: Python<'py>, noise: Spans) -> PyResult<Bound<'py, PyTuple>> {
@@ -25,21 +26,25 @@ pub fn old_offsets(out: &Bound<'_, PyAny>) -> PyResult<Offsets> {
 /// The memory of an earlier `Columns`, which is empty from then on.
 pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Columns> {
     let rows: Vec<Bound<'_, PyAny>> = out.getattr("_rows")?.extract()?;
+    // Attributes are read first, since that runs Python code: another thread, or an error.
+    let variants = rows.iter().map(|rows| variant(edition, rows));
+    let variants = variants.collect::<PyResult<Vec<_>>>()?;
     let memories = rows.iter().map(memories).collect::<PyResult<Vec<_>>>()?;
+    let all: Vec<&Memory> = memories.iter().flatten().map(Bound::get).collect();
     // All or none: after an error the old columns are still complete.
-    for memory in memories.iter().flatten() {
-        memory.get().check_unviewed()?;
-    }
+    let mut taken = Memory::take_all(&all)?.into_iter();
     let mut old = Columns::default();
-    for (rows, memories) in rows.iter().zip(memories) {
-        let mut columns = memories.into_iter().map(|memory| memory.get().take());
-        let offsets = columns.next().transpose()?.map_or(Vec::new(), offsets);
-        let fields = columns.map(|column| column.map(Column::into_cells));
-        old.rows.push(Rows {
-            variant: variant(edition, rows)?,
-            offsets,
-            fields: fields.collect::<PyResult<_>>()?,
-        });
+    for (variant, memories) in variants.into_iter().zip(&memories) {
+        let mut columns = taken.by_ref().take(memories.len());
+        let offsets = columns.next().map_or(Vec::new(), offsets);
+        let fields = columns.map(Column::into_cells).collect();
+        if let Some(variant) = variant {
+            old.rows.push(Rows {
+                variant,
+                offsets,
+                fields,
+            });
+        }
     }
     out.setattr("_rows", PyTuple::empty(out.py()))?;
     Ok(old)
@@ -53,18 +58,20 @@ fn memories<'py>(rows: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, Memory>>> 
     Ok(all)
 }
 
-fn variant(edition: &Edition, rows: &Bound<'_, PyAny>) -> PyResult<VariantId> {
+/// The variant of old rows; `None`: the edition has no command of that name.
+fn variant(edition: &Edition, rows: &Bound<'_, PyAny>) -> PyResult<Option<VariantId>> {
     let name = rows.getattr("command")?.getattr("name")?;
     let direction: String = rows.getattr("direction")?.extract()?;
-    Ok(VariantId {
+    let variant = rows.getattr("variant_index")?.extract()?;
+    Ok(edition.commands.known(&name).map(|command| VariantId {
         direction: if direction == "request" {
             Direction::Request
         } else {
             Direction::Reply
         },
-        command: edition.commands.find(&edition.table, &name)?,
-        variant: rows.getattr("variant_index")?.extract()?,
-    })
+        command,
+        variant,
+    }))
 }
 
 fn offsets(column: Column) -> Vec<u64> {
