@@ -100,7 +100,7 @@ def test_captures_of_other_programs_are_read(
 
 
 def test_capture_of_another_link_type_is_rejected() -> None:
-    with pytest.raises(CaptureError, match="link type 1 is not a serial line"):
+    with pytest.raises(CaptureError, match="link type 1 is not that of a serial recording"):
         list(reader(foreign("<", link_type=1)))
 
 

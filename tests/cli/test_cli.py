@@ -114,7 +114,7 @@ def test_call_accepts_lists_enum_names_and_negative_numbers(
         (["send_angle", "1", "ten", "20"], 2, "angle is 'ten'; allowed: a number"),
         (["get_angles", "5"], 2, "get_angles() has no argument for '5'; it takes no arguments"),
         (["set_end_type", "FLANG"], 2, "allowed: FLANGE (0), TOOL (1)"),
-        (["set_free_mode", "maybe"], 2, "allowed: on, off"),
+        (["set_free_mode", "maybe"], 2, "allowed: on or off"),
     ],
 )
 def test_call_with_wrong_arguments_names_the_mistake(

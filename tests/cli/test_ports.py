@@ -29,14 +29,14 @@ def test_likely_port_is_listed_with_the_reason(monkeypatch: pytest.MonkeyPatch) 
     assert lines[0].split() == ["/dev/ttyACM0", "likely", "CH9102,", "a", "bridge", "(1A86:55D4)"]
     assert lines[1].strip() == "USB Single Serial, serial number 54"
     assert lines[2].split()[:2] == ["/dev/ttyUSB3", "unlikely"]
-    assert "you may not open it" in lines[3]
+    assert "you have no permission to open it" in lines[3]
 
 
 def test_exit_code_is_1_without_a_likely_port(monkeypatch: pytest.MonkeyPatch) -> None:
     assert run(monkeypatch, [CLOSED])[0] == 1
     code, output = run(monkeypatch, [])
     assert code == 1
-    assert "is the arm's cable plugged in" in output
+    assert "check that the arm's cable is plugged in" in output
 
 
 def test_json_output_holds_every_attribute(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -90,7 +90,7 @@ def test_served_recording_gives_the_recorded_replies(recorded: tuple[Path, list[
         assert process.returncode == 0
         assert errors == ""
         assert "FE FE 02 12 FA   replied with 6 bytes" in output
-        assert "FE FE 02 23 FA   was not recorded" in output
+        assert "FE FE 02 23 FA   this request was not recorded" in output
     finally:
         process.kill()
         process.communicate()

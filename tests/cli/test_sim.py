@@ -129,7 +129,7 @@ def test_sim_on_all_interfaces_prints_json_and_a_warning(sim: subprocess.Popen[s
         "fields": {},
         "reply": "FE FE 03 12 00 FA",
     }
-    assert "everybody who can reach 0.0.0.0" in sim.stderr.readline()
+    assert "anyone who can reach 0.0.0.0" in sim.stderr.readline()
 
 
 @pytest.mark.parametrize("sim", [["--json"]], indirect=True)
@@ -194,7 +194,7 @@ def _until(descriptor: int, wanted: bytes) -> bytes:
     [
         (["--tcp", "9000"], "HOST:PORT"),
         (["--tcp", ":70000"], "70000"),
-        (["--pty", "--tcp", ":0"], "use one of --pty and --tcp"),
+        (["--pty", "--tcp", ":0"], "use either --pty or --tcp, not both"),
         (["--speed", "0"], "speed"),
         (["--speed", "nan"], "speed"),
     ],

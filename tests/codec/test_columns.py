@@ -228,7 +228,7 @@ def test_variant_must_be_chosen_if_several_occurred() -> None:
             for index, variant in enumerate(several.reply)
         ]
         columns = codec.decode_columns(b"".join(frames), "reply")
-        with pytest.raises(UsageError, match="occurred: choose variant="):
+        with pytest.raises(UsageError, match="occurred: choose one with variant="):
             columns.rows(several.name)
         assert [
             len(columns.rows(several.name, variant=index)) for index, _ in enumerate(frames)

@@ -1,8 +1,8 @@
 """Encode the blocks of a pcapng file that a serial recording needs.
 
-The format is IETF draft-ietf-opsawg-pcapng. A block is its type, its length, its body padded to
-four bytes, and its length again. Bodies end with options: a code, a length, and a value padded to
-four bytes.
+The format is IETF draft-ietf-opsawg-pcapng. A block consists of its type, its length, its body
+padded to four bytes, and its length again. A body ends with options. Each option is a code, a
+length, and a value padded to four bytes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ STATISTICS_START, STATISTICS_END, STATISTICS_RECEIVED = 2, 3, 4
 
 # The two lowest bits of a packet's flags.
 INBOUND, OUTBOUND = 1, 2
-# Link types reserved for private use: USER0 to USER15. USER12 is less likely to be taken than the
+# Link types reserved for private use: USER0 to USER15. USER12 is less likely to be in use than the
 # first ones.
 USER_LINK_TYPES = range(147, 163)
 LINK_TYPE = 159
@@ -45,7 +45,7 @@ def _options(options: Iterable[Option]) -> bytes:
 
 
 def text(code: int, value: str) -> list[Option]:
-    """Return one text option; no option for an empty text. A text that is too long is cut."""
+    """Return a text option, or no option for an empty text. A text that is too long is cut."""
     # The length field has 16 bits; the cut must not leave half a character.
     data = value.encode("utf-8", "replace")[:0xFFFF].decode("utf-8", "ignore").encode()
     return [(code, data)] if data else []
@@ -83,7 +83,7 @@ def packet(index: int, time_ns: int, data: bytes, flags: int, comment: str) -> b
 
 
 def statistics(index: int, start_ns: int, end_ns: int, packets: int) -> bytes:
-    """Return the block that ends an interface's recording; without it the recording was cut off."""
+    """Return the block that ends an interface's recording; a recording without it is unfinished."""
     options: list[Option] = [
         (STATISTICS_START, _time(start_ns)),
         (STATISTICS_END, _time(end_ns)),

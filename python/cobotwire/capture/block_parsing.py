@@ -9,7 +9,7 @@ from typing import BinaryIO, NamedTuple
 from cobotwire.capture import block_encoding as blocks
 from cobotwire.protocol.errors import CaptureError
 
-# Wireshark's own limit; a longer block is taken for damage.
+# Wireshark's own limit; a longer block counts as damage.
 LARGEST_BLOCK = 16 * 1024 * 1024
 SMALLEST_BLOCK = 12
 SMALLEST_SECTION = 28
@@ -61,7 +61,7 @@ def blocks_of(file: BinaryIO, name: str) -> Iterator[Block]:
 
 
 def _take(file: BinaryIO, size: int, offset: int, within: bool = False) -> bytes:
-    """Return exactly ``size`` bytes, or none at the end of the file unless ``within`` a block."""
+    """Return exactly ``size`` bytes; return no bytes at the end of the file, between two blocks."""
     data = b""
     while len(data) < size:
         more = file.read(size - len(data))

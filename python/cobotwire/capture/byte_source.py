@@ -30,8 +30,8 @@ _TEXT = frozenset(b"\t\n\v\f\r" + bytes(range(0x20, 0x7F)))
 class ByteSource(NamedTuple):
     """Blocks of bytes, each with the number of input bytes that were read for it.
 
-    ``size`` is the length of the input in bytes, if it is known. ``from_arguments``: the arguments
-    themselves are the bytes.
+    ``size`` is the length of the input in bytes, if it is known. ``from_arguments`` tells whether
+    the arguments themselves are the bytes.
     """
 
     blocks: Iterator[tuple[bytes, int]]
@@ -44,7 +44,8 @@ def open_bytes(
 ) -> ByteSource:
     """Open what the arguments name: bytes in hex, a file, or ``-`` for standard input.
 
-    Without a ``format`` it is detected; ``notify`` is called with a sentence if it is hex text.
+    If ``format`` is None, it is detected. If the input then is hex text, ``notify`` is called with
+    a sentence about it.
 
     Raises:
         UsageError: the arguments name no bytes, or they are ambiguous.

@@ -1,4 +1,4 @@
-"""Say in one way why a file cannot be opened."""
+"""Explain why a file cannot be opened, in the same words everywhere."""
 
 from __future__ import annotations
 

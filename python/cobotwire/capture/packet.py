@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Literal, NamedTuple
 
-# Captures of other programs may not say the direction; ours always do.
+# Captures of other programs may lack the direction; ours always have it.
 Direction = Literal["sent", "received", "unknown"]
 # "bytes" is a chunk as it was read or written, not cut into frames.
 Kind = Literal["frame", "noise", "bytes"]
@@ -28,7 +28,7 @@ class Packet(NamedTuple):
         time_ns: when the first byte was read or written, in nanoseconds since 1970 (UTC).
         direction: ``sent`` is what the recording side wrote, ``received`` what it read.
         data: the bytes.
-        kind: what they are in the edition that the interface names.
+        kind: whether the bytes are a frame of the interface's edition, noise, or a raw chunk.
         reason: the framer's reason for noise; empty for frames and raw chunks.
         pieces: each piece with its own time, if the bytes did not all come at ``time_ns``.
         interface: an index into ``CaptureReader.interfaces``.
@@ -48,7 +48,7 @@ class Interface(NamedTuple):
 
     Attributes:
         url: the port or URL; empty if the capture does not name it.
-        edition: the edition by which the packets were cut; empty if the capture does not name it.
+        edition: the edition of the frames; empty if the capture does not name it.
         baudrate: bits a second; 0 if the capture does not state it.
     """
 
@@ -58,7 +58,10 @@ class Interface(NamedTuple):
 
 
 def comment_of(packet: Packet) -> str:
-    """Return what pcapng has no field for, as text that Wireshark shows and :func:`read` reads."""
+    """Return the facts that pcapng has no field for, as a comment that Wireshark shows.
+
+    :func:`with_comment` reads it.
+    """
     parts = []
     if packet.kind != "frame":
         parts.append(f"{packet.kind} {packet.reason}".strip())
@@ -70,7 +73,7 @@ def comment_of(packet: Packet) -> str:
 
 
 def with_comment(packet: Packet, comment: str) -> Packet:
-    """Return the packet with what :func:`comment_of` wrote; other comments change nothing."""
+    """Return the packet with the facts that :func:`comment_of` wrote; ignore other comments."""
     for part in comment.split("; "):
         kind, _, reason = part.partition(" ")
         if kind == "noise" or part == "bytes":

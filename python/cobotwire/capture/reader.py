@@ -64,10 +64,8 @@ class CaptureReader:
         name: the name of the file, for messages.
         interfaces: the interfaces that the blocks read so far describe.
         application: the name of the program that wrote the capture.
-        truncated_at: the offset of the block that the file cuts off; None if the last block is
-            complete, or the end has not been read yet.
-        finished: whether the recorder was closed. A capture that is still being written, or
-            whose writer was killed, is not finished; mostly it is not truncated either.
+        truncated_at: the offset of the incomplete block at the end of the file; None if the last
+            block is complete, or the end has not been read yet.
     """
 
     def __init__(self, file: BinaryIO, name: str = "capture") -> None:
@@ -84,12 +82,16 @@ class CaptureReader:
 
     @property
     def finished(self) -> bool:
-        """Return whether the recorder was closed."""
+        """Whether the recorder was closed.
+
+        A capture that is still being written, or that a killed program wrote, is not finished. In
+        most cases it is not truncated either.
+        """
         return len(self._finished) == len(self.interfaces) > 0
 
     @property
     def incomplete(self) -> str:
-        """Return what is missing at the end, in a sentence; empty if nothing is."""
+        """What is missing at the end, in a sentence; empty if nothing is missing."""
         if self.truncated_at is not None:
             return (
                 f"{self.name} ends in the middle of a packet; "
@@ -115,7 +117,7 @@ class CaptureReader:
         self.close()
 
     def close(self) -> None:
-        """Close the file; after the last packet this happens by itself."""
+        """Close the file. Reading the last packet also closes it."""
         self._packets.close()
         self._file.close()
 
@@ -165,7 +167,7 @@ class CaptureReader:
     def _packet(self, block: Block, fields: Fields) -> Packet:
         format = self._format(block, fields)
         if format.link_type not in blocks.USER_LINK_TYPES:
-            self._reject(block, f"link type {format.link_type} is not a serial line")
+            self._reject(block, f"link type {format.link_type} is not that of a serial recording")
         high, low, size, _ = fields.numbers("IIII")
         data = fields.data(size)
         options = dict(fields.options())
@@ -182,7 +184,7 @@ class CaptureReader:
     def _format(self, block: Block, fields: Fields) -> _Format:
         (index,) = fields.numbers("I")
         if index >= len(self._formats):
-            self._reject(block, f"damaged: it does not describe interface {index}")
+            self._reject(block, f"damaged: the file does not describe interface {index}")
         return self._formats[index]
 
     def _reject(self, block: Block, why: str) -> NoReturn:

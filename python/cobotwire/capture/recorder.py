@@ -26,17 +26,17 @@ class Moment(Protocol):
 
     @property
     def time(self) -> float:
-        """When it was sent or received."""
+        """The time at which the item was sent or received."""
         ...
 
     @property
     def direction(self) -> Literal["sent", "received"]:
-        """Whether it was sent or received."""
+        """Whether the item was sent or received."""
         ...
 
     @property
     def data(self) -> bytes:
-        """Its bytes."""
+        """The bytes."""
         ...
 
 
@@ -47,7 +47,7 @@ class Side:
         """Cut with ``framer``; without one each chunk becomes a packet of kind ``bytes``."""
         self._direction = direction
         self._framer = framer
-        # The bytes that are in no packet yet, in the pieces in which they came.
+        # The bytes that are in no packet yet, in the pieces in which they arrived.
         self._waiting: deque[Piece] = deque()
         self._idle_at = 0
 
@@ -61,11 +61,11 @@ class Side:
         return self._packets(self._framer.feed(data))
 
     def wake(self, time_ns: int) -> list[Packet]:
-        """Return what has waited for more bytes longer than ``IDLE_NS``, as packets."""
+        """Return as packets the bytes that have waited for more bytes longer than ``IDLE_NS``."""
         return self.flush() if self._waiting and time_ns >= self._idle_at else []
 
     def flush(self) -> list[Packet]:
-        """Return everything that waits for more bytes, as packets."""
+        """Return as packets all bytes that wait for more bytes."""
         return [] if self._framer is None else self._packets(self._framer.flush())
 
     def _packets(self, events: Iterable[Event]) -> list[Packet]:
@@ -109,8 +109,8 @@ class Side:
 class Recorder:
     """Writes the traffic of one transport to a capture; pass it to a client as ``trace``.
 
-    When a write fails (the disk is full), the call that moves an arm must not fail: the error is
-    logged, recording stops, and :meth:`close` raises.
+    If a write fails, for example because the disk is full, the client's call does not fail. Instead
+    the error is logged, the recording stops, and :meth:`close` raises an error.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class Recorder:
         baudrate: int = 0,
         name: str = "capture",
     ) -> None:
-        """Describe the transport to the capture; several recorders may share a writer.
+        """Describe the transport in the capture; several recorders may share a writer.
 
         Args:
             writer: writes the packets.
@@ -156,7 +156,7 @@ class Recorder:
             self._write(side.feed(data, time_ns))
 
     def close(self) -> None:
-        """Write what waits for more bytes. The writer stays open.
+        """Write the bytes that wait for more bytes. The writer stays open.
 
         Raises:
             CaptureError: a write failed, so the recording is incomplete.

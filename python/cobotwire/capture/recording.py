@@ -19,8 +19,8 @@ class Recording:
     """A recorder that owns its file.
 
     ``TappedTransport(open_transport(url, baudrate), recording.record)`` passes it each chunk when
-    it is read or written. As the ``trace`` of a client it gets every byte too, but only when the
-    frame is complete.
+    the chunk is read or written. As the ``trace`` of a client it also gets every byte, but only
+    when the frame is complete.
     """
 
     def __init__(
@@ -87,6 +87,6 @@ class Recording:
                 self._name, self._writer.size, f"the recording could not be finished: {error}"
             ) from error
         finally:
-            # On a full disk closing fails as well; the error is already raised.
+            # On a full disk closing fails too; the error is already raised.
             with suppress(OSError):
                 self._file.close()

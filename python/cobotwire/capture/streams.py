@@ -1,4 +1,4 @@
-"""Cut the packets of a capture into frames again; decode and diagnose them.
+"""Cut the packets of a capture into frames again, decode the frames, and diagnose the noise.
 
 Each direction of each interface is one stream of bytes.
 """
@@ -32,7 +32,7 @@ class DirectionStream:
         direction: the direction of the packets.
         listening: what the framer looks for.
         framer: the framer, with its counters.
-        start_ns: when the first packet came.
+        start_ns: the time of the first packet.
     """
 
     def __init__(
@@ -41,18 +41,18 @@ class DirectionStream:
         self.codec, self.interface, self.direction = codec, packet.interface, packet.direction
         self.listening = LISTENING.get(packet.direction, listening)
         self.framer = codec.framer(self.listening, accept_unknown=accept_unknown)
-        # Where in the stream each piece starts, and when it came.
+        # The start of each piece in the stream, and its time.
         self._times: deque[tuple[int, int]] = deque()
         self._size = 0
         self.start_ns = packet.time_ns
         self._waiting = False
 
     def is_idle(self, time_ns: int) -> bool:
-        """Return whether bytes wait for more, although none came for ``IDLE_NS``."""
+        """Return whether bytes wait for more bytes, although none arrived for ``IDLE_NS``."""
         return self._waiting and time_ns >= self._times[-1][1] + IDLE_NS
 
     def feed(self, packet: Packet) -> list[Event]:
-        """Take the next packet of this direction; return what is certain by now."""
+        """Take the next packet of this direction; return the events that are certain by now."""
         for size, time_ns in packet.pieces or ((len(packet.data), packet.time_ns),):
             self._times.append((self._size, time_ns))
             self._size += size
@@ -60,19 +60,19 @@ class DirectionStream:
         return self.framer.feed(packet.data)
 
     def flush(self) -> list[Event]:
-        """Return what waits for more bytes."""
+        """Stop waiting for more bytes; return the remaining events."""
         self._waiting = False
         return self.framer.flush()
 
     def time_of(self, offset: int) -> int:
-        """Return when a byte came; the offsets of successive calls must not decrease."""
+        """Return the time of a byte; the offsets of successive calls must not decrease."""
         while len(self._times) > 1 and self._times[1][0] <= offset:
             self._times.popleft()
         return self._times[0][1]
 
 
 class StreamEvents(NamedTuple):
-    """Events of one stream; ``idle``: the stream is idle, so no later byte belongs to them."""
+    """Events of one stream; ``idle`` means that no later byte can belong to the last of them."""
 
     stream: DirectionStream
     events: list[Event]
@@ -90,8 +90,8 @@ def cut(
 
     Args:
         packets: the packets of a capture.
-        codec_of: gives the codec for the index of an interface.
-        listening: what packets of unknown direction hold.
+        codec_of: returns the codec of the interface with that index.
+        listening: the messages in packets of unknown direction.
         accept_unknown: whether to accept frames with ids that the edition lacks.
     """
     streams: dict[tuple[int, Direction], DirectionStream] = {}
@@ -115,8 +115,8 @@ class CapturedMessage(NamedTuple):
         time_ns: when its first byte was sent or received, in nanoseconds since 1970 (UTC).
         interface: an index into ``CaptureReader.interfaces``.
         direction: whether it was sent or received.
-        message: the typed message, to be matched with ``match``; the error if a field holds a value
-            that the edition does not allow.
+        message: the typed message, for ``match``; the error if a field holds a value that the
+            edition does not allow.
     """
 
     time_ns: int
@@ -126,7 +126,7 @@ class CapturedMessage(NamedTuple):
 
 
 def messages(capture: CaptureReader, edition: str = editions.DEFAULT) -> Iterator[CapturedMessage]:
-    """Yield the decoded messages of a capture; ``edition`` applies where the capture names none.
+    """Yield the decoded messages of a capture; ``edition`` applies if the capture names none.
 
     ::
 
@@ -161,7 +161,7 @@ def diagnose_capture(
 ) -> Iterator[tuple[DirectionStream, list[Item]]]:
     """Yield the frames and findings of a capture with their streams; see :func:`cut`.
 
-    Requests that were sent on an interface make their echoes certain.
+    If a request was sent on an interface, a copy of it that was received there is an echo.
     """
     diagnosers: dict[DirectionStream, Diagnoser] = {}
     sent: dict[int, list[bytes]] = {}
@@ -202,6 +202,9 @@ def packets_of_interface(capture: CaptureReader, interface: int) -> list[Packet]
         UsageError: the capture has no interface with that index.
     """
     packets = [packet for packet in capture if packet.interface == interface]
+    if not capture.interfaces:
+        message = f"{capture.name} describes no interface, so it has no packets"
+        raise UsageError("interface", interface, message=message)
     if not 0 <= interface < len(capture.interfaces):
         raise UsageError("interface", interface, f"0..{len(capture.interfaces) - 1}")
     return packets

@@ -1,4 +1,4 @@
-"""Write packets to a pcapng file; each is complete on disk before the next."""
+"""Write packets to a pcapng file; pass each one to the operating system at once."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ class CaptureWriter:
         self._seen[packet.interface] = first, max(last, end), count + 1
 
     def finish(self) -> None:
-        """Mark the recording as finished: nothing is missing at its end."""
+        """Mark the recording as finished, so that readers know that nothing is missing."""
         for index, (first, last, count) in enumerate(self._seen):
             self._write(blocks.statistics(index, first, last, count))
 
     def _write(self, block: bytes) -> None:
         self._file.write(block)
-        # After this a killed process loses no block.
+        # From now on the block is safe even if the process is killed.
         self._file.flush()
         self.size += len(block)

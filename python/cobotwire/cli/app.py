@@ -57,7 +57,7 @@ def _print_version(context: click.Context, option: click.Parameter, wanted: bool
     "--edition",
     default=DEFAULT,
     show_default=True,
-    help="The protocol edition of the arm, or the name of a package built by cobotwire-gen.",
+    help="The protocol edition of the arm, or a package (name or folder) built by cobotwire-gen.",
 )
 @click.option(
     "--version",

@@ -12,7 +12,7 @@ from cobotwire.cli.shared.call_arguments import parse
 from cobotwire.cli.shared.output import as_json_value, format_result
 
 
-# click takes a negative number for an unknown option; unknown options are passed on as ARGS.
+# click reads a negative number as an unknown option; unknown options are passed on as ARGS.
 @click.command(
     short_help="Send one command; print the result.",
     context_settings={"ignore_unknown_options": True},
@@ -21,7 +21,9 @@ from cobotwire.cli.shared.output import as_json_value, format_result
 @click.argument("args", nargs=-1, metavar="[ARGS]...")
 @click.option("--port", required=True, help="A serial port, or a URL such as socket://host:9000.")
 @arm_options
-@click.option("--timeout", type=float, help="Seconds to wait for the reply [default: per command].")
+@click.option(
+    "--timeout", type=float, help="Seconds to wait for the reply [default: the command's]."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.pass_obj
 def call(
@@ -36,8 +38,8 @@ def call(
 ) -> None:
     """Send the command NAME with its ARGS, and print the result.
 
-    ARGS come in the order of the command's arguments, or as name=value. Separate the items of a
-    list by commas. Write enum members by name or number:
+    Write ARGS in the order of the command's arguments, or as name=value. Separate the items of a
+    list by commas. Write an enum member as its name or its number:
 
     \b
       cobotwire call get_angles --port /dev/ttyACM0

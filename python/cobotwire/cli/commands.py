@@ -15,7 +15,7 @@ from cobotwire.protocol.table import Command, Field, FrameFormat, Number, Varian
 
 @click.command(short_help="List the commands, or describe one.")
 @click.argument("name", required=False)
-@click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the commands as JSON.")
 @click.pass_obj
 def commands(edition: str, name: str | None, as_json: bool) -> None:
     """List the commands of the edition, or describe the command NAME byte by byte."""

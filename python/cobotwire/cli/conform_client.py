@@ -30,20 +30,34 @@ from cobotwire.simulator.tcp import address
 
 
 @click.command()
-@click.option("--listen", default="pty", help="pty, or socket://127.0.0.1:PORT.")
+@click.option(
+    "--listen", default="pty", show_default=True, help="Where to serve: pty, or socket://HOST:PORT."
+)
 @click.option("--expect", metavar="FILE", help="The calls that the client makes, one per line.")
-@click.option("--misbehave", default="", help=f"Send bad replies now and then: {','.join(FAULTS)}.")
-@click.option("--every", type=int, default=3, show_default=True, help="Every n-th reply is bad.")
-@click.option("--delay", type=float, default=8.0, show_default=True, help="Milliseconds per reply.")
+@click.option("--misbehave", default="", help=f"Send bad replies, any of {','.join(FAULTS)}.")
+@click.option(
+    "--every",
+    type=int,
+    default=3,
+    show_default=True,
+    help="With --misbehave: every n-th reply is bad.",
+)
+@click.option(
+    "--delay",
+    type=float,
+    default=8.0,
+    show_default=True,
+    help="Milliseconds from each request to its reply.",
+)
 @click.option(
     "--patience",
     type=float,
     default=30.0,
     show_default=True,
-    help="Milliseconds for which the client should wait for a reply.",
+    help="Milliseconds that the client must wait before it repeats a query.",
 )
 @click.option("--no-acks", is_flag=True, help="Send no acknowledgements, as older firmware does.")
-@click.option("--seconds", type=float, help="End after this time.")
+@click.option("--seconds", type=float, help="End after this many seconds.")
 @click.option("--idle", type=float, help="End after this many seconds without a request.")
 @report_options
 @click.pass_obj
@@ -62,9 +76,10 @@ def client(
 ) -> None:
     """Serve an arm, and judge the client that controls it.
 
-    The first line of output is the port that the client has to open. Over TCP the run ends when the
-    client disconnects; on a pseudo-terminal by --idle, --seconds or Ctrl-C. With --expect the
-    requests are compared with the calls in FILE, which are written as for `cobotwire call`:
+    The first line of output is the port that the client must open. Over TCP the run ends when the
+    client disconnects. On a pseudo-terminal it ends after --idle or --seconds, or at Ctrl-C. With
+    --expect the requests are compared with the calls in FILE, which are written as for `cobotwire
+    call`:
 
     \b
       send_angles 0,10,0,0,0,0 speed=30
@@ -85,7 +100,7 @@ def client(
             patience=patience / 1000,
             sources=spec_lines(edition),
         )
-        # Importing while the client waits would make the referee slow and its retry look hasty.
+        # An import while the client waits would delay a reply, and a retry would look hasty.
         prepare()
         server = _server(listen, referee)
         serve(server, between=[_Ending(server, referee, seconds, idle).check])
@@ -93,7 +108,7 @@ def client(
 
 
 class _Ending:
-    """Ends the run when its time is over or the client has gone."""
+    """Ends the run when its time is over or the client has disconnected."""
 
     def __init__(
         self, server: Server, referee: Referee, seconds: float | None, idle: float | None
@@ -103,7 +118,7 @@ class _Ending:
         self._over = False
 
     def check(self) -> None:
-        """Stop the server, once."""
+        """Stop the server if the run is over."""
         if not self._over and (self._late() or self._silent() or self._gone()):
             self._over = True
             self._server.stop()
@@ -126,9 +141,9 @@ def _server(listen: str, referee: Referee) -> Server:
         return PtyServer(referee)
     parts = urlsplit(listen)
     if parts.scheme not in ("socket", "tcp") or parts.path.strip("/"):
-        raise UsageError("listen", listen, "pty, socket://HOST:PORT")
+        raise UsageError("listen", listen, "pty or socket://HOST:PORT")
     host, port = address(parts.netloc)
-    # Every connection is taken for the same client, because one client is judged.
+    # All connections count as the same client, because the referee judges one client.
     return TcpServer(lambda: referee, host, port)
 
 

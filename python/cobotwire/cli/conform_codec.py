@@ -25,10 +25,12 @@ from cobotwire.protocol.errors import UsageError
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
 @click.argument("command", nargs=-1, required=True)
 @click.option("--expected", metavar="FILE", help="Known failures: a name and a reason per line.")
-@click.option("--only", metavar="PATTERN", help="Ask only questions with a matching name.")
-@click.option("--timeout", type=float, default=10.0, show_default=True, help="Seconds per answer.")
+@click.option("--only", metavar="PATTERN", help="Send only questions with a matching name.")
 @click.option(
-    "--repeat", type=int, default=1, show_default=True, help="Times each question is asked."
+    "--timeout", type=float, default=10.0, show_default=True, help="Seconds to wait for an answer."
+)
+@click.option(
+    "--repeat", type=int, default=1, show_default=True, help="How often to send each question."
 )
 @report_options
 @click.pass_obj
@@ -41,7 +43,7 @@ def codec(
     repeat: int,
     files: ReportFiles,
 ) -> None:
-    """Test the codec that COMMAND runs against an edition.
+    """Test a codec, which COMMAND runs, against an edition.
 
     COMMAND reads questions on standard input and writes answers on standard output, as
     docs/codec-protocol.md describes:

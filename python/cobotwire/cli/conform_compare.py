@@ -21,15 +21,15 @@ from cobotwire.conformance.reports import compare as compared
 STYLES = {"worse": "red", "better": "green"}
 
 
-@click.command()
+@click.command(short_help="Compare two reports on the same subject.")
 @click.argument("before")
 @click.argument("after")
 @click.option("--json", "as_json", is_flag=True, help="Print the differences as JSON.")
 def compare(before: str, after: str, as_json: bool) -> None:
     """Compare the reports BEFORE and AFTER, which were written with --json.
 
-    Exit codes: 0 nothing is worse; 1 something is worse: a test case fails now, or it passed and is
-    not run any more; 2 a file is not a report.
+    Exit codes: 0 nothing is worse; 1 something is worse: a test case fails that did not fail
+    before, or one that passed is not run now; 2 a file is not a report.
     """
     with exit_if_not_testable():
         found = compared(_read("before", before), _read("after", after))

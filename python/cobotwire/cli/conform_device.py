@@ -41,7 +41,10 @@ IN_MEMORY = "simulated arm in memory"
 @click.command()
 @click.argument("port", metavar="URL", required=False)
 @click.option(
-    "--allow", default="", metavar="PERMISSIONS", help=f"What may be sent: {','.join(PERMISSIONS)}."
+    "--allow",
+    default="",
+    metavar="PERMISSIONS",
+    help=f"What may be sent besides queries, any of {','.join(PERMISSIONS)}.",
 )
 @click.option("--max-speed", type=int, help="The highest speed to move at, in percent.")
 @click.option(
@@ -49,10 +52,21 @@ IN_MEMORY = "simulated arm in memory"
     metavar="RANGES",
     help="Allowed degrees for all joints, -30:30, or for each: 1=-90:90,2=-30:30,...",
 )
-@click.option("--repeat", type=int, default=1, show_default=True, help="Runs of each test case.")
-@click.option("--retries", type=int, default=0, show_default=True, help="Retries of a query.")
 @click.option(
-    "--optional", default="", metavar="COMMANDS", help="Commands that the arm need not support."
+    "--repeat", type=int, default=1, show_default=True, help="How often to run each test case."
+)
+@click.option(
+    "--retries",
+    type=int,
+    default=0,
+    show_default=True,
+    help="How often to repeat a query that gets no reply.",
+)
+@click.option(
+    "--optional",
+    default="",
+    metavar="COMMANDS",
+    help="Commands that the arm need not support, separated by commas.",
 )
 @baudrate_option
 @click.option("--linger", type=float, help="Milliseconds to listen after a reply [default: 4].")
@@ -82,8 +96,9 @@ def device(
     """
     with exit_if_not_testable():
         table = editions.load(edition).TABLE
-        if repeat < 1 or retries < 0:
-            raise UsageError("repeat, retries", (repeat, retries), "repeat from 1, retries from 0")
+        for name, value, least in (("repeat", repeat, 1), ("retries", retries, 0)):
+            if value < least:
+                raise UsageError(name, value, f"a whole number from {least}")
         permissions = Permissions.of(
             words(allow),
             joints=table.joints,
@@ -120,7 +135,7 @@ def _run(tester: Tester) -> None:
 
 @contextmanager
 def _progress() -> Iterator[Callable[[Step, int, int], None]]:
-    """Give a function that shows the current step on standard error, if that is a terminal."""
+    """Yield a function that shows the current step on standard error, if that is a terminal."""
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("")

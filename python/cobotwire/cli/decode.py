@@ -27,7 +27,7 @@ from cobotwire.diagnose import Diagnoser, Item
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
 
-# Bytes from which a progress bar is worth showing: decoding them takes some seconds.
+# Decoding this many bytes takes some seconds, so a progress bar is shown.
 LONG_FILE = 4 << 20
 
 
@@ -56,7 +56,7 @@ class Options(NamedTuple):
 @click.option(
     "--accept-unknown", is_flag=True, help="Accept frames with ids unknown to the edition."
 )
-@click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as for HEX.")
+@click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as is done for HEX.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--summary", is_flag=True, help="Print counts at the end.")
 @click.option("--quiet", is_flag=True, help="Do not print frames and noise.")
@@ -74,17 +74,17 @@ def decode(
 ) -> None:
     """Print the meaning of each frame, and the diagnosis of everything else.
 
-    HEX is bytes as pairs of hex digits, with or without blanks, commas or 0x. Any other single
+    HEX is bytes as pairs of hex digits, with or without spaces, commas or 0x. Any other single
     argument is a FILE; - is standard input. If an argument is both hex and an existing file, write
     ./NAME for the file or 0xNAME for the bytes.
 
-    A recording (pcapng, see --record) is decoded packet by packet: each frame is printed with its
-    time, and decoded in the direction in which it was sent. --direction applies to packets of
-    unknown direction only.
+    A recording (pcapng, which other verbs write with --record) is decoded packet by packet. Each
+    frame is decoded in the direction in which it was sent, and printed with its time. --direction
+    applies only to packets of unknown direction.
 
-    Any other FILE holds raw bytes or hex text. It is hex text if its first 512 bytes are nothing
-    but hex; other text is rejected, so that it is not decoded by mistake. --raw and --hex choose
-    the format.
+    Any other FILE holds raw bytes or hex text. It is hex text if its first 512 bytes contain only
+    hex. Other text is rejected, so that it is not decoded by mistake. --raw and --hex choose the
+    format.
 
     \b
       cobotwire decode FE FE 06 21 01 00 1D 14 FA
@@ -228,7 +228,7 @@ def _print(text: str) -> None:
 
 @contextmanager
 def _progress(source: ByteSource, quiet: bool) -> Iterator[Iterator[bytes]]:
-    """Give the blocks of the source; show a bar for a long file if the terminal is free for it."""
+    """Yield the blocks of the source; show a bar for a long file if the terminal is not in use."""
     free = quiet or not sys.stdout.isatty()
     long = source.size is not None and source.size >= LONG_FILE
     console = Console(stderr=True)

@@ -18,12 +18,12 @@ from cobotwire.diagnose.explain import DIRECTIONS, FrameReader, Reading, format_
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.inspect.demo import Result, run
 
-# Polling repeats itself: this many requests and replies of a kind are shown, and the last ones.
+# Polling repeats the same messages. Of each kind the first ones, this many, and the last are shown.
 SHOWN_FIRST = 2
 
 
 @click.command(short_help="Drive a simulated arm; check every reply.")
-@click.option("--codec", type=click.Choice(["native", "reference"]), help="Use this codec.")
+@click.option("--codec", type=click.Choice(["native", "reference"]), help="The client's codec.")
 def demo(codec: codecs.CodecName | None) -> None:
     """Drive a simulated arm over a pseudo-terminal, and check every reply."""
     console = Console(highlight=False)
@@ -79,7 +79,7 @@ def _readings(traffic: Sequence[Traffic]) -> list[Reading | None]:
 
 
 def _worth_showing(readings: Sequence[Reading | None]) -> list[bool]:
-    """Between two commands that are not queries, show the first and last messages of a kind."""
+    """Return which messages to show: between two non-queries, the first and last of each kind."""
     shown = [False] * len(readings)
     kinds: dict[object, list[int]] = {}
     for index, reading in enumerate(readings):

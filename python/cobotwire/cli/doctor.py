@@ -24,13 +24,15 @@ MOST = 10_000
 @click.command(short_help="Examine an arm and its port; give advice.")
 @click.argument("port", metavar="URL")
 @arm_options
-@click.option("--timeout", type=float, default=0.5, show_default=True, help="Seconds per reply.")
+@click.option(
+    "--timeout", type=float, default=0.5, show_default=True, help="Seconds to wait for a reply."
+)
 @click.option(
     "--count",
     type=click.IntRange(1, MOST),
     default=20,
     show_default=True,
-    help="Round trips to time.",
+    help="How many round trips to measure.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 @click.pass_obj
@@ -45,9 +47,9 @@ def doctor(
 ) -> None:
     """Examine the arm at URL: a serial port, or a URL such as socket://host:9000.
 
-    Only harmless queries are sent, each once: nothing moves, and nothing is set. The report holds
-    the arm's state, the times of the round trips, a diagnosis of all other traffic, and advice for
-    each problem.
+    Only harmless queries are sent: nothing moves, and nothing is set. The report holds the arm's
+    state, the times of the round trips, a diagnosis of all other traffic, and advice for each
+    problem.
 
     Exit codes: 0 healthy; 1 there is a problem; 3 the port failed.
     """

@@ -36,10 +36,10 @@ def monitor(
     count: int | None,
     as_json: bool,
 ) -> None:
-    """Show joints and coordinates of the arm at URL, the rate reached, errors and noise.
+    """Show joints and coordinates of the arm at URL, the sample rate, errors and noise.
 
-    Only queries are sent. On a terminal the output is a table that is updated; elsewhere, or with
-    --json, it is a line per sample. Ctrl-C ends it, closes the port and finishes the recording.
+    Only queries are sent. On a terminal the output is a live table. Elsewhere, or with --json, it
+    is one line per sample. Ctrl-C closes the port and finishes the recording.
     """
     package = editions.load(edition)
     table = package.TABLE
@@ -54,7 +54,7 @@ def monitor(
                 for sample in samples:
                     live.update(_grid(port, sample), refresh=True)
     except KeyboardInterrupt:
-        # The usual way to end it: not a failure.
+        # Ctrl-C is the usual way to end this verb, not a failure.
         sys.exit(0)
 
 

@@ -11,14 +11,15 @@ from cobotwire.transport.serial import ports as serial_ports
 from cobotwire.transport.serial.ports import Port
 
 NOT_ALLOWED = (
-    "you may not open it; on most systems: sudo usermod -aG dialout $USER, then log in again"
+    "you have no permission to open it; on most systems: sudo usermod -aG dialout $USER, "
+    "then log in again"
 )
 
 
 @click.command(short_help="List serial ports, likely ones first.")
-@click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the ports as JSON.")
 def ports(as_json: bool) -> None:
-    """List the serial ports, likely ones first, and say why an arm is likely there.
+    """List the serial ports that may lead to an arm, likely ones first, with the reason.
 
     No port is opened. Exit codes: 0 there is a likely port; 1 there is none.
     """
@@ -26,7 +27,9 @@ def ports(as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps([port._asdict() for port in found], indent=1))
     elif not found:
-        click.echo("no serial port; is the arm's cable plugged in, and is its power on?")
+        click.echo(
+            "no serial port was found; check that the arm's cable is plugged in and its power is on"
+        )
     for port in () if as_json else found:
         click.echo("\n".join(_lines(port)))
     sys.exit(0 if any(port.likely for port in found) else 1)

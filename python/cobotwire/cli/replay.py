@@ -34,8 +34,8 @@ def replay(
 ) -> None:
     """Print the recording FILE as a timeline: seconds, direction, bytes, meaning.
 
-    With --serve a pseudo-terminal is served instead, and its name is printed. A request that was
-    recorded gets the recorded reply, with the same delay and the same noise.
+    With --serve, serve the recorded arm on a pseudo-terminal instead, and print its name. The arm
+    replies to each recorded request as recorded, with the same delay and the same noise.
 
     The edition is the one that the recording names; --edition applies if it names none.
     """
@@ -65,7 +65,7 @@ def _print_request(request: ReplayedRequest) -> None:
     size = request.reply_size
     reply = f"replied with {size} bytes" if size else "no reply"
     if size is None:
-        reply = "was not recorded"
+        reply = "this request was not recorded"
     print_line(f"received {as_hex(request.data)}   {reply}")
 
 
@@ -93,7 +93,7 @@ def _meaning(packet: Packet, codec: Codec) -> str:
             codec.decode("request" if packet.direction == "sent" else "reply", packet.data)
         )
     except ProtocolError as error:
-        # It was recorded with another edition.
+        # The frame was recorded with another edition.
         return str(error)
 
 

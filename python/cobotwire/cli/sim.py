@@ -27,12 +27,12 @@ from cobotwire.simulator.peer import Peer
 from cobotwire.simulator.tcp import address
 
 FASTEST = 1e6
-# After this time the imports that slow replies need are loaded, so that none comes late.
+# After this time the modules that some replies need are imported, so that no reply is late.
 PREPARE_AFTER_SECONDS = 0.5
 
 
 def _list_scenarios(context: click.Context, option: click.Parameter, wanted: bool) -> None:
-    """Print the scenarios of the package, and exit."""
+    """Print the fault scenarios that come with cobotwire, and exit."""
     if not wanted or context.resilient_parsing:
         return
     names = shipped()
@@ -46,7 +46,11 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
 @click.option("--pty", "on_pty", is_flag=True, help="Serve a pseudo-terminal [default].")
 @click.option("--tcp", metavar="HOST:PORT", help="Serve TCP; :0 is any free port on loopback.")
 @click.option(
-    "--speed", type=float, default=1.0, show_default=True, help="2 runs the arm twice as fast."
+    "--speed",
+    type=float,
+    default=1.0,
+    show_default=True,
+    help="The arm's speed: 2 is twice as fast.",
 )
 @click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
@@ -61,7 +65,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     is_eager=True,
     expose_value=False,
     callback=_list_scenarios,
-    help="Print the fault scenarios of the package.",
+    help="List the fault scenarios that come with cobotwire.",
 )
 @click.pass_obj
 def sim(
@@ -77,14 +81,14 @@ def sim(
 ) -> None:
     """Serve a simulated arm on a pseudo-terminal, or over TCP, until Ctrl-C.
 
-    The first line of output is the port to open. Then comes a line for each request with its reply,
-    for each request that the arm rejects or ignores, with the reason, and for each injected fault.
-    On a terminal a table shows the joints. Over TCP several clients share the arm; each line names
-    the client by number. --view draws the arm at the start, whenever it has come to rest, and at
-    the end.
+    The first line of output is the port to open. The next lines show each request with its reply,
+    each request that the arm rejects or ignores, with the reason, and each injected fault. On a
+    terminal a table shows the joints. Over TCP several clients share the arm, and each line starts
+    with the number of the client. --view draws the arm at the start, whenever it comes to rest, and
+    at the end.
     """
     if on_pty and tcp is not None:
-        raise UsageError("--tcp", tcp, message="use one of --pty and --tcp")
+        raise UsageError("--tcp", tcp, message="use either --pty or --tcp, not both")
     if not 0 < speed <= FASTEST:
         raise UsageError("speed", speed, f"above 0, up to {FASTEST:.0f}")
     if scenario is None and seed is not None:
@@ -117,12 +121,12 @@ def _server(peers: _Peers, clock: RunningClock, tcp: str | None) -> Server:
     host, port = address(tcp)
     server = TcpServer(lambda: peers.new(next(numbers)), host, port, clock)
     if not server.loopback:
-        click.echo(f"cobotwire: everybody who can reach {host} can move this arm", err=True)
+        click.echo(f"cobotwire: anyone who can reach {host} can move this arm", err=True)
     return server
 
 
 class _Peers:
-    """Makes the arm's end of each client connection: with faults, and with printed traffic."""
+    """Creates the arm's end of each connection; it injects faults and prints the traffic."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Choice of the codec: the Rust codec if its binary is installed, else the Python reference.
+"""Choose the codec: the Rust codec if its binary is installed, else the Python reference.
 
 The environment variable ``COBOTWIRE_CODEC`` (``reference`` or ``native``) forces one.
 """
@@ -21,11 +21,11 @@ def chosen() -> CodecName:
     """Return the name of the codec in use.
 
     Raises:
-        UsageError: ``COBOTWIRE_CODEC`` names no codec, or the native one and it has no binary here.
+        UsageError: ``COBOTWIRE_CODEC`` names no codec, or its binary is not installed.
     """
     forced = os.environ.get(VARIABLE, "")
     if forced not in ("", "reference", "native"):
-        raise UsageError(VARIABLE, forced, "reference or native, or unset")
+        raise UsageError(VARIABLE, forced, "native, reference, or unset")
     if forced == "reference":
         return "reference"
     if native_available():
@@ -37,9 +37,9 @@ def chosen() -> CodecName:
 
 @lru_cache(maxsize=1)
 def native_available() -> bool:
-    """Return whether the Rust codec's binary can be loaded here."""
+    """Return whether the Rust codec's binary can be loaded."""
     try:
-        import cobotwire.codec.native  # noqa: F401  (asking whether it loads is the point)
+        import cobotwire.codec.native  # noqa: F401  (imported only to see whether it loads)
     except ImportError:
         return False
     return True
@@ -49,12 +49,12 @@ def load(table: Table, name: CodecName | None = None) -> Codec:
     """Return a codec for an edition: the named one, else the one in use.
 
     Raises:
-        UsageError: there is no codec of that name, or the native one has no binary here.
+        UsageError: there is no codec of that name, or its binary is not installed.
     """
     if name is None:
         name = chosen()
     elif name not in ("reference", "native"):
-        raise UsageError("codec", name, "native or reference, or None")
+        raise UsageError("codec", name, "native, reference or None")
     elif name == "native" and not native_available():
         raise _no_binary("codec='native'")
     if name == "reference":
@@ -67,5 +67,5 @@ def load(table: Table, name: CodecName | None = None) -> Codec:
 
 
 def _no_binary(what: str) -> UsageError:
-    message = f"{what}: the native codec is not installed here; use 'reference'"
+    message = f"{what}: the native codec is not installed; use 'reference'"
     return UsageError(what, "native", "reference", message=message)

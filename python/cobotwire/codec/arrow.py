@@ -1,4 +1,4 @@
-"""Columns as an Arrow table on the same memory. The only importer of pyarrow."""
+"""Make an Arrow table of columns, on the same memory. No other module imports pyarrow."""
 
 from __future__ import annotations
 

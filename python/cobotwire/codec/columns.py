@@ -1,4 +1,4 @@
-"""Streams as columns: one for each field of each message, in the order of the stream."""
+"""Hold the messages of a stream as columns: one for each field, in the order of the stream."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class Spans(NamedTuple):
-    """The noise of a stream; adjacent stretches are joined.
+    """The spans of noise in a stream; adjacent spans are joined.
 
-    ``offset`` and ``size`` are one-dimensional memoryviews of 64-bit unsigned integers: where each
-    span starts in the stream, and how many bytes it has.
+    ``offset`` and ``size`` are one-dimensional memoryviews of 64-bit unsigned integers: the start
+    of each span in the stream, and its size in bytes.
     """
 
     offset: memoryview
@@ -26,7 +26,7 @@ class Spans(NamedTuple):
 
 
 class Scan:
-    """Where the frames of a stream are, and the noise between them; ``counters`` count both."""
+    """The places of the frames and the noise in a stream; ``counters`` counts both."""
 
     def __init__(self, offset: Buffer, noise: tuple[Buffer, Buffer], counters: Counters) -> None:
         self._offset = offset
@@ -35,12 +35,12 @@ class Scan:
 
     @property
     def offset(self) -> memoryview:
-        """Where each frame starts: 64-bit unsigned integers."""
+        """The start of each frame in the stream, as 64-bit unsigned integers."""
         return memoryview(self._offset)
 
     @property
     def noise(self) -> Spans:
-        """Where the noise is."""
+        """The spans of noise."""
         offset, size = self._noise
         return Spans(memoryview(offset), memoryview(size))
 
@@ -53,7 +53,7 @@ class Rows:
 
     A column is a memoryview of shape ``(n,)``, or ``(n, k)`` for a field that is a row of ``k``
     numbers. ``offset`` holds 64-bit unsigned integers. Fields hold physical values as float64; with
-    ``raw`` they hold raw values, in the smallest integer type for all that the field allows.
+    ``raw`` they hold raw values, in the smallest integer type for the values that the field allows.
     NumPy and Arrow use the same memory.
     """
 
@@ -73,7 +73,7 @@ class Rows:
 
     @property
     def variant(self) -> Variant:
-        """The variant's fields."""
+        """The variant of the messages, with its fields."""
         return self.command.variants(self.direction)[self.variant_index]
 
     @property
@@ -83,7 +83,7 @@ class Rows:
 
     @property
     def offset(self) -> memoryview:
-        """Where each message starts in the stream."""
+        """The start of each message in the stream."""
         return memoryview(self._offset)
 
     def __len__(self) -> int:
@@ -108,7 +108,7 @@ class Rows:
         """Return the columns as arrays on the same memory, by name, ``offset`` included.
 
         Raises:
-            ImportError: NumPy, the extra ``numpy``, is not installed.
+            ImportError: NumPy (the extra ``numpy``) is not installed.
         """
         import numpy as np
 
@@ -120,7 +120,7 @@ class Rows:
         Each field's unit is its metadata.
 
         Raises:
-            ImportError: pyarrow, the extra ``arrow``, is not installed.
+            ImportError: pyarrow (the extra ``arrow``) is not installed.
         """
         from cobotwire.codec.arrow import arrow_table
 
@@ -140,9 +140,9 @@ class Rows:
 class Columns(Sequence[Rows]):
     """The messages of a stream: the rows of each variant that occurred, in the order of the table.
 
-    ``counters`` account for every byte since the start of the stream. ``noise`` holds the places of
-    the bytes that belong to no frame. ``rejected`` holds the offsets of legal frames with a value
-    that the edition does not allow: they are in no rows, and decoding one raises the reason.
+    ``counters`` accounts for every byte since the start of the stream. ``noise`` holds the spans of
+    bytes that belong to no frame. ``rejected`` holds the offsets of legal frames with a value that
+    the edition does not allow. These frames are in no rows; decoding one raises the error.
     """
 
     def __init__(
@@ -161,12 +161,12 @@ class Columns(Sequence[Rows]):
 
     @property
     def rejected(self) -> memoryview:
-        """Where the frames start whose values the edition does not allow."""
+        """The offsets of the legal frames with a value that the edition does not allow."""
         return memoryview(self._rejected)
 
     @property
     def noise(self) -> Spans:
-        """Where the noise is."""
+        """The spans of noise."""
         offset, size = self._noise
         return Spans(memoryview(offset), memoryview(size))
 
@@ -188,11 +188,11 @@ class Columns(Sequence[Rows]):
     ) -> Rows:
         """Return the rows of one message; empty rows if it did not occur.
 
-        ``variant`` picks one of several variants by its index. It may be left out unless several
-        of them occurred.
+        ``variant`` picks one of several variants by its index. It is required only if several of
+        them occurred.
 
         Raises:
-            UsageError: no such command or variant, or several variants occurred.
+            UsageError: there is no command or variant of that name, or several variants occurred.
         """
         variants = self._table.command(command).variants(direction)
         legal = range(len(variants))
@@ -210,7 +210,8 @@ class Columns(Sequence[Rows]):
         ]
         if len(found) > 1:
             occurred = " and ".join([str(rows.variant_index) for rows in found])
-            message = f"variants {occurred} of the {command} {direction} occurred: choose variant="
+            message = f"variants {occurred} of the {command} {direction} occurred"
+            message += ": choose one with variant="
             raise UsageError(argument, variant, occurred, message=message)
         if found:
             return found[0]

@@ -1,4 +1,4 @@
-"""Frames, and the noise between them, as a framer returns them."""
+"""Define the events that a framer returns: frames, and the noise between them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class DecodedMessage(NamedTuple):
 
     @property
     def typed(self) -> Request[Any] | Reply[Any]:
-        """The same message as an object of its own type, for ``match`` and attributes."""
+        """The message as an object of its own type, for ``match`` and attribute access."""
         command = self.command
         if self.direction == "request":
             return command.request_type.from_fields(self.fields)
@@ -39,19 +39,19 @@ class DecodedMessage(NamedTuple):
 
 
 class Read(Protocol):
-    """Reads a frame that was judged before; None is every direction that the framer listened to."""
+    """Decodes a frame that a framer returned; None means every direction that it listened to."""
 
     def __call__(
         self, data: bytes, direction: Direction | None = None, of: str | None = None
     ) -> DecodedMessage:
-        """Return the first message that allows the values."""
+        """Return the frame decoded as the first message that allows its values."""
         ...
 
 
 class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a virtual subclass)
-    """A legal frame with its command id; ``offset`` is where it starts in the stream.
+    """A legal frame with its command id; ``offset`` is its start in the stream.
 
-    Its message is decoded on first use. The frames of the native codec are instances of this class
+    The message is decoded on first use. The frames of the native codec are instances of this class
     too.
     """
 
@@ -69,15 +69,15 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a 
     ) -> DecodedMessage:
         """Return what ``codec.decode(direction, frame.data, of=of)`` returns.
 
-        The framer has judged the frame, so its LEN and check are not examined again. Without a
-        direction, the result is the first message that allows the values, of any direction that
-        the framer listened to, requests first.
+        The framer has checked LEN and the check, so they are not checked again. Without a
+        direction, every direction that the framer listened to is tried, requests first; the result
+        is the first message that allows the values.
 
         Raises:
-            ProtocolError: it is not a frame of that direction or command, or a field holds a value
-                that the edition does not allow, or the edition lacks its id and the framer
-                accepted it.
-            UsageError: ``of`` names no command, or the frame was not cut by a framer.
+            ProtocolError: the frame does not belong to that direction or command; a field holds a
+                value that the edition does not allow; or the edition lacks the id, which the framer
+                was told to accept.
+            UsageError: ``of`` names no command, or no framer returned the frame.
         """
         if self._read is None:
             raise UsageError("frame", self, message=f"{self!r} was not cut by a framer")
@@ -85,7 +85,7 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a 
 
     @property
     def message(self) -> DecodedMessage:
-        """Its message: the first one that allows its values, requests first.
+        """The decoded message: the first one that allows the values, requests first.
 
         Raises:
             ProtocolError, UsageError: as :meth:`decode`.
@@ -96,7 +96,7 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a 
 
     @property
     def values(self) -> tuple[Any, ...]:
-        """The values of its message, one for each field.
+        """The values of the message, one for each field.
 
         Raises:
             ProtocolError, UsageError: as :meth:`decode`.
@@ -129,11 +129,11 @@ Event = Frame | Noise
 
 
 class Counters(NamedTuple):
-    """What a framer has received since it was made, however the stream was cut into chunks.
+    """The counts of a framer since it was created; they do not depend on the chunks.
 
-    ``bytes`` is what was fed, pending bytes included. ``frames`` counts frames by command id,
-    ``noise`` counts bytes by reason; what did not occur is not listed. ``resyncs`` counts the
-    frames that directly followed noise.
+    ``bytes`` counts the fed bytes, pending bytes included. ``frames`` counts frames by command id,
+    and ``noise`` counts bytes by reason; both omit counts of 0. ``resyncs`` counts the frames that
+    directly followed noise.
     """
 
     bytes: int

@@ -1,7 +1,7 @@
-"""The interface that the reference codec and the native codec implement.
+"""Define the interface that the reference codec and the native codec implement.
 
 Values are positional, one for each field of the variant: an ``int`` if the number has no scale, a
-``float`` if it has one, a tuple of these for a ``many`` field.
+``float`` if it has one, or a tuple of these for a ``many`` field.
 """
 
 from __future__ import annotations
@@ -40,41 +40,41 @@ class Framer(Protocol):
     """Cuts frames out of a byte stream; see the law of framing in ``docs/framing.md``."""
 
     def feed(self, data: Data) -> list[Event]:
-        """Take bytes; return what is certain by now, in the order of the stream."""
+        """Take bytes; return the events that are certain by now, in the order of the stream."""
         ...
 
     def flush(self) -> list[Event]:
-        """Refute what still waits, because the line is idle; return it and what follows it."""
+        """Stop waiting for more bytes, because the line is idle; return the remaining events."""
         ...
 
     @property
     def pending(self) -> int:
-        """How many fed bytes no event covers yet; fewer than the longest frame has."""
+        """The number of fed bytes that no event covers yet: less than the longest frame."""
         ...
 
     @property
     def counters(self) -> Counters:
-        """The counts since the framer was made."""
+        """The counts since the framer was created."""
         ...
 
 
 class ColumnReader(Protocol):
-    """Decodes a stream into columns chunk by chunk; how it is cut makes no difference."""
+    """Decodes a stream into columns, chunk by chunk; the rows do not depend on the chunks."""
 
     def feed(self, data: Data) -> Columns:
-        """Take bytes; return what has become certain since the last call.
+        """Take bytes; return the rows and noise that became certain since the last call.
 
         A span of noise is returned with the frame that ends it. The counters cover all fed bytes.
         """
         ...
 
     def flush(self) -> Columns:
-        """Refute what still waits; return the rest."""
+        """Stop waiting for more bytes; return the remaining rows and noise."""
         ...
 
     @property
     def pending(self) -> int:
-        """How many fed bytes are not accounted for yet; fewer than the longest frame has."""
+        """The number of fed bytes that are not accounted for yet: less than the longest frame."""
         ...
 
 
@@ -83,12 +83,12 @@ class Codec(Protocol):
 
     @property
     def name(self) -> Literal["reference", "native"]:
-        """Which of the two codecs it is."""
+        """The name of the codec."""
         ...
 
     @property
     def table(self) -> Table:
-        """The edition that it interprets."""
+        """The table of the edition."""
         ...
 
     def encode(
@@ -102,26 +102,26 @@ class Codec(Protocol):
     ) -> bytes:
         """Build one frame.
 
-        The variant is the first one with that number of fields that allows the values, unless
+        The first variant with that number of fields that allows the values is used, unless
         ``variant`` picks one by its index. ``address`` is only for formats with an address byte.
 
         Raises:
-            UsageError: no such command or variant, or a value that the field does not allow. If
-                several variants have that number of fields, the error is that of the first one.
+            UsageError: there is no such command or variant, or a field does not allow its value.
+                If several variants have that number of fields, the error is that of the first one.
         """
         ...
 
     def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> DecodedMessage:
-        """Read ``data``, which must be one frame and nothing else.
+        """Decode ``data``, which must be exactly one frame.
 
-        If commands share an id and a size, the result is the first that allows the values; ``of``
-        names the only command that it may be. Frames that a framer returned have
-        :meth:`Frame.decode`, which does not judge them again.
+        If commands share an id and a size, the result is the first one that allows the values;
+        ``of`` restricts it to one command. For a frame that a framer returned, use
+        :meth:`Frame.decode`, which does not check the frame again.
 
         Raises:
             UsageError: ``of`` names no command.
-            ProtocolError: it is not a legal frame of that direction, or a field holds a value that
-                the edition does not allow.
+            ProtocolError: ``data`` is not a legal frame of that direction, or a field holds a value
+                that the edition does not allow.
         """
         ...
 
@@ -137,7 +137,7 @@ class Codec(Protocol):
         accept_unknown: bool = False,
         out: Scan | None = None,
     ) -> Scan:
-        """Return where the frames of a stream are.
+        """Return the places of the frames and the noise in a stream.
 
         The result may reuse the memory of ``out``, an earlier result, which is then empty.
 

@@ -1,4 +1,4 @@
-"""The Rust codec. Importing this module fails if its binary is not installed."""
+"""Load the Rust codec; importing this module fails if its binary is not installed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The editions of the protocol: one generated package each, found by name."""
+"""Find editions of the protocol by name. Each edition is a generated package."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DEFAULT = "mycobot"
 
 
 class Edition(Protocol):
-    """What an edition's package holds."""
+    """The package of an edition."""
 
     TABLE: Table
     CLIENT: type[Client]
@@ -23,21 +23,21 @@ class Edition(Protocol):
 
 
 def names() -> list[str]:
-    """The editions that come with cobotwire."""
+    """Return the names of the editions that come with cobotwire."""
     from pkgutil import iter_modules
 
     return sorted(module.name for module in iter_modules(__path__) if module.ispkg)
 
 
 def load(name: str = DEFAULT) -> Edition:
-    """The edition called ``name``: one that comes with cobotwire, or a package of your own.
+    """Return the edition called ``name``: one that comes with cobotwire, or a package of your own.
 
-    Your own package is found as any import is, and also by the path of its folder.
+    Name your own package as in an ``import`` statement, or by the path of its folder.
 
     Raises:
-        UsageError: there is no such edition, or the package is none.
+        UsageError: there is no edition of that name, or the package is not an edition.
     """
-    # Here, not above: whoever imports an edition by its name runs this module, and needs no search.
+    # Imported here, because importing an edition directly runs this module but not this search.
     import sys
     from importlib import import_module
     from pathlib import Path
@@ -54,9 +54,10 @@ def load(name: str = DEFAULT) -> Edition:
         from difflib import get_close_matches
 
         near = get_close_matches(name, names(), n=1)
-        hint = f"; did you mean {near[0]}?" if near else ""
-        allowed = f"one of {', '.join(names())}, or a package that cobotwire-gen build made{hint}"
-        raise UsageError("edition", name, allowed) from None
+        hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(names())}"
+        message = f"there is no edition {name!r}; {hint}"
+        raise UsageError("edition", name, message=message) from None
     if not hasattr(package, "TABLE") or not hasattr(package, "CLIENT"):
-        raise UsageError("edition", name, "a package that cobotwire-gen build made")
+        message = f"{name} is not an edition; `cobotwire-gen build` makes packages that are"
+        raise UsageError("edition", name, message=message)
     return cast(Edition, package)

@@ -11,7 +11,7 @@ from cobotwire.client import Traffic
 from cobotwire.editions.mycobot import TABLE, Angles, Coords, MyCobot, TargetKind
 from cobotwire.simulator import PtyServer, SimulatedArm
 
-# Angles and coordinates that were read from a real arm. They are whole encoder ticks.
+# Angles and coordinates that were read from a real arm. The angles are whole encoder ticks.
 TARGET = Angles(95.18, -0.61, -0.61, -0.61, 88.85, -1.31)
 COORDS_AT_TARGET = Coords(15.3, 7.9, 410.7, -90.03, 0.52, 94.04)
 TOOL = Coords(0.0, 0.0, 50.0, 0.0, 0.0, 0.0)
@@ -30,7 +30,7 @@ class Check(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Return whether the value is right."""
+        """Whether the value is right."""
         return bool(self.found == self.expected)
 
 
@@ -42,7 +42,7 @@ class Result(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Return whether every value is right."""
+        """Whether every value is right."""
         return all(check.passed for check in self.checks)
 
 
@@ -56,7 +56,7 @@ def run(
     Args:
         report: called with a sentence before each step.
         progress: called with the completed share of the motion, 0..1.
-        codec: the codec that the client uses; without it, the default one.
+        codec: the client's codec; None chooses the default one.
 
     Raises:
         CobotwireError: the arm could not be reached, or it did not reply.
@@ -105,7 +105,7 @@ def _move(
     return [
         Check("is_in_position", reached, True),
         Check("get_angles at the target", arm.get_angles(), TARGET),
-        Check("get_coords at the target, as of a real arm", arm.get_coords(), COORDS_AT_TARGET),
+        Check("get_coords at the target, as on a real arm", arm.get_coords(), COORDS_AT_TARGET),
     ]
 
 

@@ -17,7 +17,7 @@ from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.transport import OpenedTransport
 
-# What comes before the first request was not requested.
+# The time to listen before the first request: what is received then was not requested.
 QUIET_SECONDS = 0.3
 # After this many requests in a row without a reply, no more are sent.
 SILENT = 3
@@ -36,13 +36,13 @@ class RoundTrip(NamedTuple):
 
 @dataclass
 class Report:
-    """What an examination has found so far.
+    """The results of an examination so far.
 
     Attributes:
         url: the port.
         edition: the edition that the client uses.
         kind: the kind of transport; empty if the port was never open.
-        low_latency: whether the port could be set to low latency.
+        low_latency: whether the port was set to low latency.
         latency_timer_ms: the adapter's latency timer, if the system has one.
         values: the results of the queries by command name.
         requests: the number of requests that were sent.
@@ -70,18 +70,19 @@ class Report:
 
     @property
     def healthy(self) -> bool:
-        """Return whether there is no serious problem."""
+        """Whether there is no serious problem."""
         return not any(problem.serious for problem in self.problems)
 
     def add_port_failure(self, error: LinkError) -> None:
-        """Add, as the first problem, that the port could not be opened or went away."""
+        """Insert as the first problem that the port could not be opened or disappeared."""
         self.problems.insert(0, Problem("link", str(error), advice.PORT))
 
 
 def harmless_queries(table: Table) -> list[Command]:
     """Return the queries that have a role, or else one query without arguments.
 
-    Other queries are not sent: one that a firmware does not know froze it until its power was cut.
+    Other queries are not sent, because a query that a firmware did not know froze it until its
+    power was cut.
     """
     queries = [command for command in table.commands if command.safety == "query"]
     known = [command for command in queries if command.role in ROLES]
@@ -92,7 +93,7 @@ def harmless_queries(table: Table) -> list[Command]:
 
 
 class Doctor:
-    """Examines an arm into a report, which is also valid if the port goes away meanwhile."""
+    """Examines an arm and fills a report, which stays valid if the port disappears meanwhile."""
 
     def __init__(
         self, arm: Client, transport: OpenedTransport, codec: Codec, report: Report
@@ -106,7 +107,7 @@ class Doctor:
         report.kind, report.low_latency = transport.kind, transport.low_latency
 
     def examine(self, count: int) -> Report:
-        """Listen, send each query once, and then ``count`` times the one for the joints."""
+        """Listen, send each query once, then send the query for the joints ``count`` times."""
         remove_listener = self._arm.add_traffic_listener(self._listener)
         try:
             self._arm.listen(QUIET_SECONDS)
@@ -151,7 +152,7 @@ class Doctor:
     def _reply_problems(self) -> list[Problem]:
         report, found = self._report, []
         if self._illegal:
-            text = f"{len(self._illegal)} illegal replies, the first to {self._illegal[0]}"
+            text = f"illegal replies: {len(self._illegal)}, the first to {self._illegal[0]}"
             found.append(Problem("illegal-reply", text, advice.ILLEGAL))
         lost = report.requests - report.replies - len(self._illegal)
         if lost and lost == report.requests:
@@ -161,7 +162,8 @@ class Doctor:
             text = f"no reply in time to {lost} of {report.requests} requests"
             found.append(Problem("lost-replies", text, advice.LOST))
         if report.late:
-            found.append(Problem("late-replies", f"{report.late} came too late", advice.LATE))
+            text = f"replies after their deadline: {report.late}"
+            found.append(Problem("late-replies", text, advice.LATE))
         for command in self._queries:
             if command.role == "powered" and report.values.get(command.name) is False:
                 text = "the arm is switched off"

@@ -1,4 +1,4 @@
-"""Read for how long a USB adapter holds short replies back."""
+"""Read how long a USB adapter holds back short replies."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ SYSTEM = Path("/sys")
 
 
 def latency_timer(url: str, system: Path = SYSTEM) -> tuple[int, Path] | None:
-    """Return the latency timer in milliseconds, and its file; None if the system has none.
+    """Return the latency timer of a port in milliseconds, and its file; None if there is none.
 
-    Linux has one for FTDI adapters.
+    Linux has a latency timer for FTDI adapters.
     """
     if "://" in url:
         return None

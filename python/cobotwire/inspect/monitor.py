@@ -13,7 +13,7 @@ from cobotwire.inspect.traffic_listener import DiagnosingListener
 from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
 from cobotwire.protocol.table import Command, Role
 
-# The rate is that of the last samples, this many.
+# The rate is computed over this many samples, the most recent ones.
 WINDOW = 10
 FASTEST = 1000.0
 ROLES: tuple[Role, ...] = ("joints", "coordinates")
@@ -23,7 +23,7 @@ class Observation(NamedTuple):
     """The state of the arm and its port at one time.
 
     Attributes:
-        time: seconds from the beginning.
+        time: seconds since the first sample.
         values: the results by command name; None if there was no legal reply.
         rate: samples a second over the last few; 0 for the first.
         unanswered: requests without a legal reply, so far.
@@ -47,7 +47,7 @@ class Monitor:
     """Samples the joints and coordinates of an arm, and listens to the port in between.
 
     A sample with a missing reply is part of the result, so that the user sees that the arm is
-    silent; a client's ``stream`` skips it.
+    silent. A client's ``stream()`` skips this sample.
     """
 
     def __init__(self, arm: Client, codec: Codec, rate: float) -> None:
@@ -69,7 +69,7 @@ class Monitor:
         """Yield ``count`` samples, or samples without end.
 
         Raises:
-            LinkError: the port went away.
+            LinkError: the port disappeared.
         """
         remove_listener = self._arm.add_traffic_listener(self._listener)
         times: deque[float] = deque(maxlen=WINDOW)
@@ -80,7 +80,7 @@ class Monitor:
                 times.append(time.monotonic())
                 yield self._sample(started, times)
                 taken += 1
-                # Missed samples are not made up for: the arm is busy enough.
+                # Missed samples are not taken later, because the arm is busy enough.
                 due = max(due + 1 / self._rate, time.monotonic())
                 if taken != count:
                     self._arm.listen(max(0.0, due - time.monotonic()))

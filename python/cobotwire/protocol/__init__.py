@@ -1,1 +1,1 @@
-"""What an edition is: records, values, limits, errors. The only place that knows these rules."""
+"""Define what an edition is: records, values, limits, errors. Nothing else knows these rules."""

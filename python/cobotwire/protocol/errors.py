@@ -1,7 +1,7 @@
-"""Every error that cobotwire raises, sorted by whose fault it is.
+"""Define every error that cobotwire raises: one class for each party that can be at fault.
 
-One root has seven branches; each is also the built-in exception that a caller would expect. The
-attributes are data, and the text is made from them here and nowhere else.
+Most classes also derive from the built-in exception that a caller would expect. The attributes are
+data, and this module alone makes the text from them.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import Any
 
 
 class CobotwireError(Exception):
-    """The root of every error that cobotwire raises on purpose.
+    """The base class of every error that cobotwire raises.
 
-    It can be pickled, so it keeps its attributes when it leaves another process.
+    Errors keep their attributes when they are pickled, for example between processes.
     """
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -23,21 +23,21 @@ class CobotwireError(Exception):
 def _again(kind: type[CobotwireError], args: tuple[Any, ...]) -> CobotwireError:
     """Return an unpickled error with its text; pickle restores the attributes afterwards."""
     error = kind.__new__(kind)
-    # Not the subclass's constructor: that takes the data that the text was made from.
+    # The subclass's constructor takes the data from which it makes the text, not the text.
     Exception.__init__(error, *args)
     return error
 
 
 class UsageError(CobotwireError, ValueError):
-    """The caller's fault, found before a byte was sent.
+    """An error of the caller, detected before a byte was sent.
 
     The text is ``ARGUMENT is VALUE; allowed: ALLOWED`` for a bad value. For everything else (a file
     that does not exist, a missing argument or package) ``message`` is the whole text.
 
     Attributes:
-        argument: where in the call, for example ``angles[2]``.
-        value: what was given; None if the error is not about a value.
-        allowed: which values are allowed; empty if the error is not about a value.
+        argument: the argument at fault, for example ``angles[2]``.
+        value: the value that was given; None if the error is not about a value.
+        allowed: the allowed values in words; empty if the error is not about a value.
     """
 
     def __init__(
@@ -50,28 +50,28 @@ class UsageError(CobotwireError, ValueError):
 
 
 class ProtocolError(CobotwireError):
-    """The peer's fault: bytes that the protocol does not allow.
+    """An error of the peer: bytes that the protocol does not allow.
 
     Attributes:
-        reason: a word for programs: a noise reason, ``bad-value``, ``trailing`` or ``bad-text``.
-        offset: which byte of ``data`` is wrong.
-        data: the bytes in question.
+        reason: a code for programs: a noise reason, ``bad-value``, ``trailing`` or ``bad-text``.
+        offset: the index of the wrong byte in ``data``.
+        data: the rejected bytes.
     """
 
     def __init__(self, reason: str, offset: int, data: bytes, detail: str) -> None:
         self.reason = reason
         self.offset = offset
         self.data = data
-        super().__init__(f"{detail} (at byte {offset} of {data.hex(' ').upper() or 'nothing'})")
+        super().__init__(f"{detail} (at byte {offset} of {data.hex(' ').upper() or 'no bytes'})")
 
 
 class LinkError(CobotwireError, OSError):
-    """The transport's fault: the port could not be opened, or it went away.
+    """An error of the transport: the port could not be opened, or it disappeared.
 
     Attributes:
-        url: the port or URL in question.
-        detail: what went wrong with it.
-        written: how many bytes were written before the write failed.
+        url: the port or URL.
+        detail: what happened.
+        written: the number of bytes that were written before the write failed.
     """
 
     def __init__(self, url: str, detail: str, written: int = 0) -> None:
@@ -82,13 +82,14 @@ class LinkError(CobotwireError, OSError):
 
 
 class ReplyTimeout(CobotwireError, TimeoutError):
-    """The deadline passed without the reply, or without the acknowledgement that was waited for.
+    """The reply, or the requested acknowledgement, did not arrive before the deadline.
 
     Attributes:
         command: the name of the command.
-        waited: seconds from the request to giving up.
-        received: what came meanwhile instead, one line each.
-        attempts: how often the request was sent; 0 if a late reply could be mistaken for its own.
+        waited: seconds from the request to the error.
+        received: what was received instead, one line each.
+        attempts: how often the request was sent; 0 if it was held back all the time, because an
+            outstanding reply could have been mistaken for its own.
         request: the call with its arguments, for example ``get_encoder(joint=1)``.
     """
 
@@ -115,14 +116,14 @@ class ReplyTimeout(CobotwireError, TimeoutError):
 
 
 class MotionTimeout(CobotwireError, TimeoutError):
-    """The arm did not reach its target in time, or stopped before it.
+    """The arm did not reach its target in time, or it stopped short of the target.
 
-    The arm is not stopped: call ``stop()`` if it should be.
+    Nothing stops the arm when this error is raised: call ``stop()`` if it must not move on.
 
     Attributes:
-        target: where the arm was sent.
-        waited: seconds from the start of waiting to giving up.
-        standing: whether the arm stood still at the end; False if that is not known.
+        target: the target of the motion.
+        waited: seconds from the start of the wait to the error.
+        standing: whether the arm stood still at the end; False if this is not known.
     """
 
     def __init__(self, target: tuple[float, ...], waited: float, standing: bool) -> None:
@@ -134,11 +135,11 @@ class MotionTimeout(CobotwireError, TimeoutError):
 
 
 class CaptureError(CobotwireError, ValueError):
-    """A file's fault: it is not a recording, is damaged, or cannot be continued.
+    """An error in a recording: it is not a pcapng file, is damaged, or cannot be completed.
 
     Attributes:
-        name: the file.
-        offset: where the faulty block starts in the file, in bytes.
+        name: the name of the file.
+        offset: the offset of the faulty block in the file, in bytes.
     """
 
     def __init__(self, name: str, offset: int, detail: str) -> None:
@@ -148,7 +149,7 @@ class CaptureError(CobotwireError, ValueError):
 
 
 class ScenarioError(CobotwireError, ValueError):
-    """A scenario file's fault: it cannot be used.
+    """An error in a scenario file.
 
     Attributes:
         problems: every problem in the order of the file, each as ``file:line:column: what``.

@@ -1,6 +1,7 @@
-"""The data bytes of a message: numbers, fields and variants, with the rules for reading them.
+"""Define the data bytes of a message: numbers, fields and variants, and the rules to read them.
 
-A *raw value* is what a number holds after its sign rule. A *physical value* is that in units.
+A *raw value* is a number as it is on the wire, after its sign rule. A *physical value* is the same
+number in units.
 """
 
 from __future__ import annotations
@@ -49,12 +50,12 @@ class Number:
         return (0 if self.signed_at >= top else self.signed_at - top), min(self.signed_at, top)
 
     def unpack(self, data: bytes, offset: int = 0) -> int:
-        """Return the raw value that stands at ``offset``."""
+        """Return the raw value at ``offset``."""
         unsigned = int.from_bytes(data[offset : offset + self.width], self.order)
         return unsigned - 256**self.width if unsigned > self.signed_at else unsigned
 
     def pack(self, raw: int) -> bytes:
-        """Return the bytes of a raw value; of one that does not fit, the lowest ``width`` bytes."""
+        """Return the bytes of a raw value: its lowest ``width`` bytes if it does not fit."""
         return (raw % (1 << 8 * self.width)).to_bytes(self.width, self.order)
 
     def physical(self, raw: int) -> int | float:
@@ -66,24 +67,24 @@ class Number:
         return Fraction(raw * self.multiply, self.divide)
 
     def steps(self, physical: float) -> float:
-        """Return the raw value of a physical value before it is rounded.
+        """Return the raw value of a physical value, not yet rounded to an integer.
 
-        The arithmetic is IEEE double, step by step, so that all codecs encode the same bytes.
+        Each operation uses IEEE doubles, so that all codecs encode the same bytes.
         """
         return physical * self.divide / self.multiply
 
     def raw(self, physical: float) -> int:
-        """Return the raw value nearest to a physical value; of two, the even one."""
+        """Return the raw value nearest to a physical value; ties go to the even one."""
         return round(self.steps(physical)) if self.scaled else int(physical)
 
     def clamp(self, raw: int) -> int:
-        """Return the raw value between the bounds that is nearest to ``raw``."""
+        """Return ``raw``, limited to the bounds of the number."""
         return min(max(raw, self.minimum), self.maximum)
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """How a field reads while its selector holds one of ``when``; ``()`` if it has no selector."""
+    """The numbers of a field if its selector is one of ``when``; ``()`` if it has no selector."""
 
     when: tuple[int, ...]
     numbers: tuple[Number, ...]
@@ -111,7 +112,7 @@ class Field:
 
     @property
     def size(self) -> int:
-        """Bytes on the wire."""
+        """The number of bytes on the wire."""
         return sum([number.width for number in self.cases[0].numbers])
 
     @property
@@ -131,7 +132,8 @@ class Field:
     def case(self, selected: int | None) -> Case | None:
         """Return the case that applies while the selector holds the raw value ``selected``.
 
-        A field without a selector has one case, which always applies. None: no case applies.
+        A field without a selector has one case, which always applies. Return None if no case
+        applies.
         """
         if self.selector < 0:
             return self.cases[0]
@@ -155,7 +157,7 @@ class Variant:
 
     @property
     def size(self) -> int:
-        """Data bytes on the wire, without header, LEN, command id and check."""
+        """The number of data bytes on the wire, without header, LEN, command id and check."""
         return sum([field.size for field in self.fields])
 
     def case(self, field: Field, values: Sequence[Any]) -> Case:
@@ -174,11 +176,11 @@ class Variant:
         return case
 
     def raw_case(self, field: Field, rows: RawRows) -> Case | None:
-        """Return the case of a field in a message with these raw values; None: none applies."""
+        """Return the case of a field in a message with these raw values; None if none applies."""
         return field.case(None if field.selector < 0 else rows[field.selector][0])
 
     def start(self, index: int) -> int:
-        """Return where the field at ``index`` starts in the data bytes."""
+        """Return the offset of the field at ``index`` in the data bytes."""
         return sum([field.size for field in self.fields[:index]])
 
     def unpack(self, data: bytes) -> list[tuple[int, ...]]:
@@ -199,7 +201,7 @@ class Variant:
     def pack(self, rows: RawRows) -> bytes:
         """Return the data bytes of raw values, whether or not the fields allow them.
 
-        A field reads as its first case if none applies.
+        If no case of a field applies, its first case is used.
         """
         return b"".join(
             [

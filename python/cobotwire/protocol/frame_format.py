@@ -1,4 +1,4 @@
-"""The frame around the data bytes of a message, with the rules for its LEN and its check."""
+"""Define the frame around the data bytes of a message, and the rules for its LEN and its check."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class FrameFormat:
 
     ``check`` is a fixed ``footer``; or a CRC-16/MODBUS over everything before it, high byte first;
     or the low byte of the sum of CMD and DATA. If ``addresses`` is not empty, every frame has an
-    address byte, one of these; the first one is sent unless the caller chooses another.
+    address byte, which is one of them. The first one is sent unless the caller chooses another.
     """
 
     header: bytes
@@ -29,19 +29,19 @@ class FrameFormat:
 
     @property
     def check_size(self) -> int:
-        """Bytes of the check."""
+        """The number of bytes of the check."""
         if self.check == "footer":
             return len(self.footer)
         return 2 if self.check == "crc16-modbus" else 1
 
     @property
     def length_at(self) -> int:
-        """Where LEN stands in a frame. CMD follows it."""
+        """The offset of LEN in a frame; CMD follows LEN."""
         return len(self.header) + (1 if self.addresses else 0)
 
     @property
     def overhead(self) -> int:
-        """Bytes of a frame that LEN does not count: header, address and LEN itself."""
+        """The number of bytes that LEN does not count: header, address and LEN itself."""
         return self.length_at + 1
 
     def data(self, frame: bytes) -> bytes:
@@ -49,7 +49,7 @@ class FrameFormat:
         return frame[self.overhead + 1 : len(frame) - self.check_size]
 
     def address(self, frame: bytes) -> int | None:
-        """Return the address byte of a frame; None if the format has none."""
+        """Return the address byte of a frame; None if the format has no addresses."""
         return frame[self.length_at - 1] if self.addresses else None
 
     def end(self, body: bytes) -> bytes:
@@ -62,7 +62,10 @@ class FrameFormat:
 
 
 def crc16_modbus(data: bytes) -> int:
-    """Return the CRC-16/MODBUS: polynomial 0x8005 reflected, start FFFF; ``123456789``: 4B37."""
+    """Return the CRC-16/MODBUS: reflected polynomial 0x8005, initial value 0xFFFF.
+
+    The CRC of ``123456789`` is 0x4B37.
+    """
     crc = 0xFFFF
     for byte in data:
         crc ^= byte

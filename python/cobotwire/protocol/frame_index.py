@@ -1,4 +1,4 @@
-"""The legal frames of one direction: which messages a command id and a LEN can stand for."""
+"""Find the messages of one direction that can have a command id and a LEN."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class MessageVariant(NamedTuple):
 
     @property
     def variant(self) -> Variant:
-        """Its data bytes."""
+        """The variant itself, with its fields."""
         return self.command.variants(self.direction)[self.variant_index]
 
 
@@ -40,7 +40,7 @@ class FrameIndex:
         self.lengths = {length for _, length in self._found}
 
     def find(self, id: int, length: int) -> list[MessageVariant]:
-        """Return the messages with that command id and LEN; none if such a frame is illegal."""
+        """Return the messages with that command id and LEN; an empty list if there are none."""
         return self._found.get((id, length), [])
 
     def has(self, id: int) -> bool:

@@ -1,4 +1,4 @@
-"""Import the parts of a generated package only when one of their names is asked for."""
+"""Import each part of a generated package when one of its names is first used."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ def lazy_names(
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Return ``__getattr__`` and ``__dir__`` for a package.
 
-    A program uses few of an edition's commands, and a delta edition takes single classes from its
-    base: neither must pay for the rest.
+    A program uses few of an edition's commands, and a delta edition uses few classes of its base.
+    Neither should import the rest.
 
     Args:
         package: the full name of the package.
-        named: the names that are known to be in a module, by the module.
-        searched: the modules that are searched, in this order, for any other name; they are
-            attributes of the package themselves.
+        named: for each module, the names that it is known to define.
+        searched: the modules to search, in this order, for any other name; they are also
+            attributes of the package.
     """
     homes = {name: module for module, names in named.items() for name in names}
     parts = {module.rpartition(".")[2]: module for module in searched}

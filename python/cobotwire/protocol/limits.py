@@ -1,7 +1,7 @@
-"""Limits of targets, narrower or wider than the edition's: a table made from a table.
+"""Make a table with other limits for targets, narrower or wider than the edition's.
 
-The edition's own limits are the ranges of its request fields, and the codec checks them before a
-byte is sent. Other limits are the same table with other ranges, so nothing else has to check.
+The limits of an edition are the ranges of its request fields, which the codec checks before a byte
+is sent. With other limits the codec checks other ranges, so no other code has to check them.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ Ranges = Sequence[Range | None]
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Where the arm may be sent: the lowest and the highest target of each part.
+    """The lowest and the highest target of each joint and coordinate.
 
-    None keeps the edition's limit of a part, or of all parts. Only targets are limited. A command
-    that moves the arm by a distance (``jog_increment``), or until it is stopped, is not.
+    None keeps the edition's limit of one part, or of all parts. Only targets are limited. Commands
+    that move the arm by a distance (``jog_increment``), or until it is stopped, are not limited.
 
     Attributes:
-        joints: degrees, a range for each joint, base first.
-        coords: millimetres for x, y, z, then degrees for rx, ry, rz.
-        wider: allows ranges beyond the edition's, as far as the wire can carry them.
+        joints: a range in degrees for each joint, base first.
+        coords: a range for each coordinate: x, y, z in millimetres, then rx, ry, rz in degrees.
+        wider: whether ranges may exceed the edition's, up to what the wire can carry.
     """
 
     joints: Ranges | None = None
@@ -37,7 +37,7 @@ class Limits:
 
 
 def limited(table: Table, limits: Limits) -> Table:
-    """Return the same edition with other limits.
+    """Return the table of the same edition with other limits.
 
     Raises:
         UsageError: a range is not a pair of numbers, or is wider than the edition's (with
@@ -125,13 +125,13 @@ def _single(variant: Variant, rule: _Rule) -> Variant:
 
 
 def _value_of(picker: Field, name: str, part: int) -> int:
-    """Return the number that picks a part: that of its label, or counted from one."""
+    """Return the raw value that picks a part: by its label, or else counted from 1."""
     labels = [label.lower() for label in picker.labels]
     return picker.choices[labels.index(name)] if name in labels else part + 1
 
 
 def _raw(number: Number, value: float) -> Fraction:
-    """Return the exact raw value of a decimal number as it was written: 0.1 is a tenth."""
+    """Return the exact raw value of a number, read as its decimal text: 0.1 is one tenth."""
     return Fraction(str(value)) / number.exact(1)
 
 

@@ -25,7 +25,7 @@ VERSION = 2
 
 
 def load_table(package: str) -> Table:
-    """Return the table of a generated package, by the package's full name.
+    """Return the table of a generated package, which is given by its full name.
 
     Raises:
         ValueError: another version of cobotwire-gen made the package.
@@ -50,7 +50,7 @@ def load_table(package: str) -> Table:
 
 
 def load_places(package: str) -> dict[str, str]:
-    """Return where the spec states each command: ``file:line``, and where a delta changed it."""
+    """Return the place of each command in the spec: ``file:line``, and where a delta changed it."""
     return {record["name"]: record["place"] for record in _document(package)["commands"]}
 
 
@@ -63,13 +63,13 @@ def _document(package: str) -> Record:
     if document["version"] != VERSION:
         raise ValueError(
             f"{path} has version {document['version']} of the format, not {VERSION}; "
-            "generate the package again"
+            "generate the package again with cobotwire-gen"
         )
     return document
 
 
 class _Reader:
-    """Turns the document's records into the table's; equal parts are made once."""
+    """Turns the document's records into those of a table; shared types are converted once."""
 
     def __init__(self, document: Record, package: str) -> None:
         self._package = package

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence  # noqa: F401  (Sequence stands in annotations)
+from collections.abc import Callable, Sequence  # noqa: F401  (annotations use Sequence)
 from functools import cache, lru_cache
 from importlib import import_module
 from types import new_class
@@ -14,17 +14,17 @@ MessageTypes = tuple[type[Request[Any]], type[Reply[Any]] | None]
 
 
 class FieldShape(NamedTuple):
-    """What a message class must know of a field."""
+    """What a message class needs to know about a field."""
 
     name: str
     type: str
     """The annotation, as text."""
     optional: bool
-    """Whether a variant of the message leaves it out, or it repeats the request."""
+    """Whether a variant of the message leaves the field out, or the field echoes the request."""
 
 
 class MessageShape(NamedTuple):
-    """What a message class must know of a command's request or reply, fields in wire order."""
+    """What a message class needs to know about a request or reply, with fields in wire order."""
 
     fields: tuple[FieldShape, ...]
     text: tuple[str, ...] = ()
@@ -46,8 +46,8 @@ def generated_types(package: str, command: str) -> MessageTypes:
 def made_types(command: str, request: MessageShape, reply: MessageShape | None) -> MessageTypes:
     """Make the message types of a command; equal shapes give the same types.
 
-    A table does not know enum classes, named tuples or radians: there the fields hold integers,
-    tuples and the units of the wire.
+    A table has no enum classes, named tuples or radians, so the fields hold integers, tuples and
+    the units of the wire.
     """
     name = class_name(command)
     keywords: dict[str, Any] = {"command": command, "wire": _wire(request), "text": request.text}
@@ -61,7 +61,7 @@ def made_types(command: str, request: MessageShape, reply: MessageShape | None) 
 
 
 def _body(shape: MessageShape, doc: str) -> Callable[[dict[str, Any]], None]:
-    """Return what fills the body of a class: annotations, and None for optional fields."""
+    """Return a function that fills the body of a class: annotations, and None as defaults."""
     required = {field.name: field.type for field in shape.fields if not field.optional}
     optional = {field.name: field.type for field in shape.fields if field.optional}
     annotations = required | {name: "str" for name in shape.text} | optional
@@ -72,7 +72,7 @@ def _body(shape: MessageShape, doc: str) -> Callable[[dict[str, Any]], None]:
 
 
 def _wire(shape: MessageShape) -> tuple[str, ...]:
-    """Return the order of the wire, where it is not that of declaration."""
+    """Return the field names in wire order; empty if that is the order of declaration."""
     names = [field.name for field in shape.fields]
     declared = sorted(shape.fields, key=lambda field: field.optional)
     return tuple(names) if names != [field.name for field in declared] else ()

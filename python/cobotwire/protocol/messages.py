@@ -1,4 +1,4 @@
-"""Messages as typed objects: a class for each command's request, and one for its reply.
+"""Define messages as typed objects: one class for each command's request, and one for its reply.
 
 The generator writes these classes into an edition's ``messages.py``. For a table without a
 generated package, :mod:`cobotwire.protocol.made_messages` makes them from the table's records.
@@ -11,8 +11,8 @@ A subclass names its fields by annotations, from which type checkers derive its 
     class GetEncoderReply(Reply[int], to=GetEncoder):
         encoder: int
 
-Every client loads two hundred of these classes, so making one must take microseconds: neither
-``dataclasses`` nor the run-time part of ``typing.Generic`` is used.
+Every client loads two hundred of these classes, so creating one must take only microseconds. For
+this reason neither ``dataclasses`` nor the run-time part of ``typing.Generic`` is used.
 """
 
 from __future__ import annotations
@@ -38,21 +38,21 @@ Result = TypeVar("Result", covariant=True)
 class Message:
     """A request or a reply, with its fields as attributes.
 
-    Messages are immutable, and equal when type and fields are equal. A field that this variant of
-    the message leaves out is None.
+    Messages are immutable. Two messages are equal if their types and fields are equal. A field that
+    this variant of the message leaves out is None.
     """
 
     command: ClassVar[str] = ""
     """The name of the command."""
 
     _names: ClassVar[tuple[str, ...]] = ()
-    # Names and constants in the order of the wire; empty where that is the order of declaration.
+    # Names and constants in wire order; empty if that is the order of declaration.
     _wire: ClassVar[tuple[str | int, ...]] = ()
     _radians: ClassVar[frozenset[str]] = frozenset()
     _text: ClassVar[tuple[str, ...]] = ()
     # Fields that hold several numbers.
     _rows: ClassVar[tuple[str, ...]] = ()
-    # Whether the attributes are the values of the wire, one by one.
+    # Whether the attributes, in their order, are the values of the frame.
     _direct: ClassVar[bool] = True
     _converters: ClassVar[Mapping[str, Callable[[Any], Any]] | None] = None
 
@@ -63,18 +63,17 @@ class Message:
         radians: tuple[str, ...] = (),
         text: tuple[str, ...] = (),
     ) -> None:
-        """Note the fields of a class, and how they stand on the wire.
+        """Record the fields of a class, and their order on the wire.
 
         Args:
-            wire: field names and constants in the order of the wire, where it is not the order of
-                declaration.
+            wire: field names and constants in wire order, if it is not the order of declaration.
             radians: fields in radians, which the wire carries in degrees.
             text: fields of text outside the frame.
         """
         annotations = cls.__annotations__
         names = tuple(annotations)
         cls._names = names
-        # Type checkers derive it from the annotations, and forbid to set it.
+        # Type checkers derive it from the annotations, and forbid setting it.
         type.__setattr__(cls, "__match_args__", names)
         cls._rows = tuple([name for name in names if annotations[name].startswith("Sequence")])
         if wire or radians or text or (names and names[-1] in cls.__dict__):
@@ -108,7 +107,7 @@ class Message:
 
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any]) -> Self:
-        """Return the message with these fields, given as the codec decodes them.
+        """Return the message with these fields, which the codec has decoded.
 
         Numbers become enum members, rows become named tuples, and degrees become radians, as the
         class declares. Names that the class does not have are ignored.
@@ -127,7 +126,7 @@ class Message:
 
     @property
     def fields(self) -> dict[str, Any]:
-        """The fields by name, as the codec encodes them; without those that are None."""
+        """The fields by name, as the codec encodes them, without those that are None."""
         fields = {name: value for name, value in self.__dict__.items() if value is not None}
         for name in self._radians & fields.keys():
             fields[name] = to_degrees(fields[name])
@@ -168,13 +167,13 @@ class Message:
 
 
 class Request(Message, Generic[Result]):
-    """A message to the arm; ``Result`` is what the client's method for it returns."""
+    """A message to the arm; ``Result`` is the type that the client's method returns."""
 
     reply_type: ClassVar[type[Reply[Any]] | None] = None
-    """The class of the reply; None where nothing replies."""
+    """The class of the reply; None for a one-way request."""
 
     def __init_subclass__(cls, *, command: str, **layout: Any) -> None:
-        """Note the command's name; ``layout`` is what :meth:`_declare` takes."""
+        """Record the command's name; pass ``layout`` to :meth:`_declare`."""
         cls._declare(**layout)
         cls.command = command
 
@@ -193,22 +192,22 @@ class Request(Message, Generic[Result]):
 
 
 class Reply(Message, Generic[Result]):
-    """A message from the arm. Fields that every reply has come first; the others may be None."""
+    """A message from the arm. Required fields come first; optional fields may be None."""
 
     request_type: ClassVar[type[Request[Any]]]
-    """The class of the request that it replies to."""
+    """The class of the request."""
     _results: ClassVar[tuple[str, ...]] = ()
     _result_type: ClassVar[Callable[..., Any] | None] = None
 
     def __init_subclass__(
         cls, *, to: type[Request[Any]], result: Callable[..., Any] | None = None, **layout: Any
     ) -> None:
-        """Note the request's class, and what every message declares.
+        """Record the request's class, and what every message declares.
 
         Args:
             to: the class of the request.
-            result: the named tuple of the results, where there are several.
-            layout: what :meth:`_declare` takes.
+            result: the named tuple of the results, if there are several.
+            layout: arguments for :meth:`_declare`.
         """
         cls._declare(**layout)
         cls.command = to.command
@@ -219,7 +218,7 @@ class Reply(Message, Generic[Result]):
 
     @property
     def result(self) -> Result:
-        """What the client's method returns."""
+        """The value that the client's method returns."""
         own, names, result_type = self.__dict__, self._results, self._result_type
         found: Any = None
         if result_type is not None:
@@ -278,7 +277,7 @@ def _converters_of(message: type[Message]) -> dict[str, Callable[[Any], Any]]:
 
 
 def _converter(hint: object) -> Callable[[Any], Any] | None:
-    """Return the function that makes a value of an annotation out of a decoded one, if any."""
+    """Return the function that converts a decoded value to ``hint``; None if none is needed."""
     if not isinstance(hint, type):
         return None
     if issubclass(hint, tuple) and hasattr(hint, "_make"):

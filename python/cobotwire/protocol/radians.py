@@ -1,4 +1,4 @@
-"""Degrees as radians and back, for single numbers and rows of them."""
+"""Convert degrees to radians and back, for single numbers and rows of numbers."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 
 
 def to_degrees(radians: Any) -> Any:
-    """Return radians as degrees: a number or a row of numbers; anything else comes back as it is.
+    """Convert a number or a row of numbers to degrees; return anything else unchanged.
 
-    The codec rejects what is not a number, and its message shows the value that the caller gave.
+    The codec rejects values that are not numbers, and its message shows them as they were given.
     """
     if _is_number(radians):
         return math.degrees(radians)
@@ -22,7 +22,7 @@ def to_degrees(radians: Any) -> Any:
 
 
 def to_radians(degrees: Any) -> Any:
-    """Return degrees as radians: a number or a tuple of numbers."""
+    """Convert a number or a tuple of numbers to radians."""
     if isinstance(degrees, tuple):
         return tuple(math.radians(value) for value in degrees)
     return math.radians(degrees)

@@ -1,6 +1,7 @@
-"""The sentences of both codecs' errors, made from a few facts.
+"""Write the error texts of both codecs.
 
-A codec reports *where* and *what kind*. The sentence is made here, so the codecs cannot differ.
+A codec reports only the kind and the place of an error. This module alone writes the text, so both
+codecs have the same texts.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def reject_variant(command: Command, direction: Direction, given: int) -> UsageE
 
 def reject_address(given: Any, addresses: tuple[int, ...]) -> UsageError:
     """Return the error for an address byte that the frame format does not have."""
-    allowed = ", ".join(map(str, addresses)) or "None, because frames here have no address byte"
+    allowed = ", ".join(map(str, addresses)) or "None, because the frames have no address"
     return UsageError("address", given, allowed)
 
 
@@ -53,7 +54,7 @@ def reject_value(
     """
     if element < 0:
         if fault == "count":
-            # The elements may all be legal; what is wrong is how many there are.
+            # The elements may all be legal; only their number is wrong.
             return UsageError(f"len({field.name})", len(value), _elements(case))
         allowed = _elements(case) if field.many else _allowed(field, case.numbers[0])
         return UsageError(field.name, value, allowed)
@@ -93,7 +94,8 @@ def _frame_fault(table: Table, direction: Direction, fault: FrameFault, data: by
         if len(data) <= at:
             return "the bytes end before LEN"
         missing = data[at] + frame.overhead - len(data)
-        return f"LEN is {data[at]:02X}, but the last {missing} byte(s) of the frame are missing"
+        what = "byte of the frame is" if missing == 1 else f"{missing} bytes of the frame are"
+        return f"LEN is {data[at]:02X}, but the last {what} missing"
     if fault == "bad-length":
         return _bad_length(table, direction, data)
     if fault == "unknown-id":

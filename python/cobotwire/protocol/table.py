@@ -1,6 +1,6 @@
-"""The protocol as data: both codecs interpret these records.
+"""Define the protocol as data: both codecs interpret these records.
 
-An edition is one :class:`Table`. The classes know no command by name and do no I/O. They are plain
+An edition is one :class:`Table`. The classes know no command by name, and do no I/O. They are plain
 records, so that the Rust codec can read the same objects attribute by attribute.
 :mod:`cobotwire.protocol.fields` and :mod:`cobotwire.protocol.frame_format` hold the records inside
 a message and the rules for reading them.
@@ -74,7 +74,7 @@ class TextReply:
 
 @dataclass(frozen=True, slots=True)
 class TextRequest:
-    """Text that follows the frame of a request, as in TextReply, and ends with ``suffix``."""
+    """Text after the frame of a request, built as in ``TextReply``; it ends with ``suffix``."""
 
     prefixes: tuple[str, ...]
     fields: tuple[str, ...]
@@ -83,11 +83,12 @@ class TextRequest:
 
 @dataclass(frozen=True, slots=True)
 class ReadBack:
-    """How to read back what a command has set: by the reply to ``query``.
+    """The query that reads back what a command has set.
 
-    ``fields`` pairs a field of the reply with the argument that it repeats, or with the raw value
-    that it then holds; if empty, fields repeat the arguments of the same name. Arguments of that
-    name in the query choose what is read.
+    ``fields`` pairs each field of the query's reply with the argument of the command that it
+    repeats, or with the raw value that it holds afterwards. If ``fields`` is empty, each field
+    repeats the argument of the same name. Arguments that the query shares with the command choose
+    what is read.
     """
 
     query: str
@@ -98,13 +99,13 @@ class ReadBack:
 class Command:
     """One command: its id, its request and its reply.
 
-    ``request`` and ``reply`` hold the variants of the message, which differ in size; the first is
-    the full one. Without ``reply`` and ``text`` the request is one-way. With ``ack`` the reply is
-    an acknowledgement, which may come late or never and which nobody waits for. Hand-written code
-    finds the command by its ``role``. ``read_by`` says how to read its effect. ``samples`` are the
-    raw values by argument that a conformance run may send, for the first variant that has these
-    arguments; if empty, it may send all legal values. ``agrees_with`` names queries that report the
-    same while the arm rests.
+    ``request`` and ``reply`` hold the variants of the message, the full one first. Without
+    ``reply`` and ``text`` the request is one-way. With ``ack`` the reply is an acknowledgement: it
+    may come late or never, and by default no call waits for it. Hand-written code finds the command
+    by its ``role``. ``read_by`` names the query that reads back what the command has set.
+    ``samples`` lists, by argument, the raw values that a conformance run may send, for the first
+    variant with these arguments; if it is empty, the run may send all legal values. ``agrees_with``
+    names the queries that report the same quantity while the arm rests.
     """
 
     id: int
@@ -125,7 +126,7 @@ class Command:
     samples: tuple[tuple[tuple[str, tuple[int, ...]], ...], ...] = ()
     agrees_with: tuple[str, ...] = ()
     package: str = field(default="", compare=False, repr=False)
-    """The generated package that holds the message types; empty where there is none."""
+    """The generated package that holds the message types; empty if there is none."""
     _types: list[MessageTypes] = field(default_factory=list, init=False, compare=False, repr=False)
 
     @property
@@ -135,7 +136,7 @@ class Command:
 
     @property
     def reply_type(self) -> type[Reply[Any]] | None:
-        """The class of the reply; None where nothing replies."""
+        """The class of the reply; None for a one-way request."""
         return self._message_types()[1]
 
     def _message_types(self) -> MessageTypes:
@@ -152,7 +153,7 @@ class Command:
 
     @property
     def answers(self) -> bool:
-        """Whether a reply is due."""
+        """Whether the protocol requires a reply."""
         return (bool(self.reply) and not self.ack) or self.text is not None
 
     def variants(self, direction: Direction) -> tuple[Variant, ...]:
@@ -161,7 +162,7 @@ class Command:
 
 
 def _shape(variants: tuple[Variant, ...], text: TextRequest | TextReply | None) -> MessageShape:
-    """Return what the class of a message must know; fields of text stand outside the frame."""
+    """Return what the class of a message needs to know; text fields are outside the frame."""
     longest_first = sorted(variants, key=lambda variant: len(variant.fields), reverse=True)
     fields = {field.name: field for variant in longest_first for field in variant.fields}
     return MessageShape(
@@ -208,7 +209,8 @@ class Table:
 
         near = get_close_matches(name, [command.name for command in self.commands], n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
-        raise UsageError("command", name, f"a command of edition {self.edition}{hint}")
+        message = f"there is no command {name!r} in edition {self.edition}{hint}"
+        raise UsageError("command", name, message=message)
 
     def request_type(self, name: str) -> type[Request[Any]]:
         """Return the class of a command's request.
@@ -219,7 +221,7 @@ class Table:
         return self.command(name).request_type
 
     def reply_type(self, name: str) -> type[Reply[Any]] | None:
-        """Return the class of a command's reply; None where nothing replies.
+        """Return the class of a command's reply; None for a one-way request.
 
         Raises:
             UsageError: the edition has no such command.
@@ -227,10 +229,10 @@ class Table:
         return self.command(name).reply_type
 
     def in_role(self, role: Role) -> Command:
-        """Return the first command that has a role.
+        """Return the first command with a role.
 
         Raises:
-            UsageError: no command has it.
+            UsageError: no command of the edition has the role.
         """
         for command in self.commands:
             if command.role == role:

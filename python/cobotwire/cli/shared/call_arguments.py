@@ -43,7 +43,7 @@ def request_values(command: Command, given: Mapping[str, Any]) -> tuple[Any, ...
 
 
 def _arguments(variant: Variant) -> list[Field]:
-    """Return the fields that a caller gives: those that have more than one legal value."""
+    """Return the fields that are arguments: all but those with one legal value and no label."""
     return [field for field in variant.fields if len(field.choices) != 1 or field.labels]
 
 
@@ -67,7 +67,7 @@ def _takes(names: Sequence[str]) -> str:
 
 
 def parse_value(field: Field, word: str) -> Any:
-    """Return the value that a word means for a field.
+    """Parse a word as the value of a field.
 
     Raises:
         UsageError: the word is not a number, a flag or a member of the field's enum.
@@ -76,7 +76,7 @@ def parse_value(field: Field, word: str) -> Any:
         return [_number(field, part.strip()) for part in word.strip("[]()").split(",")]
     if field.kind == "flag":
         if word.lower() not in _FLAGS:
-            raise UsageError(field.name, word, "on, off")
+            raise UsageError(field.name, word, "on or off")
         return _FLAGS[word.lower()]
     if word.upper() in field.labels:
         return field.choices[field.labels.index(word.upper())]

@@ -23,7 +23,7 @@ CONFORMS, DOES_NOT, NOT_TESTABLE = 0, 1, 2
 
 @contextmanager
 def exit_if_not_testable() -> Iterator[None]:
-    """Exit with ``NOT_TESTABLE`` if an error keeps the test from running."""
+    """Exit with ``NOT_TESTABLE`` if an error prevents the test."""
     try:
         yield
     except CobotwireError as error:
@@ -54,13 +54,13 @@ def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         return verb(*words, files=ReportFiles(json, html, junit), **options)
 
     help = {
-        "--junit": "Write the report as JUnit XML, for build servers.",
-        "--html": "Write the report as an HTML page with a matrix and the evidence.",
-        "--json": "Write the report as JSON, for programs and `conform compare`.",
+        "--junit": "Write the report as JUnit XML, for build servers",
+        "--html": "Write the report as an HTML page with a matrix and the evidence",
+        "--json": "Write the report as JSON, for programs and `conform compare`",
     }
     found: Callable[..., Any] = with_files
     for name, text in help.items():
-        found = click.option(name, metavar="FILE", help=f"{text} - is standard output.")(found)
+        found = click.option(name, metavar="FILE", help=f"{text} (-: standard output).")(found)
     return found
 
 

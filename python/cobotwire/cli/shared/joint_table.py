@@ -53,7 +53,7 @@ class JointTable:
         self._live.stop()
 
     def update(self) -> None:
-        """Draw the table with the present state."""
+        """Draw the table with the current state."""
         title = f"{self._clock() - self._began:.1f} s of simulated time"
         grid = Grid(title=title, show_header=False)
         for label, name in self._rows:

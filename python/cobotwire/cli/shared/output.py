@@ -43,7 +43,7 @@ def as_hex(data: bytes) -> str:
 
 
 def as_json_value(value: Any) -> Any:
-    """Return a result as JSON knows it: named tuples become objects, enum members names."""
+    """Return a result as JSON values: named tuples become objects, enum members their names."""
     if hasattr(value, "_asdict"):
         return {name: as_json_value(part) for name, part in value._asdict().items()}
     if isinstance(value, IntEnum):
@@ -52,7 +52,7 @@ def as_json_value(value: Any) -> Any:
 
 
 def format_result(value: Any) -> str:
-    """Return a result on one line, for people."""
+    """Format a result on one line, for people."""
     if hasattr(value, "_asdict"):
         return "  ".join(f"{name}={part}" for name, part in value._asdict().items())
     return value.name if isinstance(value, IntEnum) else str(value)

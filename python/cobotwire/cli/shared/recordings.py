@@ -17,13 +17,13 @@ interface_option = click.option(
     type=int,
     default=0,
     show_default=True,
-    help="Which interface, if the recording has several.",
+    help="The index of the interface, if the recording has several.",
 )
 
 
 def recording_named(arguments: Sequence[str]) -> CaptureReader | None:
     """Return the recording that the single argument names; None if it is something else."""
-    # Bytes in hex are not looked up as files, and reading from a pipe would consume its start.
+    # Hex is not looked up as a file name, and a pipe is not read, which would consume its start.
     single = len(arguments) == 1 and hex_arguments(arguments) is None
     if not single or not os.path.isfile(arguments[0]):
         return None

@@ -18,7 +18,7 @@ def serve(
 ) -> None:
     """Print the port (or ``first_line``), and serve it until Ctrl-C or SIGTERM.
 
-    The functions in ``between`` are called now and then, between two requests.
+    The functions in ``between`` are called from time to time, between two requests.
     """
 
     def stop(number: int, frame: FrameType | None) -> None:

@@ -1,6 +1,6 @@
 """Format what a simulated arm receives and replies: as lines, or as JSON.
 
-A ``client`` is a number; None if there is only one client.
+``client`` is the number of a client; None if there is only one.
 """
 
 from __future__ import annotations

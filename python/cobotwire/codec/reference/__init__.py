@@ -1,4 +1,7 @@
-"""The reference codec, in Python: obvious before fast, and the oracle of the tests."""
+"""Encode and decode in pure Python: the reference codec, simple rather than fast.
+
+It is the specification of the native codec, and the oracle of the tests.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +49,7 @@ class ReferenceCodec:
         return encode(self.table.frame, found, direction, values, variant, address)
 
     def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> DecodedMessage:
-        """Read one frame and nothing else."""
+        """Decode exactly one frame."""
         command = None if of is None else self.table.command(of)
         return decode(self._judge(direction), data, command)
 
@@ -72,7 +75,7 @@ class ReferenceCodec:
         accept_unknown: bool = False,
         out: Scan | None = None,
     ) -> Scan:
-        """Return where the frames of a stream are; ``out`` keeps its memory."""
+        """Return the places of frames and noise; the memory of ``out`` is not reused."""
         framer = self.framer(listening, accept_unknown=accept_unknown)
         return scan([*framer.feed(data), *framer.flush()], framer)
 
@@ -84,7 +87,7 @@ class ReferenceCodec:
         raw: bool = False,
         out: Columns | None = None,
     ) -> Columns:
-        """Return the values of a stream as columns; ``out`` keeps its memory."""
+        """Return the values of a stream as columns; the memory of ``out`` is not reused."""
         framer = self.framer(listening)
         return ReferenceColumnReader(self.table, framer, raw).all_of(data)
 

@@ -1,4 +1,4 @@
-"""Columns of a stream, filled value by value."""
+"""Decode a stream into columns, value by value."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ class ReferenceColumnReader:
 
     @property
     def pending(self) -> int:
-        """How many fed bytes are not accounted for yet."""
+        """The number of fed bytes that are not accounted for yet."""
         return self._framer.pending
 
     def feed(self, data: Data) -> Columns:
-        """Take bytes; return what has become certain since the last call."""
+        """Take bytes; return the rows and noise that became certain since the last call."""
         return self._columns(self._framer.feed(data))
 
     def flush(self) -> Columns:
-        """Refute what still waits; return the rest."""
+        """Stop waiting for more bytes; return the remaining rows and noise."""
         return self._columns(self._framer.flush(), at_end=True)
 
     def all_of(self, data: Data) -> Columns:
@@ -99,14 +99,14 @@ class ReferenceColumnReader:
 
 
 class Noises:
-    """Joins noise over events and calls; a span is complete once a frame has ended it."""
+    """Joins adjacent noise across events and calls; a frame completes a span."""
 
     def __init__(self) -> None:
         self._offset, self._size = array("Q"), array("Q")
         self._open = False
 
     def take(self, event: Event) -> None:
-        """Note the noise of an event, or that a frame ends it."""
+        """Add the noise of an event, or complete the span if the event is a frame."""
         if isinstance(event, Noise) and self._open:
             self._size[-1] += len(event.data)
         elif isinstance(event, Noise):
@@ -124,7 +124,7 @@ class Noises:
 
 
 def scan(events: Iterable[Event], framer: ReferenceFramer) -> Scan:
-    """Return where the frames and the noise are."""
+    """Return the places of the frames and the noise."""
     offset, noise = array("Q"), Noises()
     for event in events:
         noise.take(event)
@@ -134,7 +134,7 @@ def scan(events: Iterable[Event], framer: ReferenceFramer) -> Scan:
 
 
 def shape(field: Field, column: Any, rows: int) -> Any:
-    """Return a column; one of rows of numbers gets two dimensions."""
+    """Return a column, with two dimensions if the field is a row of numbers."""
     if not field.many:
         return column
     return memoryview(column).cast("B").cast(column.typecode, (rows, len(column) // rows))

@@ -1,4 +1,4 @@
-"""Bytes to values. An illegal frame, or a value that the edition rules out, is an error."""
+"""Decode frames to values; reject illegal frames, and values that the edition does not allow."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cobotwire.protocol.table import Case, Command, Field
 
 
 def decode(judge: Judge, data: bytes, of: Command | None = None) -> DecodedMessage:
-    """Read one frame and nothing else; see :meth:`cobotwire.codec.interface.Codec.decode`."""
+    """Decode exactly one frame; see :meth:`cobotwire.codec.interface.Codec.decode`."""
     data = bytes(data)
     verdict = _misnamed(judge, data, of) or judge.judge(data)
     if isinstance(verdict, str):
@@ -24,7 +24,7 @@ def decode(judge: Judge, data: bytes, of: Command | None = None) -> DecodedMessa
 
 
 def read(judge: Judge, data: bytes, of: Command | None = None) -> DecodedMessage:
-    """Read a frame that was judged before, as the first message that allows its values."""
+    """Decode a frame that is known to be legal, as the first message that allows its values."""
     heading = judge.heading_of(data)
     rejection: ProtocolError | None = None
     for message in judge.messages(heading, of):

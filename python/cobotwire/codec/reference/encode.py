@@ -1,8 +1,8 @@
-"""Values to bytes. A value that the edition does not allow is rejected before anything is sent.
+"""Encode values to frames; reject values that the edition does not allow.
 
-A physical value becomes the nearest raw value (of two, the even one): 0.29 degrees in hundredths
-is 29, although ``0.29 * 100`` is a little less. The arithmetic is IEEE double, so that every codec
-encodes the same bytes.
+A physical value becomes the nearest raw value (ties go to the even one): 0.29 degrees in hundredths
+is 29, although ``0.29 * 100`` is a little less. All arithmetic uses IEEE doubles, so that every
+codec encodes the same bytes.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def _field(field: Field, case: Case, value: Any) -> bytes:
 
 
 def _checked(field: Field, case: Case, element: int, value: Any) -> int:
-    """Return the raw value for one value; ``element`` is -1 if the field has only one."""
+    """Return the raw value of a legal value; ``element`` is -1 if the field has one number."""
     number = case.numbers[max(element, 0)]
     try:
         raw = _scaled(number, value) if number.scaled else _integer(field, value)

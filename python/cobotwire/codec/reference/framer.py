@@ -1,8 +1,8 @@
-"""Framing and resync.
+"""Cut frames out of a stream, and resynchronise after noise.
 
-At position i a frame stands if the header is there, LEN is legal for CMD, and the check is right.
-The first byte that contradicts a candidate refutes it. The scan then continues at i + 1 and never
-skips what a false header claimed. A candidate that more bytes could complete waits.
+A frame stands at position i if the header is there, LEN is legal for CMD, and the check is right.
+The first byte that contradicts a candidate refutes it. The scan then continues at i + 1, and never
+skips the bytes that a false header claimed. A candidate that more bytes could complete waits.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ class ReferenceFramer:
 
     @property
     def pending(self) -> int:
-        """Bytes fed that no event covers yet."""
+        """The number of fed bytes that no event covers yet."""
         return len(self._waiting)
 
     @property
     def counters(self) -> Counters:
-        """The counts since the framer was made."""
+        """The counts since the framer was created."""
         counters = self._counters
         return counters._replace(frames=dict(counters.frames), noise=dict(counters.noise))
 
     def feed(self, data: Data) -> list[Event]:
-        """Take bytes; return what is certain by now."""
+        """Take bytes; return the events that are certain by now."""
         before = len(self._waiting)
         self._waiting += data
         fed = len(self._waiting) - before
@@ -43,7 +43,7 @@ class ReferenceFramer:
         return self._cut(at_end=False)
 
     def flush(self) -> list[Event]:
-        """Refute what still waits; return the rest."""
+        """Stop waiting for more bytes; return the remaining events."""
         return self._cut(at_end=True)
 
     def _cut(self, at_end: bool) -> list[Event]:
@@ -68,7 +68,7 @@ class ReferenceFramer:
         return events
 
     def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
-        """Return how many bytes a refuted candidate costs: one, whatever its header claimed."""
+        """Return the number of bytes to skip for a refuted candidate: 1, whatever LEN it has."""
         return 1
 
     def _count(self, events: list[Event]) -> None:

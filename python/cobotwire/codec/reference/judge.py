@@ -1,4 +1,4 @@
-"""Whether a frame stands in some bytes: the one legality check of framer and decoder."""
+"""Check whether bytes are a legal frame. The framer and the decoder both use this check."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Heading(NamedTuple):
 class Judge:
     """Judges candidates by the messages of some directions; earlier directions take precedence.
 
-    With ``accept_unknown`` an id that the edition lacks may have every LEN up to the maximum.
+    With ``accept_unknown`` an id that the edition lacks may have any LEN up to the maximum.
     """
 
     def __init__(
@@ -37,9 +37,9 @@ class Judge:
             self._lengths |= set(range(frame.length(0), frame.maximum_length + 1))
 
     def judge(self, data: bytes, start: int = 0) -> int | NoiseReason:
-        """Return the size of the frame at ``start``, or why there is none.
+        """Return the size of the frame at ``start``, or the reason why no frame is there.
 
-        ``truncated`` means that more bytes could make it a frame.
+        ``truncated`` means that more bytes could complete a frame.
         """
         frame = self.frame
         rest = data[start : start + self.overhead + 256]
@@ -56,7 +56,7 @@ class Judge:
         return size if rest[end:size] == frame.end(rest[:end]) else "bad-check"
 
     def heading(self, rest: bytes) -> Heading | NoiseReason:
-        """Return the heading of a candidate at the start of ``rest``, or what refutes it."""
+        """Return the heading of a candidate at the start of ``rest``, or why it is refuted."""
         frame = self.frame
         if not frame.header.startswith(rest[: len(frame.header)]):
             return "no-header"
@@ -71,7 +71,7 @@ class Judge:
         return Heading(rest[self.overhead], length) if len(rest) > self.overhead else "truncated"
 
     def messages(self, heading: Heading, of: Command | None = None) -> list[MessageVariant]:
-        """Return the messages that a frame can be; those of one command, if ``of`` names it."""
+        """Return the messages that a frame can be; only those of the command ``of``, if given."""
         return [
             message
             for index in self.indexes
@@ -80,13 +80,13 @@ class Judge:
         ]
 
     def misnamed(self, heading: Heading, of: Command | None) -> NoiseReason | None:
-        """Return why a heading is not one of the command ``of``; None if it is, or ``of`` is."""
+        """Return why a heading cannot belong to the command ``of``; None if it can."""
         if of is None or self.messages(heading, of):
             return None
         return "bad-length" if heading.id == of.id else "unknown-id"
 
     def refute(self, heading: Heading) -> NoiseReason | None:
-        """Return why no frame has that heading; None if one does."""
+        """Return why no legal frame has that heading; None if a frame can have it."""
         if self.messages(heading):
             return None
         if any(index.has(heading.id) for index in self.indexes):
@@ -94,5 +94,5 @@ class Judge:
         return None if self.accept_unknown else "unknown-id"
 
     def heading_of(self, frame: bytes) -> Heading:
-        """Return the heading of a frame that was judged before."""
+        """Return the heading of a frame that is known to be legal."""
         return Heading(frame[self.overhead], frame[self.length_at])

@@ -78,7 +78,7 @@ def _figure(series: Series, title: str) -> Figure:
             axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     all_axes[-1].set_xlim(0, series.end or 1)
     timed = series.axis == "seconds"
-    all_axes[-1].set_xlabel("time, s" if timed else "offset in the stream, bytes (it has no times)")
+    all_axes[-1].set_xlabel("time, s" if timed else "offset in the stream, bytes (no times)")
     figure.align_ylabels(all_axes)
     figure.suptitle(title, fontsize=11)
     return figure
@@ -140,7 +140,10 @@ def _bars(axes: Axes, series: Series, events: Sequence[tuple[float, int]], colou
 
 
 def bar_width(end: float, unit: float) -> float:
-    """Return 1, 2 or 5 times a power of ten: about ``BARS`` bars, at least a tenth unit wide."""
+    """Return a width that gives about ``BARS`` bars: 1, 2 or 5 times a power of ten.
+
+    It is at least a tenth of ``unit``.
+    """
     wanted = max(end / BARS, unit / 10)
     power = 10.0 ** ceil(log10(wanted) - 1)
     return float(next(step * power for step in (1, 2, 5, 10) if step * power >= wanted * 0.999))

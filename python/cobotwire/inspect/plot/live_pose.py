@@ -15,7 +15,7 @@ REPLY_SECONDS = 0.05
 
 
 class LivePose:
-    """Draws the arm at the start, whenever it has come to rest elsewhere, and at the end.
+    """Draws the arm at the start, whenever it comes to rest in another pose, and at the end.
 
     Drawing takes longer than a client waits for a reply, so it runs in a thread. The arm is queried
     in the loop that serves it, over a connection of its own.
@@ -36,7 +36,7 @@ class LivePose:
         draw_pose(self._table, self._drawn, path)
 
     def update(self) -> None:
-        """Start drawing if the arm has come to rest elsewhere."""
+        """Start drawing if the arm has come to rest in another pose."""
         angles = self._angles()
         busy = self._worker is not None and self._worker.is_alive()
         if angles == self._seen and angles != self._drawn and not busy:

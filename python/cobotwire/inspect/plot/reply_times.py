@@ -9,11 +9,11 @@ from cobotwire.protocol.table import Table
 
 @dataclass
 class ReplyTimes:
-    """Times of requests are in seconds from the start of the recording.
+    """The times of requests, in seconds since the start of the recording, and of their replies.
 
     Attributes:
         all: the time of each request with a reply, and the seconds until the reply.
-        late: those of them that exceed the deadline of the command.
+        late: the entries of ``all`` with a reply after the command's deadline.
         missing: the times of requests without a reply.
     """
 
@@ -25,8 +25,8 @@ class ReplyTimes:
 class Pairing:
     """Pairs each reply with the newest request of its id; the protocol has no sequence numbers.
 
-    So a request that is repeated before its reply comes has no reply, and a late reply belongs to
-    the repetition.
+    So if a request is repeated before its reply comes, the reply belongs to the repetition, and the
+    first request counts as unanswered.
     """
 
     def __init__(self, table: Table) -> None:

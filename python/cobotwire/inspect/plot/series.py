@@ -1,4 +1,4 @@
-"""Collect what is drawn: joints, coordinates, frames, noise and reply times."""
+"""Collect the data of the charts: joints, coordinates, frames, noise and reply times."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def series_of_packets(packets: Iterable[Packet], codec: Codec) -> Series:
     """
     collector = _Collector(Series("seconds"), codec)
     pairing = Pairing(codec.table)
-    # Packets of unknown direction are taken for replies: those are what is drawn.
+    # Packets of unknown direction count as replies, because the charts show replies.
     for stream, events, _ in cut(packets, lambda interface: codec, "reply"):
         if collector.start_ns is None:
             collector.start_ns = stream.start_ns
@@ -116,7 +116,7 @@ class _Collector:
         try:
             [values] = frame.message.fields.values()
         except (ProtocolError, ValueError):
-            # A reply with values that the edition does not allow is not a position.
+            # A reply with a value that the edition does not allow is not drawn.
             return
         track.at.append(at)
         track.rows.append(tuple(values))
