@@ -31,22 +31,6 @@ SERVO_REGISTERS = {20: 0, 21: 10, 22: 0, 23: 1, 24: 0}
 
 
 @dataclass
-class Settings:
-    """Settings of newer firmware beside motion: modes, currents, recordings, backups."""
-
-    movement_type: int = 0
-    vision: bool = False
-    transparent: bool = False
-    gripper_torque: int = 300
-    gripper_current: int = 100
-    error: int = 0
-    recording: bool = False
-    recorded: list[tuple[tuple[int, ...], tuple[int, ...]]] = field(default_factory=list)
-    played: int = 0
-    backups: dict[int, dict[int, int]] = field(default_factory=dict)
-
-
-@dataclass
 class ArmState:
     """Every setting of the arm, and its axes. Angles are in degrees."""
 
@@ -58,6 +42,9 @@ class ArmState:
     stopped: bool = False
     paused: bool = False
     fresh_mode: int = 0
+    movement_type: int = 0
+    vision: bool = False
+    transparent: bool = False
     speed: int = 50
     colour: tuple[int, int, int] = (0, 0, 0)
     reference_frame: int = 0
@@ -72,10 +59,19 @@ class ArmState:
     basic_pins: dict[int, bool] = field(default_factory=dict)
     # By pin: the frequency in hertz and the duty cycle in 256ths.
     pulses: dict[int, tuple[int, int]] = field(default_factory=dict)
+    gripper_torque: int = 300
+    gripper_current: int = 100
+    # The last error; 0: none.
+    error: int = 0
+    recording: bool = False
+    # The encoders and speeds of each recorded point, and how many points were read back.
+    recorded: list[tuple[tuple[int, ...], tuple[int, ...]]] = field(default_factory=list)
+    played: int = 0
+    # The registers of backed up servos, counted from 0.
+    backups: dict[int, dict[int, int]] = field(default_factory=dict)
     # How often the controller has started.
     starts: int = 1
     gripper: Axes = field(default_factory=lambda: Axes((0.0,), OPENING_ACCELERATION))
-    settings: Settings = field(default_factory=Settings)
     # Why the present request had no effect or waits; the arm turns these remarks into notes.
     remarks: list[str] = field(default_factory=list)
     angles: Axes = field(init=False)

@@ -40,7 +40,7 @@ def rate(speed: int) -> float:
 def reject(arm: ArmState, why: str, error: int = 0) -> bool:
     """Note why a command is rejected or ignored; return False."""
     arm.remarks.append(why)
-    arm.settings.error = error or arm.settings.error
+    arm.error = error or arm.error
     return False
 
 

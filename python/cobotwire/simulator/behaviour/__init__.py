@@ -1,13 +1,11 @@
-"""What the arm does for each command: one small function each, registered by its request type."""
+"""What the arm does for each command: registered by the type of its request."""
 
 from cobotwire.simulator.behaviour import (  # noqa: F401  (importing them registers them)
     drag,
-    frames,
     gripper,
     io,
     jog,
     motion,
-    network,
     planning,
     power,
     servo,

@@ -2,58 +2,42 @@
 
 from __future__ import annotations
 
-from cobotwire.editions.mycobot280.messages import (
-    GetBasicInput,
-    GetBasicInputReply,
-    GetDigitalInput,
-    GetDigitalInputReply,
-    SetBasicOutput,
-    SetColor,
-    SetDigitalOutput,
-    SetPinMode,
-    SetPwmOutput,
-)
-from cobotwire.simulator.behaviour.registry import behaviour
+from cobotwire.editions.mycobot280 import messages as m
+from cobotwire.simulator.behaviour.registry import behaviour, query
 from cobotwire.simulator.state import ArmState
 
 
-@behaviour(SetPinMode)
-def set_pin_mode(arm: ArmState, now: float, request: SetPinMode) -> None:
+@behaviour(m.SetPinMode)
+def set_pin_mode(arm: ArmState, now: float, request: m.SetPinMode) -> None:
     """Use a pin as input or output."""
     arm.pin_modes[request.pin] = request.mode
 
 
-@behaviour(SetDigitalOutput)
-def set_digital_output(arm: ArmState, now: float, request: SetDigitalOutput) -> None:
+@behaviour(m.SetDigitalOutput)
+def set_digital_output(arm: ArmState, now: float, request: m.SetDigitalOutput) -> None:
     """Set a pin of the Atom."""
     arm.pins[request.pin] = bool(request.high)
 
 
-@behaviour(GetDigitalInput)
-def get_digital_input(arm: ArmState, now: float, request: GetDigitalInput) -> GetDigitalInputReply:
-    """Reply with the level of a pin of the Atom."""
-    return GetDigitalInputReply(high=arm.pins.get(request.pin, False))
+query(m.GetDigitalInput, lambda arm, now, request: arm.pins.get(request.pin, False))
 
 
-@behaviour(SetPwmOutput)
-def set_pwm_output(arm: ArmState, now: float, request: SetPwmOutput) -> None:
+@behaviour(m.SetPwmOutput)
+def set_pwm_output(arm: ArmState, now: float, request: m.SetPwmOutput) -> None:
     """Put pulses on a pin of the Atom; no command reads them back."""
     arm.pulses[request.channel] = (request.frequency, request.duty)
 
 
-@behaviour(SetColor)
-def set_color(arm: ArmState, now: float, request: SetColor) -> None:
+@behaviour(m.SetColor)
+def set_color(arm: ArmState, now: float, request: m.SetColor) -> None:
     """Set the light."""
     arm.colour = (request.red, request.green, request.blue)
 
 
-@behaviour(SetBasicOutput)
-def set_basic_output(arm: ArmState, now: float, request: SetBasicOutput) -> None:
+@behaviour(m.SetBasicOutput)
+def set_basic_output(arm: ArmState, now: float, request: m.SetBasicOutput) -> None:
     """Set a pin of the base."""
     arm.basic_pins[request.pin] = bool(request.high)
 
 
-@behaviour(GetBasicInput)
-def get_basic_input(arm: ArmState, now: float, request: GetBasicInput) -> GetBasicInputReply:
-    """Reply with the level of a pin of the base."""
-    return GetBasicInputReply(high=arm.basic_pins.get(request.pin, False))
+query(m.GetBasicInput, lambda arm, now, request: arm.basic_pins.get(request.pin, False))

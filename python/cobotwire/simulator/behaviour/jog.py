@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cobotwire.editions.mycobot.messages import JogAbsolute, JogStop
-from cobotwire.editions.mycobot280.messages import JogAngle, JogCoord, JogIncrement, JogRpy
+from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.registry import behaviour
 from cobotwire.simulator.kinematics import Pose
 from cobotwire.simulator.kinematics.pose import turned_about
@@ -20,8 +20,8 @@ from cobotwire.simulator.targets import (
 FORWARD = 1
 
 
-@behaviour(JogAngle)
-def jog_angle(arm: ArmState, now: float, request: JogAngle) -> None:
+@behaviour(m.JogAngle)
+def jog_angle(arm: ArmState, now: float, request: m.JogAngle) -> None:
     """Turn a joint until its limit, or until it is stopped. The other joints do not move."""
     joint = request.joint
     low, high = arm.limits()[joint - 1]
@@ -41,8 +41,8 @@ def jog_absolute(arm: ArmState, now: float, request: JogAbsolute) -> None:
     go_to_angle(arm, request.joint, request.angle, request.speed, now)
 
 
-@behaviour(JogCoord)
-def jog_coord(arm: ArmState, now: float, request: JogCoord) -> None:
+@behaviour(m.JogCoord)
+def jog_coord(arm: ArmState, now: float, request: m.JogCoord) -> None:
     """Move the end along an axis, or change one of its angles, until it is stopped."""
     step = STEP_MILLIMETRES if request.axis <= 3 else STEP_DEGREES
 
@@ -54,8 +54,8 @@ def jog_coord(arm: ArmState, now: float, request: JogCoord) -> None:
     jog(arm, way, step if request.direction == FORWARD else -step, request.speed, now)
 
 
-@behaviour(JogRpy)
-def jog_rpy(arm: ArmState, now: float, request: JogRpy) -> None:
+@behaviour(m.JogRpy)
+def jog_rpy(arm: ArmState, now: float, request: m.JogRpy) -> None:
     """Turn the end on the spot about a fixed axis, until it is stopped."""
 
     def way(here: Pose, far: float) -> Pose:
@@ -65,8 +65,8 @@ def jog_rpy(arm: ArmState, now: float, request: JogRpy) -> None:
     jog(arm, way, step, request.speed, now)
 
 
-@behaviour(JogIncrement)
-def jog_increment(arm: ArmState, now: float, request: JogIncrement) -> None:
+@behaviour(m.JogIncrement)
+def jog_increment(arm: ArmState, now: float, request: m.JogIncrement) -> None:
     """Turn a joint by a step."""
     angle = arm.angles.target(now)[request.joint - 1] + request.increment
     go_to_angle(arm, request.joint, angle, request.speed, now)

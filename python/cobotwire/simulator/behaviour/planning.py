@@ -2,24 +2,9 @@
 
 from __future__ import annotations
 
-from cobotwire.editions.mycobot280.messages import (
-    AnglesToCoords,
-    AnglesToCoordsReply,
-    ClearQueue,
-    FocusAllServos,
-    GetAnglesCoords,
-    GetAnglesCoordsReply,
-    GetAnglesPlan,
-    GetAnglesPlanReply,
-    GetCoordsPlan,
-    GetCoordsPlanReply,
-    JogIncrementCoord,
-    SetEncodersDrag,
-    SolveInvKinematics,
-    SolveInvKinematicsReply,
-)
+from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.motion import moves_straight
-from cobotwire.simulator.behaviour.registry import behaviour, row
+from cobotwire.simulator.behaviour.registry import behaviour, query, row
 from cobotwire.simulator.kinematics import Pose
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_angles, go_to_coords, solve
@@ -28,49 +13,42 @@ from cobotwire.simulator.targets import go_to_angles, go_to_coords, solve
 DRAG_SPEED = 50
 
 
-@behaviour(ClearQueue)
-def clear_queue(arm: ArmState, now: float, request: ClearQueue) -> None:
+@behaviour(m.ClearQueue)
+def clear_queue(arm: ArmState, now: float, request: m.ClearQueue) -> None:
     """Forget the waiting targets. The sources define no more, so the present motion continues."""
     arm.angles.forget(now)
 
 
-@behaviour(GetAnglesPlan)
-def get_angles_plan(arm: ArmState, now: float, request: GetAnglesPlan) -> GetAnglesPlanReply:
-    """Reply with the angles at the end of all motion."""
-    return GetAnglesPlanReply(angles=row(arm.reported_angles(arm.angles.target(now))))
+query(m.GetAnglesPlan, lambda arm, now, request: row(arm.reported_angles(arm.angles.target(now))))
+# In the frame of the base.
+query(
+    m.GetCoordsPlan,
+    lambda arm, now, request: row(arm.reported_coords(arm.angles.target(now), base=True)),
+)
 
 
-@behaviour(GetCoordsPlan)
-def get_coords_plan(arm: ArmState, now: float, request: GetCoordsPlan) -> GetCoordsPlanReply | None:
-    """Reply with the end's coordinates at the end of all motion, in the frame of the base."""
-    coords = arm.reported_coords(arm.angles.target(now), base=True)
-    return None if coords is None else GetCoordsPlanReply(coords=row(coords))
-
-
-@behaviour(GetAnglesCoords)
-def get_angles_coords(arm: ArmState, now: float, request: GetAnglesCoords) -> GetAnglesCoordsReply:
+@behaviour(m.GetAnglesCoords)
+def get_angles_coords(
+    arm: ArmState, now: float, request: m.GetAnglesCoords
+) -> m.GetAnglesCoordsReply:
     """Reply with the angles of the joints and the end's coordinates."""
     standing = arm.standing(now)
     coords = arm.reported_coords(standing) or (0.0,) * 6
-    return GetAnglesCoordsReply(angles=row(arm.reported_angles(standing)), coords=row(coords))
+    return m.GetAnglesCoordsReply(angles=row(arm.reported_angles(standing)), coords=row(coords))
 
 
-@behaviour(AnglesToCoords)
-def angles_to_coords(
-    arm: ArmState, now: float, request: AnglesToCoords
-) -> AnglesToCoordsReply | None:
-    """Reply where the end would be, in the frame and for the end type that are set.
-
-    Joints rest on ticks: for the angles of get_angles, the reply equals that of get_coords.
-    """
-    coords = arm.reported_coords(arm.on_ticks(tuple(request.angles)))
-    return None if coords is None else AnglesToCoordsReply(coords=row(coords))
+# In the frame and for the end type that are set. Joints rest on ticks, so the reply for the angles
+# of get_angles equals that of get_coords.
+query(
+    m.AnglesToCoords,
+    lambda arm, now, request: row(arm.reported_coords(arm.on_ticks(tuple(request.angles)))),
+)
 
 
-@behaviour(SolveInvKinematics)
+@behaviour(m.SolveInvKinematics)
 def solve_inv_kinematics(
-    arm: ArmState, now: float, request: SolveInvKinematics
-) -> SolveInvKinematicsReply:
+    arm: ArmState, now: float, request: m.SolveInvKinematics
+) -> m.SolveInvKinematicsReply:
     """Reply with angles for an end, near the given angles.
 
     No source defines the reply without a solution; this arm returns the given angles and sets an
@@ -78,11 +56,11 @@ def solve_inv_kinematics(
     """
     near = tuple(request.angles)
     found = solve(arm, Pose.of(request.coords), near) if arm.geometry else None
-    return SolveInvKinematicsReply(angles=row(near if found is None else found))
+    return m.SolveInvKinematicsReply(angles=row(near if found is None else found))
 
 
-@behaviour(JogIncrementCoord)
-def jog_increment_coord(arm: ArmState, now: float, request: JogIncrementCoord) -> None:
+@behaviour(m.JogIncrementCoord)
+def jog_increment_coord(arm: ArmState, now: float, request: m.JogIncrementCoord) -> None:
     """Move the end along or about an axis by a step from its target."""
     end = arm.end(arm.angles.target(now))
     target = list(end.coords) if end else [0.0] * 6
@@ -90,14 +68,14 @@ def jog_increment_coord(arm: ArmState, now: float, request: JogIncrementCoord) -
     go_to_coords(arm, target, request.speed, now, straight=moves_straight(arm))
 
 
-@behaviour(SetEncodersDrag)
-def set_encoders_drag(arm: ArmState, now: float, request: SetEncodersDrag) -> None:
+@behaviour(m.SetEncodersDrag)
+def set_encoders_drag(arm: ArmState, now: float, request: m.SetEncodersDrag) -> None:
     """Move all servos to a recorded point."""
     target = tuple(arm.angle_at(joint, tick) for joint, tick in enumerate(request.encoders))
     go_to_angles(arm, target, DRAG_SPEED if any(request.speeds) else 0, now)
 
 
-@behaviour(FocusAllServos)
-def focus_all_servos(arm: ArmState, now: float, request: FocusAllServos) -> None:
+@behaviour(m.FocusAllServos)
+def focus_all_servos(arm: ArmState, now: float, request: m.FocusAllServos) -> None:
     """Hold every joint."""
     arm.enabled = [arm.powered] * arm.joints

@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-from cobotwire.editions.mycobot280.messages import (
-    IsControllerConnected,
-    IsControllerConnectedReply,
-    IsFreeMode,
-    IsFreeModeReply,
-    IsPowerOn,
-    IsPowerOnReply,
-    PowerOff,
-    PowerOn,
-    ReleaseAllServos,
-    SetFreeMode,
-)
-from cobotwire.simulator.behaviour.registry import behaviour
+from cobotwire.editions.mycobot280 import messages as m
+from cobotwire.simulator.behaviour.registry import behaviour, query
 from cobotwire.simulator.state import ArmState
 
 
-@behaviour(PowerOn)
-def power_on(arm: ArmState, now: float, request: PowerOn) -> None:
+@behaviour(m.PowerOn)
+def power_on(arm: ArmState, now: float, request: m.PowerOn) -> None:
     """Power and hold every joint where it is; connect the Atom. A stop stays in force."""
     arm.connected = True
     arm.powered, arm.free = True, False
     arm.enabled = [True] * arm.joints
 
 
-@behaviour(PowerOff)
-def power_off(arm: ArmState, now: float, request: PowerOff) -> None:
+@behaviour(m.PowerOff)
+def power_off(arm: ArmState, now: float, request: m.PowerOff) -> None:
     """End every motion, release the joints, and disconnect the Atom."""
     arm.halt(now)
     arm.gripper.halt(now)
@@ -35,36 +24,26 @@ def power_off(arm: ArmState, now: float, request: PowerOff) -> None:
     arm.enabled = [False] * arm.joints
 
 
-@behaviour(IsPowerOn)
-def is_power_on(arm: ArmState, now: float, request: IsPowerOn) -> IsPowerOnReply:
-    """Reply whether the arm is powered."""
-    return IsPowerOnReply(powered=arm.powered)
+query(m.IsPowerOn, lambda arm, now, request: arm.powered)
 
 
-@behaviour(ReleaseAllServos)
-def release_all_servos(arm: ArmState, now: float, request: ReleaseAllServos) -> None:
+@behaviour(m.ReleaseAllServos)
+def release_all_servos(arm: ArmState, now: float, request: m.ReleaseAllServos) -> None:
     """Release every joint."""
     arm.halt(now)
     arm.enabled = [False] * arm.joints
 
 
-@behaviour(IsControllerConnected)
-def is_controller_connected(
-    arm: ArmState, now: float, request: IsControllerConnected
-) -> IsControllerConnectedReply:
-    """Reply whether the Atom is connected: not between power_off and power_on."""
-    return IsControllerConnectedReply(connected=arm.connected)
+# The Atom is connected, except between power_off and power_on.
+query(m.IsControllerConnected, lambda arm, now, request: arm.connected)
 
 
-@behaviour(SetFreeMode)
-def set_free_mode(arm: ArmState, now: float, request: SetFreeMode) -> None:
+@behaviour(m.SetFreeMode)
+def set_free_mode(arm: ArmState, now: float, request: m.SetFreeMode) -> None:
     """Switch the torque off or on."""
     arm.free = bool(request.free)
     if arm.free:
         arm.halt(now)
 
 
-@behaviour(IsFreeMode)
-def is_free_mode(arm: ArmState, now: float, request: IsFreeMode) -> IsFreeModeReply:
-    """Reply whether the torque is off."""
-    return IsFreeModeReply(free=arm.free)
+query(m.IsFreeMode, lambda arm, now, request: arm.free)

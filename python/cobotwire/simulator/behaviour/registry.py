@@ -3,6 +3,7 @@
 A behaviour takes the arm's state, the time and the typed request, and returns the typed reply. It
 serves every edition that has the command: arguments that an edition lacks are None. A behaviour
 may return None or leave out optional fields of its reply: the arm then fills in usual legal values.
+:func:`query` and :func:`stored` register the behaviours that most commands have.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ class Behaviour(NamedTuple):
     behave: Behave
 
 
+Value = TypeVar("Value")
+
 BEHAVIOURS: dict[str, Behaviour] = {}
 
 
@@ -46,9 +49,33 @@ def behaviour(
     return register
 
 
-def row(values: Iterable[float]) -> Any:
-    """Return a row of a reply: a value for each joint, or for each coordinate.
+def query(
+    request_type: type[Request[Value]], value: Callable[[ArmState, float, Any], Value | None]
+) -> None:
+    """Let a command reply with a value that ``value`` returns; None: the arm fills it in."""
+
+    @behaviour(request_type)
+    def reply(arm: ArmState, now: float, request: Request[Value]) -> Reply[Value] | None:
+        found = value(arm, now, request)
+        # Type checkers do not know the fields of a query's reply: the first one is the value.
+        reply_type: Any = request_type.reply_type
+        return None if found is None else reply_type(found)
+
+
+def stored(attribute: str, setter: type[Request[None]], getter: type[Request[Any]]) -> None:
+    """Let a setter store its only argument in an attribute of the arm; let a query return it."""
+
+    @behaviour(setter)
+    def store(arm: ArmState, now: float, request: Request[None]) -> None:
+        [value] = request.fields.values()
+        setattr(arm, attribute, value)
+
+    query(getter, lambda arm, now, request: getattr(arm, attribute))
+
+
+def row(values: Iterable[float] | None) -> Any:
+    """Return a row of a reply: a value for each joint, or for each coordinate; or None.
 
     Reply types declare the rows of an arm with six joints; other arms have more or fewer values.
     """
-    return tuple(values)
+    return None if values is None else tuple(values)

@@ -1,34 +1,10 @@
-"""Versions, errors and modes of newer firmware."""
+"""Settings that are stored and read back; versions and errors of newer firmware."""
 
 from __future__ import annotations
 
-from cobotwire.editions.mycobot280.enums import FreshMode, MoveMode
-from cobotwire.editions.mycobot280.messages import (
-    CheckAsyncOrSync,
-    CheckAsyncOrSyncReply,
-    ClearErrorInformation,
-    GetBasicVersion,
-    GetBasicVersionReply,
-    GetErrorInformation,
-    GetErrorInformationReply,
-    GetFreshMode,
-    GetFreshModeReply,
-    GetModifyVersion,
-    GetModifyVersionReply,
-    GetMovementType,
-    GetMovementTypeReply,
-    GetRebootCount,
-    GetRebootCountReply,
-    GetSystemVersion,
-    GetSystemVersionReply,
-    GetTransponderMode,
-    GetTransponderModeReply,
-    SetMovementType,
-    SetTransponderMode,
-    SetTransponderModeReply,
-    SetVisionMode,
-)
-from cobotwire.simulator.behaviour.registry import behaviour
+from cobotwire.editions.mycobot.messages import GetSpeed, SetSpeed
+from cobotwire.editions.mycobot280 import messages as m
+from cobotwire.simulator.behaviour.registry import behaviour, query, stored
 from cobotwire.simulator.state import ArmState
 
 # What the firmware of a 280 reports today; the kinematics notes are about firmware 6.5.
@@ -36,93 +12,66 @@ SYSTEM_VERSION = 6.5
 BASIC_VERSION = 2.0
 REVISION = 1
 
-
-@behaviour(GetModifyVersion)
-def get_modify_version(
-    arm: ArmState, now: float, request: GetModifyVersion
-) -> GetModifyVersionReply:
-    """Reply with the firmware's revision."""
-    return GetModifyVersionReply(revision=REVISION)
-
-
-@behaviour(GetSystemVersion)
-def get_system_version(
-    arm: ArmState, now: float, request: GetSystemVersion
-) -> GetSystemVersionReply:
-    """Reply with the firmware's version."""
-    return GetSystemVersionReply(version=SYSTEM_VERSION)
-
-
-@behaviour(GetBasicVersion)
-def get_basic_version(arm: ArmState, now: float, request: GetBasicVersion) -> GetBasicVersionReply:
-    """Reply with the version of the base."""
-    return GetBasicVersionReply(version=BASIC_VERSION)
-
-
-@behaviour(CheckAsyncOrSync)
-def check_async_or_sync(
-    arm: ArmState, now: float, request: CheckAsyncOrSync
-) -> CheckAsyncOrSyncReply:
-    """Reply that a motion is acknowledged when it is received, not when it ends."""
-    return CheckAsyncOrSyncReply(synchronous=False)
+# The tool's point, the world's origin; base or world, flange or tool.
+stored("tool", m.SetToolReference, m.GetToolReference)
+stored("world", m.SetWorldReference, m.GetWorldReference)
+stored("reference_frame", m.SetReferenceFrame, m.GetReferenceFrame)
+stored("end_type", m.SetEndType, m.GetEndType)
+# Whether targets are queued, and how the end moves to coordinates.
+stored("fresh_mode", m.SetFreshMode, m.GetFreshMode)
+stored("movement_type", m.SetMovementType, m.GetMovementType)
+# The speed of commands that have no speed of their own.
+stored("speed", SetSpeed, GetSpeed)
+# The current at which the gripper protects itself.
+stored("gripper_current", m.SetGripperProtectCurrent, m.GetGripperProtectCurrent)
+query(m.GetModifyVersion, lambda arm, now, request: REVISION)
+query(m.GetSystemVersion, lambda arm, now, request: SYSTEM_VERSION)
+query(m.GetBasicVersion, lambda arm, now, request: BASIC_VERSION)
+# A motion is acknowledged when it is received, not when it ends.
+query(m.CheckAsyncOrSync, lambda arm, now, request: False)
+# The controller starts once at first, and after each panic.
+query(m.GetRebootCount, lambda arm, now, request: arm.starts)
+# The last error; 0: there is none.
+query(m.GetErrorInformation, lambda arm, now, request: arm.error)
 
 
-@behaviour(GetRebootCount)
-def get_reboot_count(arm: ArmState, now: float, request: GetRebootCount) -> GetRebootCountReply:
-    """Reply how often the controller has started: once at first, and after each panic."""
-    return GetRebootCountReply(reboots=arm.starts)
-
-
-@behaviour(GetErrorInformation)
-def get_error_information(
-    arm: ArmState, now: float, request: GetErrorInformation
-) -> GetErrorInformationReply:
-    """Reply with the last error; 0: there is none."""
-    return GetErrorInformationReply(error=arm.settings.error)
-
-
-@behaviour(ClearErrorInformation)
-def clear_error_information(arm: ArmState, now: float, request: ClearErrorInformation) -> None:
+@behaviour(m.ClearErrorInformation)
+def clear_error_information(arm: ArmState, now: float, request: m.ClearErrorInformation) -> None:
     """Forget the last error."""
-    arm.settings.error = 0
+    arm.error = 0
 
 
-@behaviour(GetFreshMode)
-def get_fresh_mode(arm: ArmState, now: float, request: GetFreshMode) -> GetFreshModeReply:
-    """Reply whether targets are queued."""
-    return GetFreshModeReply(mode=FreshMode(arm.fresh_mode))
-
-
-@behaviour(SetMovementType)
-def set_movement_type(arm: ArmState, now: float, request: SetMovementType) -> None:
-    """Choose how the end moves to coordinates."""
-    arm.settings.movement_type = request.mode
-
-
-@behaviour(GetMovementType)
-def get_movement_type(arm: ArmState, now: float, request: GetMovementType) -> GetMovementTypeReply:
-    """Reply how the end moves to coordinates."""
-    return GetMovementTypeReply(mode=MoveMode(arm.settings.movement_type))
-
-
-@behaviour(SetVisionMode)
-def set_vision_mode(arm: ArmState, now: float, request: SetVisionMode) -> None:
+@behaviour(m.SetVisionMode)
+def set_vision_mode(arm: ArmState, now: float, request: m.SetVisionMode) -> None:
     """Set whether the end is kept from turning over."""
-    arm.settings.vision = bool(request.vision)
+    arm.vision = bool(request.vision)
 
 
-@behaviour(SetTransponderMode)
+@behaviour(m.SetTransponderMode)
 def set_transponder_mode(
-    arm: ArmState, now: float, request: SetTransponderMode
-) -> SetTransponderModeReply:
+    arm: ArmState, now: float, request: m.SetTransponderMode
+) -> m.SetTransponderModeReply:
     """Set whether frames are passed on."""
-    arm.settings.transparent = bool(request.transparent)
-    return SetTransponderModeReply(succeeded=True)
+    arm.transparent = bool(request.transparent)
+    return m.SetTransponderModeReply(succeeded=True)
 
 
-@behaviour(GetTransponderMode)
-def get_transponder_mode(
-    arm: ArmState, now: float, request: GetTransponderMode
-) -> GetTransponderModeReply:
-    """Reply whether frames are passed on."""
-    return GetTransponderModeReply(transparent=arm.settings.transparent)
+query(m.GetTransponderMode, lambda arm, now, request: arm.transparent)
+
+
+@behaviour(m.GetSsidPwd)
+def get_ssid_pwd(arm: ArmState, now: float, request: m.GetSsidPwd) -> m.GetSsidPwdReply:
+    """Reply with the Wi-Fi account."""
+    return m.GetSsidPwdReply(ssid=arm.ssid, password=arm.password)
+
+
+@behaviour(m.SetSsidPwd)
+def set_ssid_pwd(arm: ArmState, now: float, request: m.SetSsidPwd) -> None:
+    """Set the Wi-Fi account, which comes as a text after the frame."""
+    arm.ssid, arm.password = request.account, request.password
+
+
+@behaviour(m.SetServerPort)
+def set_server_port(arm: ArmState, now: float, request: m.SetServerPort) -> None:
+    """Set the TCP port."""
+    arm.port = request.port
