@@ -1,4 +1,4 @@
-"""A stream in accelerated time: a transport in memory that owns the client's clock.
+"""Stream in accelerated time: the transport is in memory and owns the client's clock.
 
 All of cobotwire runs unchanged, but waiting takes no time. The arm numbers its replies, so that
 each sample identifies its reply.

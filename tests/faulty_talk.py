@@ -19,7 +19,7 @@ POWER_ON = bytes.fromhex("FE FE 02 10 FA")
 ACK = bytes.fromhex("FE FE 03 10 01 FA")
 GET_ANGLES = bytes.fromhex("FE FE 02 20 FA")
 ZEROS = bytes.fromhex("FE FE 0E 20") + bytes(12) + b"\xfa"
-# After these seconds, the longest fault of the tests has sent everything.
+# After this many seconds, even the longest fault of the tests has sent everything.
 LONG = 30.0
 
 
@@ -67,7 +67,7 @@ def talk(
 ) -> Talk:
     """Send each item of bytes, wait each number of seconds.
 
-    With ``size``, bytes are sent in pieces of that size, at the same time.
+    With ``size``, each item of bytes is sent in pieces of that size, without a pause.
     """
     clock = SteppedClock()
     applied: list[AppliedFault] = []
@@ -100,7 +100,7 @@ def pass_time(
             return
         clock.sleep(wait)
         _note(received, clock(), peer.flush())
-    raise AssertionError("the peer never stops asking for a flush")
+    raise AssertionError("the peer needs a flush again and again, without end")
 
 
 def _note(received: list[tuple[float, bytes]], now: float, data: bytes) -> None:

@@ -1,7 +1,7 @@
-"""Print the size of each room, the import cycles, and the files that one call passes.
+"""Print the size of each room, the import cycles, and the files that run during one call.
 
-    python tests/house_figures.py          of this checkout
-    python tests/house_figures.py FOLDER   of another one
+    python tests/house_figures.py          measure this checkout
+    python tests/house_figures.py FOLDER   measure another one
 
 Generated files are counted separately. A room is an entry of ``python/cobotwire``, or a folder next
 to it.
@@ -21,7 +21,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from module_graph import circles, python_arrows, rust_arrows
+from module_graph import import_cycles, python_imports_of, rust_imports_of
 
 PACKAGE = "python/cobotwire/"
 GENERATED = re.compile(
@@ -42,7 +42,7 @@ NO_CODE = {
     tokenize.ENDMARKER,
 }
 
-# One get_angles() on a port, by the blocking client: the files of the package that it passes.
+# One get_angles() of the blocking client on a port; prints the files of the package that run.
 CALL = """
 import os, sys, threading, tty
 from cobotwire.editions.mycobot280 import MyCobot280
@@ -83,12 +83,12 @@ def main() -> None:
     counts = _line_counts(root)
     _print_rooms(counts)
     _print_longest(counts)
-    for name, found in _circles(root):
-        print(f"circles in {name}: {len(found)}")
-        for circle in found:
-            print(f"    {' '.join(circle)}")
+    for name, found in _cycles(root):
+        print(f"import cycles in {name}: {len(found)}")
+        for cycle in found:
+            print(f"    {' '.join(cycle)}")
     passed = _passed(root)
-    print(f"files that get_angles() passes: {len(passed)}")
+    print(f"files that run during get_angles(): {len(passed)}")
     for path in passed:
         print(f"    {path}")
 
@@ -161,14 +161,14 @@ def _print_longest(counts: dict[Source, Lines]) -> None:
         print(f"    {sizes[path]:5}  {path}")
 
 
-def _circles(root: Path) -> Iterator[tuple[str, list[list[str]]]]:
+def _cycles(root: Path) -> Iterator[tuple[str, list[list[str]]]]:
     for folder, name in [
         (root / "python" / "cobotwire", "cobotwire"),
         (root / "codegen" / "src" / "cobotwire_codegen", "cobotwire_codegen"),
     ]:
-        yield name, circles(python_arrows(folder, name))
+        yield name, import_cycles(python_imports_of(folder, name))
     for crate in ("core", "py", "fuzz"):
-        yield f"rust/{crate}", circles(rust_arrows(root / "rust" / crate / "src"))
+        yield f"rust/{crate}", import_cycles(rust_imports_of(root / "rust" / crate / "src"))
 
 
 def _passed(root: Path) -> Sequence[str]:

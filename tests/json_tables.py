@@ -17,7 +17,7 @@ SAMPLES = ROOT / "rust" / "core" / "tests" / "samples"
 
 @lru_cache
 def codec_of(name: str, kind: codecs.CodecName) -> Codec:
-    """Return a codec of an edition or of a sample; it is made once."""
+    """Return a codec of an edition or of a sample, cached."""
     return codecs.load(TABLES.get(name) or sample(name), kind)
 
 

@@ -1,4 +1,4 @@
-"""Read which modules of the Python packages and the Rust crates import which."""
+"""Find which modules of the Python packages and the Rust crates import each other."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-Arrows = dict[str, set[str]]
+Imports = dict[str, set[str]]
 
 
 def python_imports(path: Path, package: str) -> Iterator[str]:
@@ -24,20 +24,20 @@ def python_imports(path: Path, package: str) -> Iterator[str]:
             yield from (f"{base}.{alias.name}" for alias in node.names)
 
 
-def python_arrows(root: Path, name: str) -> Arrows:
+def python_imports_of(root: Path, name: str) -> Imports:
     """Return the modules that each module of the package ``name`` in folder ``root`` imports.
 
     ``from package import Name`` counts as an import of the package only if no module has that name.
     """
     modules = _python_modules(root, name)
-    arrows: Arrows = {}
+    imports: Imports = {}
     for module, path in modules.items():
         context = f"{module}.__init__" if path.name == "__init__.py" else module
         named = [found for found in python_imports(path, context) if found in modules]
         # `from a import b` yields a and a.b; if a.b is a module, a is not counted.
         longest = {n for n in named if not any(m.startswith(f"{n}.") for m in named)}
-        arrows[module] = longest - {module}
-    return arrows
+        imports[module] = longest - {module}
+    return imports
 
 
 def _python_modules(root: Path, name: str) -> dict[str, Path]:
@@ -48,7 +48,7 @@ def _python_modules(root: Path, name: str) -> dict[str, Path]:
     return found
 
 
-def rust_arrows(root: Path) -> Arrows:
+def rust_imports_of(root: Path) -> Imports:
     """Return the modules that each module of a crate uses; ``root`` is its ``src`` folder."""
     modules = {
         path.relative_to(root).with_suffix("").as_posix().removesuffix("/mod"): path.read_text()
@@ -81,22 +81,22 @@ def _paths(tree: str) -> Iterator[list[str]]:
         yield [word for word in branch.strip().split("{")[0].split("::") if word]
 
 
-def circles(arrows: Mapping[str, set[str]]) -> list[list[str]]:
+def import_cycles(imports: Mapping[str, set[str]]) -> list[list[str]]:
     """Return the largest sets of modules in which each module reaches every other one."""
-    reached = {name: _reached(arrows, name) for name in arrows}
+    reached = {name: _reached(imports, name) for name in imports}
     found = {
         frozenset({name, *(other for other in reached[name] if name in reached[other])})
-        for name in arrows
+        for name in imports
         if name in reached[name]
     }
-    return sorted(sorted(circle) for circle in found)
+    return sorted(sorted(cycle) for cycle in found)
 
 
-def _reached(arrows: Mapping[str, set[str]], start: str) -> set[str]:
+def _reached(imports: Mapping[str, set[str]], start: str) -> set[str]:
     found: set[str] = set()
     waiting = [start]
     while waiting:
-        for name in arrows[waiting.pop()] - found:
+        for name in imports[waiting.pop()] - found:
             found.add(name)
             waiting.append(name)
     return found

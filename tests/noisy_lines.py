@@ -24,7 +24,7 @@ DAMAGE: list[Damage] = [
     Noise(classes=("byte",), where="inside"),
     Noise(where="inside"),
 ]
-# Hypothesis makes the draws, so that failing examples shrink.
+# Hypothesis draws the random numbers, so that failing examples shrink.
 DRAWS = st.randoms(use_true_random=False)
 
 

@@ -17,7 +17,7 @@ Step = bytes | float | None
 
 
 class _Peer:
-    """Wait for a request, then play a script: send bytes, sleep for numbers, unplug at None."""
+    """After each request, run a script: send bytes, sleep for numbers (seconds), unplug at None."""
 
     url: str
 

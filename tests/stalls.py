@@ -16,7 +16,7 @@ class StallMeter:
     """A thread that wakes every 5 ms, while the ``with`` block runs.
 
     Attributes:
-        longest: by how many seconds it woke too late, at most.
+        longest: the longest delay of a wake-up, in seconds.
     """
 
     def __init__(self) -> None:
@@ -45,8 +45,8 @@ class StallMeter:
 def unstalled(run: Callable[[], R], allowed: float) -> R:
     """Return the result of a run during which no thread waited longer than ``allowed`` seconds.
 
-    A run on a machine that stalled is repeated, three times at most: it says how fast the machine
-    is, and not whether the code is right. The result of the last run counts in any case.
+    A run during which the machine stalled is repeated, at most three times, because its times say
+    nothing about the code. The result of the last run counts in any case.
     """
     for _ in range(RUNS):
         with StallMeter() as meter:

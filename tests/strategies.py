@@ -41,7 +41,7 @@ VARIANTS = variants_of(TABLE)
 
 @lru_cache
 def codec_of(edition: str, name: codecs.CodecName) -> Codec:
-    """Return a codec of an edition; it is made once."""
+    """Return a codec of an edition, cached."""
     return codecs.load(TABLES[edition], name)
 
 
@@ -109,10 +109,10 @@ def odd_values() -> st.SearchStrategy[Any]:
 def any_arguments(draw: st.DrawFn, table: Table = TABLE) -> tuple[str, Direction, tuple[Any, ...]]:
     """Draw a message with any mixture of legal and illegal values."""
     variant, values = draw(messages(table))
-    spoilt = [draw(odd_values()) if draw(st.integers(0, 3)) == 0 else value for value in values]
+    mixed = [draw(odd_values()) if draw(st.integers(0, 3)) == 0 else value for value in values]
     if draw(st.integers(0, 9)) == 0:
-        spoilt.append(draw(odd_values()))
-    return variant.command.name, variant.direction, tuple(spoilt)
+        mixed.append(draw(odd_values()))
+    return variant.command.name, variant.direction, tuple(mixed)
 
 
 def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:

@@ -30,7 +30,9 @@ ERRORS = [
 
 
 @pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
-@pytest.mark.parametrize("way", [lambda e: pickle.loads(pickle.dumps(e)), copy.copy])
+@pytest.mark.parametrize(
+    "way", [lambda e: pickle.loads(pickle.dumps(e)), copy.copy], ids=["pickled", "copied"]
+)
 def test_pickled_or_copied_error_equals_the_original(error: CobotwireError, way: object) -> None:
     assert callable(way)
     again = way(error)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import vectors
-from module_graph import circles, python_arrows, python_imports, rust_arrows
+from module_graph import import_cycles, python_imports, python_imports_of, rust_imports_of
 
 PACKAGE = vectors.ROOT / "python" / "cobotwire"
 
@@ -71,27 +71,27 @@ def test_package_holds_the_rooms_and_nothing_else() -> None:
     [(PACKAGE, "cobotwire"), (vectors.ROOT / "codegen/src/cobotwire_codegen", "cobotwire_codegen")],
     ids=["package", "generator"],
 )
-def test_python_modules_import_each_other_in_no_circle(root: Path, name: str) -> None:
-    assert circles(python_arrows(root, name)) == []
+def test_python_modules_have_no_import_cycle(root: Path, name: str) -> None:
+    assert import_cycles(python_imports_of(root, name)) == []
 
 
 @pytest.mark.parametrize("crate", ["core", "py", "fuzz"])
-def test_rust_modules_use_each_other_in_no_circle(crate: str) -> None:
-    assert circles(rust_arrows(vectors.ROOT / "rust" / crate / "src")) == []
+def test_rust_modules_have_no_import_cycle(crate: str) -> None:
+    assert import_cycles(rust_imports_of(vectors.ROOT / "rust" / crate / "src")) == []
 
 
 @pytest.mark.parametrize(
-    ("arrows", "expected"),
+    ("imports", "expected"),
     [
         ({"a": {"b"}, "b": {"c"}, "c": set()}, []),
         ({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"d"}}, [["b", "c"], ["d"]]),
     ],
-    ids=["without", "with"],
+    ids=["without a cycle", "with cycles"],
 )
-def test_circles_names_exactly_modules_that_reach_themselves(
-    arrows: dict[str, set[str]], expected: list[list[str]]
+def test_import_cycles_are_exactly_the_modules_that_reach_themselves(
+    imports: dict[str, set[str]], expected: list[list[str]]
 ) -> None:
-    assert circles(arrows) == expected
+    assert import_cycles(imports) == expected
 
 
 def test_generator_and_package_do_not_import_each_other() -> None:

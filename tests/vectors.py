@@ -34,11 +34,11 @@ def framed() -> list[tuple[str, Vector]]:
 
 
 def rejected() -> list[tuple[str, Vector]]:
-    """Return the vectors whose bytes are not a legal frame."""
+    """Return the vectors with bytes that are not a legal frame."""
     return [(name, vector) for name, vector in every() if vector.rejected is not None]
 
 
 def fields(name: str, vector: Vector) -> dict[str, Any]:
-    """Return a vector's values by name, in the form that the codecs return."""
+    """Return a vector's values by name, as the codecs return them."""
     found = {key: plain(edition(name), vector, key, value) for key, value in vector.values}
     return {key: tuple(v) if isinstance(v, list) else v for key, v in found.items()}

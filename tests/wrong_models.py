@@ -1,4 +1,4 @@
-"""Models that are wrong in one place: every test of a target must detect its output."""
+"""Make models that are wrong in one place; the tests of each target must detect them."""
 
 from __future__ import annotations
 

@@ -165,7 +165,9 @@ def test_killed_process_leaves_every_complete_frame(tmp_path: Path) -> None:
     assert not capture.finished
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="only Linux has a disk always full")
+@pytest.mark.skipif(
+    not os.path.exists("/dev/full"), reason="only Linux has a device that is always full"
+)
 def test_full_disk_stops_the_recording_but_not_the_call(
     caplog: pytest.LogCaptureFixture, server: PtyServer
 ) -> None:
@@ -174,8 +176,8 @@ def test_full_disk_stops_the_recording_but_not_the_call(
         writer = CaptureWriter(good)
         recorder = Recorder(writer, codecs.load(TABLE), name="full.pcapng")
         writer._file = full
-        link = TappedTransport(open_transport(server.url, 115200), recorder.record)
-        with caplog.at_level(logging.ERROR), MyCobot(link) as arm:
+        transport = TappedTransport(open_transport(server.url, 115200), recorder.record)
+        with caplog.at_level(logging.ERROR), MyCobot(transport) as arm:
             arm.power_on()
             arm.get_angles()
         assert caplog.text.count("recording to full.pcapng stopped") == 1

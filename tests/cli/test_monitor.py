@@ -63,7 +63,7 @@ def test_ctrl_c_closes_the_port_and_finishes_the_recording(
         [*COMMAND, server.url, "--rate", "100", "--record", str(path)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        # A test run in the background has SIGINT ignored, and so would its children.
+        # If the tests run in the background, SIGINT is ignored, and child processes inherit that.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     assert process.stdout is not None

@@ -16,7 +16,7 @@ CLOSED = Port("/dev/ttyUSB3", False, "no known adapter", False)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, found: list[Port], *words: str) -> tuple[int, str]:
-    # The ports of the machine are unknown.
+    # Replace the ports of the machine, which are unknown.
     monkeypatch.setattr(serial_ports, "ports", lambda: found)
     result = CliRunner().invoke(ports, words)
     return result.exit_code, result.output

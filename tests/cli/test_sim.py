@@ -1,4 +1,4 @@
-"""Run ``cobotwire sim`` with well-behaved clients, and with some that never read."""
+"""Run ``cobotwire sim`` with ordinary clients, and with clients that never read."""
 
 from __future__ import annotations
 
@@ -247,11 +247,13 @@ def test_faults_are_injected_for_every_client_and_printed(tmp_path: Path) -> Non
     ]
 
 
-@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="needs /proc, as Linux has it")
+@pytest.mark.skipif(
+    not Path("/proc/self/maps").exists(), reason="reads /proc, which only Linux has"
+)
 def test_sim_imports_scipy_before_the_first_slow_request(
     sim: subprocess.Popen[str],
 ) -> None:
-    """Otherwise the reply to the first solve_inv_kinematics exceeds its deadline."""
+    # Otherwise the reply to the first solve_inv_kinematics exceeds its deadline.
     assert sim.stdout is not None
     assert sim.stdout.readline()
     maps, end = Path(f"/proc/{sim.pid}/maps"), time.monotonic() + 30

@@ -1,4 +1,4 @@
-"""Queries are repeated, one-way requests never; late and second replies serve no other request."""
+"""Queries are repeated, one-way requests never; a late or second reply goes to no other request."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REQUEST = bytes.fromhex("FE FE 02 20 FA")
 ONCE = RetryPolicy(attempts=1)
 
 
-def test_silent_arm_is_a_timeout_that_names_the_request(open_arm: Opener, peer_on: Any) -> None:
+def test_silent_arm_raises_a_timeout_that_names_the_request(open_arm: Opener, peer_on: Any) -> None:
     with peer_on() as peer, open_arm(peer.url, timeout=0.1, retry=ONCE) as arm:
         started = time.monotonic()
         with pytest.raises(

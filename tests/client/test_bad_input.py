@@ -28,7 +28,7 @@ BAD: list[tuple[str, Callable[[Any], Any], str, str]] = [
     ("NaN", lambda arm: arm.send_angles([0, 0, math.nan, 0, 0, 0], 20), "angles.j3", ".."),
     ("infinity", lambda arm: arm.send_angle(1, math.inf, 20), "angle", ".."),
     ("a string for an angle", lambda arm: arm.send_angle(1, "10", 20), "angle", "a number"),
-    ("nothing for an angle", lambda arm: arm.send_angle(1, None, 20), "angle", "a number"),
+    ("None for an angle", lambda arm: arm.send_angle(1, None, 20), "angle", "a number"),
     ("a string for a row", lambda arm: arm.send_angles("000000", 20), "angles", "6 numbers"),
     ("a number for a row", lambda arm: arm.send_angles(5, 20), "angles", "6 numbers"),
     ("joint 0", lambda arm: arm.send_angle(0, 0, 20), "joint", "1..6"),
@@ -61,18 +61,18 @@ BAD: list[tuple[str, Callable[[Any], Any], str, str]] = [
 def test_wrong_argument_is_named_and_nothing_is_written(
     codec: Any, call: Callable[[Any], Any], argument: str, allowed: str
 ) -> None:
-    link = RecordingTransport()
-    assert isinstance(link, Transport)
-    with MyCobot(link, codec=codec) as arm:
+    transport = RecordingTransport()
+    assert isinstance(transport, Transport)
+    with MyCobot(transport, codec=codec) as arm:
         with pytest.raises(UsageError) as caught:
             call(arm)
         assert caught.value.argument == argument
         assert allowed in caught.value.allowed
         assert argument in str(caught.value)
-        assert link.written == b""
-        # Nothing waits afterwards: the next call is sent.
+        assert transport.written == b""
+        # No request is left waiting, so the next call is sent.
         arm.power_on()
-    assert link.written == bytes.fromhex("FEFE0210FA")
+    assert transport.written == bytes.fromhex("FEFE0210FA")
 
 
 def test_usage_error_is_a_value_error() -> None:

@@ -1,6 +1,6 @@
-"""What calls return on bad lines: scripted peers on a real pty and over real TCP, both clients.
+"""Check what calls return on bad lines: both clients, scripted peers on a real pty and real TCP.
 
-``tests/field_notes`` has the cases of the field notes' lines; this module has all other lines.
+``tests/field_notes`` has the lines of the field notes; this module has all others.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ PANIC = (
 REQUEST = bytes.fromhex("FE FE 02 20 FA")
 
 FOUND = {
-    "one FE before": [b"\xfe" + ANGLES],
-    "three FE before": [b"\xfe\xfe\xfe" + ANGLES],
-    "a pause longer than an attempt inside": [ANGLES[:8], 0.25, ANGLES[8:]],
-    "a servo leak after": [ANGLES + SERVO_LEAK],
-    "a damaged reply before": [ANGLES[:6] + ANGLES[7:] + ANGLES],
-    "a panic in the middle of a reply, and the reply again": [ANGLES[:9] + PANIC + ANGLES],
+    "one FE before the reply": [b"\xfe" + ANGLES],
+    "three FE before the reply": [b"\xfe\xfe\xfe" + ANGLES],
+    "a pause longer than an attempt inside the reply": [ANGLES[:8], 0.25, ANGLES[8:]],
+    "a servo leak after the reply": [ANGLES + SERVO_LEAK],
+    "a damaged reply before the reply": [ANGLES[:6] + ANGLES[7:] + ANGLES],
+    "a panic inside the reply, then the reply again": [ANGLES[:9] + PANIC + ANGLES],
 }
 
 
@@ -47,9 +47,16 @@ def test_reply_is_found_among_other_bytes(
 @pytest.mark.parametrize(
     "script",
     [ANGLES[:9] + PANIC, ANGLES[:9] + ANGLES[10:], POWERED, REQUEST, SERVO_LEAK, bytes(277)],
-    ids=["a panic cuts it", "a byte is dropped", "another command's", "an echo", "a leak", "NULs"],
+    ids=[
+        "a panic inside",
+        "a dropped byte",
+        "another command's reply",
+        "an echo",
+        "a leak",
+        "NULs",
+    ],
 )
-def test_missing_reply_is_a_timeout_and_the_next_call_succeeds(
+def test_missing_reply_raises_a_timeout_and_the_next_call_succeeds(
     open_arm: Opener, peer_on: Any, script: bytes
 ) -> None:
     with peer_on([script], [POWERED]) as peer, open_arm(peer.url, timeout=0.1) as arm:
@@ -67,7 +74,7 @@ def test_frame_hidden_after_a_false_header_is_found_at_the_deadline(
         assert arm.is_power_on() is True
 
 
-def test_timeout_lists_what_was_received_meanwhile(open_arm: Opener, peer_on: Any) -> None:
+def test_timeout_lists_what_was_received_instead(open_arm: Opener, peer_on: Any) -> None:
     with peer_on([SERVO_LEAK + POWERED]) as peer, open_arm(peer.url, timeout=0.1) as arm:
         with pytest.raises(ReplyTimeout) as caught:
             arm.get_angles()

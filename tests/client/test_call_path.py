@@ -1,4 +1,4 @@
-"""One call passes few files of the package, so that a reader can follow it."""
+"""One call runs code of few files of the package, so that a reader can follow it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ with PtyServer(SimulatedArm(TABLE)) as server:
 """
 
 
-def test_get_angles_passes_at_most_12_files() -> None:
+def test_get_angles_runs_code_of_at_most_12_files() -> None:
     files: set[str] = set()
 
     def note(frame: FrameType, event: str, argument: Any) -> None:
@@ -38,7 +38,7 @@ def test_get_angles_passes_at_most_12_files() -> None:
         assert simulator.stdin is not None
         assert simulator.stdout is not None
         with MyCobot280(simulator.stdout.readline().strip(), codec="native") as arm:
-            # The first call also imports what few programs need.
+            # The first call also imports modules; later calls do not.
             arm.get_angles()
             sys.setprofile(note)
             try:

@@ -1,4 +1,4 @@
-"""The generated client against the simulated arm, through pyserial and a pseudo-terminal."""
+"""Call the simulated arm with the generated client, through pyserial and a pseudo-terminal."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _wait(condition: object, seconds: float = 5.0) -> None:
     assert callable(condition)
     deadline = time.monotonic() + seconds
     while not condition():
-        assert time.monotonic() < deadline, "the arm did not get there in time"
+        assert time.monotonic() < deadline, "the arm did not reach the target in time"
         time.sleep(0.01)
 
 
@@ -46,7 +46,7 @@ def test_calls_of_the_readme_succeed(arm: MyCobot) -> None:
     assert arm.get_angles() == pytest.approx(there, abs=0.055)
 
 
-@pytest.mark.parametrize("limit", [165.0, 10.0], ids=["it gets there", "it stops short"])
+@pytest.mark.parametrize("limit", [165.0, 10.0], ids=["target reached", "target not reached"])
 def test_readme_example_runs_to_its_end(
     server: PtyServer, simulated: SimulatedArm, limit: float, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -95,7 +95,7 @@ def test_servo_registers_are_written_and_read(arm: MyCobot) -> None:
     assert arm.get_servo_data(1, ServoRegister.POSITION_P) == 10
 
 
-def test_text_reply_ends_by_silence(arm: MyCobot, simulated: SimulatedArm) -> None:
+def test_text_reply_ends_after_a_silence(arm: MyCobot, simulated: SimulatedArm) -> None:
     assert arm.get_ssid_pwd() == WifiAccount("MyCobotWiFi2.4G", "mycobot123")
     simulated.state.ssid, simulated.state.password = "two words", "pass word "
     assert arm.get_ssid_pwd() == WifiAccount("two words", "pass word ")
@@ -121,7 +121,7 @@ def test_every_request_is_sent_exactly_once(server: PtyServer) -> None:
     assert sent == ["fe fe 02 10 fa", "fe fe 06 33 01 01 f4 32 fa", "fe fe 02 20 fa"]
 
 
-def test_threads_take_turns(arm: MyCobot) -> None:
+def test_queries_of_several_threads_get_their_own_replies(arm: MyCobot) -> None:
     failures: list[BaseException] = []
 
     def query(joint: int) -> None:

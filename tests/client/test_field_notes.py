@@ -1,6 +1,6 @@
 """Run each line of the field notes with both clients, on a real pty and over real TCP.
 
-The cases are data in ``tests/field_notes``; ``make table`` shows how pymycobot fares with them.
+The cases are data in ``tests/field_notes``; ``make table`` shows pymycobot's results.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ RUNS = [
 
 
 def _played(case: Case, who: str, url: str) -> tuple[list[Outcome], float]:
-    """Run each of the case's clients in a thread of its own."""
+    """Run each of the case's clients in a separate thread."""
     outcomes: list[Outcome] = []
     longest: list[float] = []
 
@@ -57,7 +57,7 @@ def _run(case: Case, transport: str, who: str) -> tuple[list[Outcome], float, Li
 def test_call_on_a_field_notes_line_ends_with_the_verdict_of_its_case(
     case: Case, transport: str, who: str
 ) -> None:
-    # A query is sent again after 167 ms, also if the test's own arm had no processor until then.
+    # A client repeats a query after 167 ms, so a stall of the machine would change the counts.
     outcomes, seconds, line = unstalled(lambda: _run(case, transport, who), allowed=0.08)
     verdicts = [outcome.verdict for outcome in outcomes]
     if case.clients > 1:
@@ -87,8 +87,10 @@ def test_every_field_note_has_a_case_or_names_its_test() -> None:
         assert f"def {name}(" in (vectors.ROOT / path).read_text(), place
 
 
-@pytest.mark.skipif(not FIELD_NOTES.exists(), reason="the field notes lie beside the repository")
-def test_pieces_cover_all_field_notes() -> None:
+@pytest.mark.skipif(
+    not FIELD_NOTES.exists(), reason="the field notes are outside the repository, and absent here"
+)
+def test_quoted_pieces_cover_all_field_notes() -> None:
     text = " ".join(FIELD_NOTES.read_text().split("\n## ", 1)[1].split())
     for key, piece in NOTES.items():
         assert piece in text, key

@@ -1,4 +1,4 @@
-"""Calls end in time even if the peer never falls silent."""
+"""Calls end in time even if the peer never stops sending."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FRAMES = bytes.fromhex("FE FE 03 12 01 FA") * 512
 
 @contextmanager
 def flood(write: Callable[[bytes], object], babble: bytes) -> Iterator[None]:
-    """Write endlessly; ``write`` must not block for ever."""
+    """Write without end; ``write`` must not block forever."""
     stop = threading.Event()
 
     def play() -> None:
@@ -96,7 +96,7 @@ def test_endless_traffic_does_not_delay_a_timeout(
                 assert sum(map(len, caught.value.received)) < 3000
             started = time.monotonic()
             arm.stop()
-            assert time.monotonic() - started < TIMEOUT, "one-way requests are sent nevertheless"
+            assert time.monotonic() - started < TIMEOUT, "one-way requests are sent all the same"
 
 
 class Torrent:
@@ -118,7 +118,7 @@ class Torrent:
         pass
 
 
-def test_held_request_is_not_sent_while_the_line_is_never_drained() -> None:
+def test_held_request_is_not_sent_while_bytes_keep_arriving() -> None:
     transport = Torrent()
     arm = MyCobot(transport, timeout=0.1)
     for message in ("received meanwhile: noise", "not sent"):

@@ -32,7 +32,7 @@ with PtyServer(SimulatedArm(TABLE)) as server, MyCobot(server.url) as arm:
     until = time.monotonic() + 4
     while time.monotonic() < until:
         try:
-            # One interrupt each time, which may still be on its way when the calls are done.
+            # One interrupt in each round; it may come after the calls, during the sleep.
             signal.setitimer(signal.ITIMER_REAL, random.uniform(0.00001, 0.0006))
             for joint in range(1, 7):
                 arm.set_color(joint, 1, 2)
@@ -60,7 +60,7 @@ def test_ctrl_c_anywhere_leaves_the_arm_usable(seed: int) -> None:
     assert int(result.stdout) > 10
 
 
-def test_ctrl_c_in_the_reading_thread_lets_another_one_continue() -> None:
+def test_ctrl_c_in_the_reading_thread_lets_another_thread_continue() -> None:
     reply = bytes.fromhex("FE FE 03 12 01 FA")
     with ScriptedPeer([0.6, reply]) as peer, MyCobot(peer.url, timeout=3) as arm:
         results: list[bool] = []
@@ -80,7 +80,7 @@ async def _cancelled(url: str) -> None:
         with pytest.raises(TimeoutError):
             async with asyncio.timeout(0.05):
                 await arm.get_encoder(1)
-        # The reply to the cancelled request arrives at 0.2 s; it must not be used for this request.
+        # The reply to the cancelled request arrives at 0.2 s; it must not go to the next request.
         assert await arm.get_encoder(2) == 2
 
 
@@ -106,6 +106,6 @@ async def _cancelled_at_any_time(url: str) -> None:
         assert exchange.idle_seconds(0.0) is None, "nothing waits"
 
 
-def test_tasks_may_be_cancelled_at_any_time() -> None:
+def test_cancelling_tasks_at_any_time_leaves_the_client_usable() -> None:
     with PtyServer(SimulatedArm(TABLE)) as server:
         asyncio.run(_cancelled_at_any_time(server.url))

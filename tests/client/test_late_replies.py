@@ -68,10 +68,10 @@ def test_reply_50_ms_late_is_not_used_for_another_joint(slow_arm: SlowArm) -> No
         with pytest.raises(ReplyTimeout):
             arm.get_encoder(1)
         for joint in (2, 3):
-            # On a busy machine it may time out, but it is never a wrong value.
+            # On a busy machine the call may time out, but it never returns a wrong value.
             with suppress(ReplyTimeout):
                 assert arm.get_encoder(joint) == joint
-        assert time.monotonic() - started < 0.9, "the late reply lifts the hold at once"
+        assert time.monotonic() - started < 0.9, "the late reply ends the hold at once"
     directions = [(t.direction, t.data) for t in traffic]
     assert directions.index(("received", _reply(1))) < directions.index(
         ("sent", bytes.fromhex("FE FE 03 3B 02 FA"))
@@ -79,7 +79,7 @@ def test_reply_50_ms_late_is_not_used_for_another_joint(slow_arm: SlowArm) -> No
 
 
 @pytest.mark.parametrize("slow_arm", [{1: 0.727, 2: 0.0}], indirect=True)
-def test_latest_reply_ever_seen_is_not_used_for_another_joint(slow_arm: SlowArm) -> None:
+def test_reply_after_727_ms_is_not_used_for_another_joint(slow_arm: SlowArm) -> None:
     with MyCobot(slow_arm.url, timeout=TIMEOUT) as arm:
         with pytest.raises(ReplyTimeout):
             arm.get_encoder(1)
@@ -87,7 +87,7 @@ def test_latest_reply_ever_seen_is_not_used_for_another_joint(slow_arm: SlowArm)
 
 
 @pytest.mark.parametrize("slow_arm", [{1: 60.0}], indirect=True)
-def test_lost_reply_holds_the_next_query_but_no_one_way_request(slow_arm: SlowArm) -> None:
+def test_lost_reply_holds_the_next_query_but_not_a_one_way_request(slow_arm: SlowArm) -> None:
     with MyCobot(slow_arm.url, timeout=TIMEOUT) as arm:
         sent_at = time.monotonic()
         with pytest.raises(ReplyTimeout):

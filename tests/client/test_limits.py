@@ -26,8 +26,8 @@ NAMES: list[codecs.CodecName] = ["reference", "native"]
 def test_narrower_limits_apply_to_every_call_with_a_target(
     client: type[MyCobot280], codec: codecs.CodecName
 ) -> None:
-    link = RecordingTransport()
-    arm = client(link, codec=codec, limits=Limits([(-90, 45.5), *REST], [*REST, (0, 10)]))
+    transport = RecordingTransport()
+    arm = client(transport, codec=codec, limits=Limits([(-90, 45.5), *REST], [*REST, (0, 10)]))
     for angle in (45.51, -90.01):
         with pytest.raises(UsageError, match=r"-90\.\.45\.5"):
             arm.send_angles([angle, 0, 0, 0, 0, 0], 20)
@@ -37,24 +37,24 @@ def test_narrower_limits_apply_to_every_call_with_a_target(
         arm.send_coord(6, 10.01, 20)
     with pytest.raises(UsageError, match=r"0\.\.10"):
         arm.send_coords([0, 0, 0, 0, 0, -0.01], 20, 1)
-    assert link.written == b""
+    assert transport.written == b""
     arm.send_angle(1, 45.5, 20)
     arm.send_angle(2, 100, 20)
     arm.send_coord(6, 10, 20)
-    assert link.written == bytes.fromhex(
+    assert transport.written == bytes.fromhex(
         "FE FE 06 21 01 11 C6 14 FA FE FE 06 21 02 27 10 14 FA FE FE 06 24 06 03 E8 14 FA"
     )
 
 
 def test_limits_apply_in_radians_and_to_jogging() -> None:
-    link = RecordingTransport()
+    transport = RecordingTransport()
     with pytest.raises(UsageError):
-        MyCobot280(link, limits=Limits([(-90, 90), *REST])).send_radians(
+        MyCobot280(transport, limits=Limits([(-90, 90), *REST])).send_radians(
             [math.pi * 0.51, 0, 0, 0, 0, 0], 20
         )
     with pytest.raises(UsageError):
-        MyCobot(link, limits=Limits([(-90, 90), *REST])).jog_absolute(1, 91, 20)
-    assert link.written == b""
+        MyCobot(transport, limits=Limits([(-90, 90), *REST])).jog_absolute(1, 91, 20)
+    assert transport.written == b""
 
 
 @pytest.mark.parametrize("codec", NAMES)
@@ -63,9 +63,9 @@ def test_wider_limits_must_be_explicit_and_fit_the_wire(codec: codecs.CodecName)
     with pytest.raises(UsageError, match=r"inside -168\.\.168 degree.*wider=True") as caught:
         MyCobot280(RecordingTransport(), limits=Limits(wide))
     assert caught.value.argument == "limits.joints[0]"
-    link = RecordingTransport()
-    MyCobot280(link, codec=codec, limits=Limits(wide, wider=True)).send_angle(1, -200, 20)
-    assert link.written == bytes.fromhex("FE FE 06 21 01 B1 E0 14 FA")
+    transport = RecordingTransport()
+    MyCobot280(transport, codec=codec, limits=Limits(wide, wider=True)).send_angle(1, -200, 20)
+    assert transport.written == bytes.fromhex("FE FE 06 21 01 B1 E0 14 FA")
     with pytest.raises(UsageError, match=r"-327\.68\.\.327\.67 degree, what the wire carries"):
         MyCobot280(RecordingTransport(), limits=Limits([(-400, 0), *REST], wider=True))
 
@@ -117,7 +117,7 @@ def test_encoded_target_is_within_the_limits(
     try:
         codec = codecs.load(limited(table, Limits(ranges)), name)
     except UsageError:
-        # Too narrow: no raw value lies inside.
+        # The limits are too narrow: no raw value is inside them.
         assert width < 0.01
         return
     target = [0.0] * 6

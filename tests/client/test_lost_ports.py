@@ -38,7 +38,7 @@ def test_closed_client_is_a_link_error(open_arm: Opener) -> None:
         assert peer.received == b""
 
 
-def test_port_that_goes_away_ends_the_wait(open_arm: Opener, peer_on: Any) -> None:
+def test_unplugged_port_ends_the_wait_with_a_link_error(open_arm: Opener, peer_on: Any) -> None:
     with peer_on([ANGLES[:5], 0.1, None]) as peer, open_arm(peer.url, timeout=5) as arm:
         started = time.monotonic()
         with pytest.raises(LinkError):
@@ -48,7 +48,9 @@ def test_port_that_goes_away_ends_the_wait(open_arm: Opener, peer_on: Any) -> No
             arm.get_angles()
 
 
-def test_port_that_goes_away_ends_every_wait(open_arm: Opener, peer_on: Any) -> None:
+def test_unplugged_port_ends_every_wait_with_its_own_link_error(
+    open_arm: Opener, peer_on: Any
+) -> None:
     errors: list[BaseException] = []
 
     def query(joint: int) -> None:

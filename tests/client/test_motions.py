@@ -1,4 +1,4 @@
-"""Calls that wait for a motion of the simulated arm: reached, too slow, stuck, interrupted."""
+"""Wait for motions of the simulated arm: reached, too slow, stuck, or interrupted."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def arm(request: pytest.FixtureRequest, simulated: SimulatedArm) -> Iterator[Any
 
 def test_move_returns_when_the_arm_reaches_the_target(arm: Any) -> None:
     arm.move_angles(THERE, 50)
-    assert arm.get_angles() == pytest.approx(THERE, abs=0.055), "it stands on encoder ticks"
+    assert arm.get_angles() == pytest.approx(THERE, abs=0.055), "the arm stops on encoder ticks"
     assert arm.is_moving() is False
 
 
@@ -60,7 +60,7 @@ def test_move_that_is_not_waited_for_returns_at_once(arm: Any) -> None:
     arm.send_angles([0, 0, 0, 0, 0, 0], 100, ack_within=1.0)
 
 
-def test_slow_move_is_a_timeout_and_continues(arm: Any) -> None:
+def test_slow_move_raises_a_timeout_and_continues(arm: Any) -> None:
     started = time.monotonic()
     with pytest.raises(MotionTimeout, match="has not reached") as caught:
         arm.move_angles([150, 0, 0, 0, 0, 0], 10, timeout=0.5)
@@ -70,10 +70,10 @@ def test_slow_move_is_a_timeout_and_continues(arm: Any) -> None:
     assert arm.is_moving() is True
 
 
-def test_arm_that_stops_short_is_an_error_before_the_timeout(
+def test_arm_that_stops_short_raises_an_error_before_the_timeout(
     arm: Any, simulated: SimulatedArm
 ) -> None:
-    simulated.state.maximum[2] = 10.0  # the arm ignores such a target
+    simulated.state.maximum[2] = 10.0  # the arm ignores targets beyond its limits
     started = time.monotonic()
     with pytest.raises(MotionTimeout, match="stands still short of"):
         arm.move_angles(THERE, 50, timeout=20)
@@ -96,7 +96,7 @@ def test_ctrl_c_stops_the_arm(simulated: SimulatedArm) -> None:
         with pytest.raises(KeyboardInterrupt):
             arm.move_angles([150, 0, 0, 0, 0, 0], 10)
         assert [one.data for one in traffic if one.direction == "sent"][-1] == STOP
-        time.sleep(0.2)  # an arm takes a moment to stand
+        time.sleep(0.2)  # the arm needs a moment to stop
         assert arm.is_moving() is False
 
 
@@ -107,7 +107,7 @@ def test_cancelled_move_stops_the_arm(simulated: SimulatedArm) -> None:
             with pytest.raises(TimeoutError):
                 async with asyncio.timeout(0.3):
                     await arm.move_angles([150, 0, 0, 0, 0, 0], 10)
-            await asyncio.sleep(0.2)  # an arm takes a moment to stand
+            await asyncio.sleep(0.2)  # the arm needs a moment to stop
             return await arm.is_moving()
 
     with PtyServer(simulated) as server:
@@ -126,7 +126,7 @@ def test_firmware_without_acks_delays_no_setter_and_times_out_if_acks_are_requir
                 arm.set_color(1, 2, 3, ack_within=0.1)
 
 
-def test_steps_of_waiting_follow_from_times_and_results() -> None:
+def test_next_step_of_waiting_depends_on_times_and_results() -> None:
     steps = until_reached(TABLE, THERE, 0, limit=1.0, started=100.0)
     is_in_position: Any = TABLE.request_type("is_in_position")
     assert next(steps) == Query(is_in_position(THERE, 0), 1.0)

@@ -1,4 +1,4 @@
-"""Threads or tasks share an arm: one-way requests go at once, others in turn, frames stay whole."""
+"""Threads or tasks share an arm: one-way requests are sent at once, queries take turns."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_held_request_delays_no_other_thread(open_arm: Opener) -> None:
 
 def test_many_threads_get_their_own_replies_and_frames_do_not_mix(open_arm: Opener) -> None:
     events: list[DeviceEvent] = []
-    simulated = SimulatedArm(TABLE, on_event=lambda event, answer: events.append(event))
+    simulated = SimulatedArm(TABLE, on_event=lambda event, reply: events.append(event))
     failures: list[BaseException] = []
 
     def work(joint: int) -> None:
@@ -82,7 +82,7 @@ def test_many_threads_get_their_own_replies_and_frames_do_not_mix(open_arm: Open
         arm.get_angles()
     assert failures == []
     assert all(isinstance(event, RequestReceived) for event in events), (
-        "no noise, nothing malformed"
+        "each event is a legal request"
     )
     assert len(events) >= 6 * 30 * 4 + 1
 
@@ -100,7 +100,7 @@ def test_traffic_listener_may_call_the_arm() -> None:
     assert seen == [True, False]
 
 
-def _endlessly(call: Callable[..., object]) -> None:
+def _repeat(call: Callable[..., object]) -> None:
     while True:
         call(1, 2, 3)
 
@@ -110,9 +110,9 @@ def test_port_that_accepts_no_bytes_is_a_link_error(open_arm: Opener) -> None:
     try:
         with open_arm(os.ttyname(slave)) as arm:
             started = time.monotonic()
-            # Nobody reads the other end: the buffer is full after some kilobytes.
+            # Nothing reads the other end, so the buffer is full after some kilobytes.
             with pytest.raises(LinkError, match=r"cannot be written: .* taken in"):
-                _endlessly(arm.set_color)
+                _repeat(arm.set_color)
             assert time.monotonic() - started < 8
     finally:
         os.close(master)
@@ -121,12 +121,12 @@ def test_port_that_accepts_no_bytes_is_a_link_error(open_arm: Opener) -> None:
 
 def test_client_accepts_any_object_with_the_transport_protocol() -> None:
     async def drive() -> bytes:
-        link = RecordingTransport()
-        async with AsyncMyCobot(link) as arm:
+        transport = RecordingTransport()
+        async with AsyncMyCobot(transport) as arm:
             await arm.power_on()
             with pytest.raises(ReplyTimeout):
                 await arm.get_angles()
-        return link.written
+        return transport.written
 
     assert asyncio.run(drive()) == bytes.fromhex("FE FE 02 10 FA") + 3 * REQUEST
 

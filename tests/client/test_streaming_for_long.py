@@ -35,7 +35,7 @@ def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
         report = stream.report
         assert arm.now - begun > 240
         assert report.samples == SAMPLES
-        # Missing and late replies are counted as missed, and all slots are accounted for.
+        # Lost and late replies are counted as unanswered, and every slot is accounted for.
         assert report.unanswered == arm.requests // LOST + arm.requests // LATE
         assert report.unread == 0
         assert abs(report.slots - (arm.now - begun) * 100) <= 1.5

@@ -1,4 +1,4 @@
-"""Streams on real ptys and real TCP: samples, missed slots, and how streams end."""
+"""Stream over real ptys and real TCP: samples, missed slots, and the end of a stream."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ GET_ANGLES: Request[Any] = TABLE.request_type("get_angles")()
 GET_COORDS: Request[Any] = TABLE.request_type("get_coords")()
 IS_POWER_ON: Request[Any] = TABLE.request_type("is_power_on")()
 get_encoder: Any = TABLE.request_type("get_encoder")
-# A request without a reply holds the next one like it for this long.
+# After an unanswered request, an equal request is held for this many seconds.
 QUICK = RetryPolicy(grace=0.06)
 NEWER = openers(MyCobot280, AsyncMyCobot280)
 
@@ -79,7 +79,7 @@ def test_rate_beyond_the_line_is_reported_as_overrun(open_arm: Opener, peer_on: 
         assert min(gaps) >= 0.02
 
 
-def test_slow_consumer_misses_samples_that_are_not_requested(
+def test_samples_missed_by_a_slow_consumer_are_not_requested(
     open_arm: Opener, peer_on: Any
 ) -> None:
     with peer_on(*[[REPLY]] * 9) as peer, open_arm(peer.url) as arm:
@@ -92,7 +92,7 @@ def test_slow_consumer_misses_samples_that_are_not_requested(
         assert stream.report.samples == 5
 
 
-def test_silence_and_illegal_replies_are_counted_and_the_stream_continues(
+def test_missing_and_illegal_replies_are_counted_and_the_stream_continues(
     open_arm: Opener, peer_on: Any
 ) -> None:
     powered, nonsense = (bytes.fromhex(f"FE FE 03 12 {value} FA") for value in ("01", "05"))
@@ -140,7 +140,9 @@ def test_wrong_request_is_rejected_before_a_byte_is_sent(
         assert peer.received == b""
 
 
-def test_stream_ends_by_break_and_by_close(open_arm: Opener, server: PtyServer) -> None:
+def test_break_and_close_end_iteration_and_leave_the_arm_usable(
+    open_arm: Opener, server: PtyServer
+) -> None:
     with open_arm(server.url) as arm:
         stream = arm.stream(GET_ANGLES, rate=100)
         for _ in stream:

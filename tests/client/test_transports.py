@@ -1,4 +1,4 @@
-"""Clients on transports that cannot be opened, that break, or that echo."""
+"""Use clients on transports that cannot be opened, that break, or that echo."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_true_is_not_a_timeout() -> None:
         MyCobot("loop://", timeout=True)
 
 
-def _ask_for_ever(arm: MyCobot) -> None:
+def _query_forever(arm: MyCobot) -> None:
     while True:
         with suppress(ReplyTimeout):
             arm.get_angles()
@@ -90,18 +90,18 @@ def test_transport_that_another_thread_closes_is_a_link_error(kind: str) -> None
             closing = threading.Timer(0.05, arm.close)
             closing.start()
             with pytest.raises(LinkError, match=r"closed|disconnected"):
-                _ask_for_ever(arm)
+                _query_forever(arm)
             closing.join()
 
 
 def test_terminal_error_is_a_link_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    # pyserial itself writes to a port behind spy://.
+    # pyserial itself writes to the port of a spy:// URL.
     with ScriptedPeer() as peer, MyCobot(f"spy://{peer.url}") as arm:
 
         def fail(*arguments: object) -> int:
             raise termios.error(5, "Input/output error")
 
-        # No port here can be made to fail in this way.
+        # No real port can be made to fail in this way.
         monkeypatch.setattr(arm._connection._transport._port, "write", fail)  # type: ignore[attr-defined]
         with pytest.raises(LinkError, match=r"cannot be written: .*Input/output error"):
             arm.power_on()
@@ -130,7 +130,7 @@ class Full:
         pass
 
 
-def test_failed_write_is_not_traced() -> None:
+def test_failed_write_is_not_reported_to_the_traffic_listener() -> None:
     traffic: list[Traffic] = []
     with pytest.raises(LinkError, match="full"):
         MyCobot(Full(), trace=traffic.append).power_on()
@@ -171,7 +171,7 @@ def test_spy_url_opens_a_port() -> None:
     try:
         with MyCobot(f"spy://{os.ttyname(slave)}", timeout=0.3) as arm:
             os.write(master, bytes.fromhex("FE FE 03 12 00 FA"))
-            # A terminal passes bytes on after a moment; only then do they come before.
+            # A pty delivers bytes after a moment; wait until they precede the request.
             assert select.select([slave], [], [], 5)[0]
             started = time.monotonic()
             with pytest.raises(ReplyTimeout):

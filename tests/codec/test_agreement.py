@@ -25,7 +25,7 @@ def _both(edition: str) -> tuple[Codec, Codec]:
 
 
 def _outcome(action: Callable[[], Any]) -> Any:
-    """Return the result, or everything that a caller can see of the error."""
+    """Return the result, or everything that a caller can observe of the error."""
     try:
         return action()
     except CobotwireError as error:

@@ -151,7 +151,7 @@ def test_columns_are_read_from_any_buffer(codec: Codec, kind: Any) -> None:
         codec.decode_columns(memoryview(ANGLES)[::2])
 
 
-def test_flush_within_a_stream_splits_only_spans_of_noise(
+def test_flush_inside_a_stream_splits_only_spans_of_noise(
     codec: Codec,
 ) -> None:
     for pieces, spans in [((b"\0", FLAG), [(0, 1)]), ((b"\0", b"\0" + FLAG), [(0, 1), (1, 1)])]:
@@ -216,11 +216,9 @@ def test_message_that_did_not_occur_has_no_rows(codec: Codec) -> None:
 def test_variant_must_be_chosen_if_several_occurred() -> None:
     for name in CODECS:
         codec = codec_of("mycobot280", name)
-        frames = [codec.encode("power_on", "request", (), variant=0)]
-        table = codec.table
         several = next(
             command
-            for command in table.commands
+            for command in codec.table.commands
             if len(command.reply) > 1 and len({variant.size for variant in command.reply}) > 1
         )
         frames = [
@@ -248,7 +246,7 @@ def test_out_is_reused_unless_a_view_exists() -> None:
     view = first.rows("get_angles")["angles"]
     with pytest.raises(BufferError, match="still used"):
         codec.decode_columns(ANGLES, "reply", out=first)
-    assert len(first.rows("get_angles")) == 3, "who gets the error still has what there was"
+    assert len(first.rows("get_angles")) == 3, "the error leaves the columns intact"
     view.release()
     second = codec.decode_columns(ANGLES + FLAG, "reply", out=first)
     assert len(first) == 0
@@ -258,7 +256,7 @@ def test_out_is_reused_unless_a_view_exists() -> None:
     assert codec.scan(ANGLES, out=scan).offset.tolist() == [0]
 
 
-def test_out_of_another_edition_is_handled() -> None:
+def test_out_of_another_kind_or_edition_gives_correct_columns() -> None:
     codec = codec_of("mycobot", "native")
     raw = codec.decode_columns(ANGLES * 3 + FLAG, "reply", raw=True)
     columns = codec.decode_columns(ANGLES, "reply", out=raw)
@@ -267,9 +265,8 @@ def test_out_of_another_edition_is_handled() -> None:
     assert plain(other) == [[1.0, 2.0, 3.0, 4.0, 5.0, 6.5]]
 
 
-def test_columns_are_read_only(codec: Codec) -> None:
-    if codec.name == "native":
-        rows = codec.decode_columns(ANGLES, "reply").rows("get_angles")
-        assert rows["angles"].readonly
-        with pytest.raises(ValueError, match="read-only"):
-            rows.to_numpy()["angles"][0] = 1
+def test_columns_of_the_native_codec_are_read_only() -> None:
+    rows = codec_of("mycobot", "native").decode_columns(ANGLES, "reply").rows("get_angles")
+    assert rows["angles"].readonly
+    with pytest.raises(ValueError, match="read-only"):
+        rows.to_numpy()["angles"][0] = 1

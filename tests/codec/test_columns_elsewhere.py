@@ -77,7 +77,7 @@ def test_mapped_file_is_read_without_being_loaded(codec: Codec, tmp_path: Path) 
 
 
 def test_other_thread_may_write_to_the_buffer_during_the_read() -> None:
-    """The result may contain the written bytes or not; nothing else happens."""
+    # The result may or may not contain the written bytes; nothing else may change.
     from cobotwire import codec as codecs
     from cobotwire.editions.mycobot import TABLE
 
@@ -102,7 +102,7 @@ def test_other_thread_may_write_to_the_buffer_during_the_read() -> None:
         thread.join()
 
 
-def test_extras_are_imported_only_when_used() -> None:
+def test_decoding_columns_imports_no_extra() -> None:
     import subprocess
 
     script = (

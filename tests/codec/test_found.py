@@ -1,7 +1,6 @@
-"""Both codecs handle the inputs of ``tests/found``, which once revealed faults.
+"""Replay the inputs of ``tests/found``, which once revealed faults, on both codecs.
 
-Fuzzing found them, or people wrote them. The Rust core's own tests read the same files
-(``rust/core/tests/found.rs``).
+The Rust core's own tests read the same files (``rust/core/tests/found.rs``).
 """
 
 from __future__ import annotations

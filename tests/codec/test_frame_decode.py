@@ -52,13 +52,13 @@ def test_decoded_frame_equals_its_decoded_bytes(
             for command in [*commands, *same_id]:
                 of = None if command is None else command.name
                 for way in DIRECTIONS:
-                    judged_again = _outcome(partial(codec.decode, way, frame.data, of=of))
-                    assert _outcome(partial(frame.decode, way, of=of)) == judged_again
+                    decoded_again = _outcome(partial(codec.decode, way, frame.data, of=of))
+                    assert _outcome(partial(frame.decode, way, of=of)) == decoded_again
     assert found[0] == found[1]
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_decoded_frame_of_one_direction_is_its_message(name: codecs.CodecName) -> None:
+def test_frame_decoded_in_its_only_direction_is_its_message(name: codecs.CodecName) -> None:
     codec = codec_of("mycobot", name)
     data = codec.encode("get_encoder", "request", (1,))
     [frame] = _frames(codec, "request", False, data)
@@ -68,7 +68,7 @@ def test_decoded_frame_of_one_direction_is_its_message(name: codecs.CodecName) -
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_frame_is_not_decoded_as_a_command_that_the_edition_lacks(name: codecs.CodecName) -> None:
+def test_frame_is_not_decoded_as_an_unknown_command_or_direction(name: codecs.CodecName) -> None:
     codec = codec_of("mycobot", name)
     [frame] = _frames(codec, "request", False, codec.encode("power_on", "request", ()))
     with pytest.raises(UsageError, match="did you mean power_on"):
@@ -78,6 +78,6 @@ def test_frame_is_not_decoded_as_a_command_that_the_edition_lacks(name: codecs.C
         frame.decode(wrong)
 
 
-def test_frame_without_a_framer_is_not_decoded() -> None:
+def test_frame_not_cut_by_a_framer_is_not_decoded() -> None:
     with pytest.raises(UsageError, match="was not cut by a framer"):
         Frame(0, b"", 0x20).decode()

@@ -78,7 +78,7 @@ def test_undamaged_frame_is_found_unless_a_legal_one_covers_it(
     start = len(before)
     if Frame(start, frame, frame[3]) in events:
         return
-    # If it is missing, a legal frame that starts earlier overlaps it.
+    # If it is missing, a legal frame that starts earlier covers its start.
     covers = [e for e in events if isinstance(e, Frame) and e.offset < start]
     assert covers
     assert covers[-1].offset + len(covers[-1].data) > start

@@ -1,4 +1,4 @@
-"""Memory use for large captures, and decoding time for adversarial input."""
+"""Bound the memory for large captures, and the decoding time for adversarial input."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ print(round((peak() - before) * 1000 / (len(data) + output)))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak from Linux's /proc")
-def test_stream_in_pieces_needs_the_memory_of_one_piece() -> None:
+def test_stream_in_pieces_needs_no_more_memory_for_more_pieces() -> None:
     grown = _run("""
 reader = native.column_reader("reply")
 piece = frame * (1 << 16)
@@ -82,12 +82,12 @@ def test_reader_keeps_at_most_a_frame_between_calls(codec: Codec, name: str) -> 
     framer.feed(data)
     assert reader.pending == framer.pending < LONGEST
     assert len(columns) == 0
-    assert len(columns.noise.offset) == 0, "it has not ended yet, and is one"
+    assert len(columns.noise.offset) == 0, "the only span of noise has not ended yet"
     assert len(reader.flush().noise.offset) == 1
 
 
 @pytest.mark.parametrize("name", HARD)
-def test_hard_input_takes_time_in_proportion_to_its_size(name: str) -> None:
+def test_time_for_adversarial_input_grows_in_proportion_to_its_size(name: str) -> None:
     codec = codec_of("mycobot280", "native")
 
     def seconds(size: int) -> float:

@@ -1,6 +1,6 @@
 """The three laws of resync on realistic bad lines, where every frame sent is known.
 
-These tests decide from the table, not with a codec, which frames are legal.
+These tests decide by the table, without a codec, which frames are legal.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def test_both_codecs_return_the_same_events_in_any_chunks(
 def test_header_bytes_before_a_frame_do_not_hide_it(
     name: CodecName, edition: str, data: st.DataObject
 ) -> None:
-    # FE is no legal LEN, so that FE FE FE is refuted at its first byte.
+    # FE is not a legal LEN, so FE FE FE is refuted at its first byte.
     count = data.draw(st.integers(1, 40))
     frame = data.draw(strategies.real_frames(TABLES[edition]))
     events = _cut(codec_of(edition, name), "both", [b"\xfe" * count + frame])
@@ -135,7 +135,7 @@ POWERED = bytes.fromhex("FE FE 03 12 01 FA")
         "ff ff fe 0a 82 38 0f 01 02 03 04 05 06 19",
         "ff ff 07 02 01 f5",
         "ff ff 01 04 02 38 c2 fe",  # its checksum is FE
-        "fe fe 03 10 01 fa",  # this edition knows no acknowledgements
+        "fe fe 03 10 01 fa",  # this edition has no acknowledgements
         "78 80 78",
         "fe",
         "fe fe fe",
@@ -161,7 +161,7 @@ def test_noise_seen_in_the_field_hides_no_frame(codec: Codec, noise: str) -> Non
         assert [(e.offset, e.data) for e in events if isinstance(e, Frame)] == sent
 
 
-def test_false_frame_that_the_table_allows_hides_what_it_covers(codec: Codec) -> None:
+def test_false_frame_that_the_table_allows_hides_the_frames_inside_it(codec: Codec) -> None:
     # A header of get_angles, and an FA where that frame would end: the frame is false but legal.
     whole = bytes.fromhex("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA FA")
     assert _cut(codec, "reply", [whole]) == [Frame(0, whole, 0x20)]
@@ -178,7 +178,7 @@ def test_frame_within_a_frame_is_found_only_if_the_outer_one_is_damaged(codec: C
     assert found == [Frame(6, broken[6:12], 0x12)]
 
 
-def test_known_id_alone_is_not_a_header(codec: Codec) -> None:
+def test_header_and_known_id_with_a_wrong_length_do_not_make_the_framer_wait(codec: Codec) -> None:
     assert TABLE.command("get_angles").id == 0x20
     line = bytes.fromhex("FE FE 0D 20") + POWERED
     framer = codec.framer("reply")

@@ -108,7 +108,7 @@ def test_illegal_length_is_rejected_with_its_reason(
 
 
 @pytest.mark.parametrize("edition", TABLES)
-def test_older_variant_of_a_reply_has_no_echo(codec: Codec, edition: str) -> None:
+def test_older_variant_of_a_reply_decodes_without_the_joint(codec: Codec, edition: str) -> None:
     codec = codec_of(edition, codec.name)
     full = codec.decode("reply", bytes.fromhex("FEFE04500101FA"))
     short = codec.decode("reply", bytes.fromhex("FEFE035001FA"))

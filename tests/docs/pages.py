@@ -32,7 +32,7 @@ class CommandRun(NamedTuple):
 
     @property
     def matches(self) -> bool:
-        """Return whether the command printed the output on the page."""
+        """Return whether the command printed what the page shows."""
         pattern = re.escape(self.expected).replace(re.escape("...\n"), r"(?:.*\n)*?")
         return re.fullmatch(pattern, self.printed) is not None
 

@@ -1,4 +1,4 @@
-"""Build the docs site: no warning, no dead link, nothing fetched from elsewhere."""
+"""Build the docs site without warnings, dead links, or content from other hosts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from targets.comparison import ToolMissing
 from targets.decoder import browser
 from vectors import ROOT
 
-# The elements whose content a browser loads by itself, and the attribute that names it.
+# The elements that make a browser load content, and the attribute that names the content.
 LOADED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
 
 # As `make docs`, but without garbage collection, which takes a fifth of the time.

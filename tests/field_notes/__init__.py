@@ -1,1 +1,1 @@
-"""The behaviour of real lines as data; the tests and ``bench/bad_lines.py`` run the same cases."""
+"""The behaviour of real lines as data, for the tests and ``bench/bad_lines.py``."""

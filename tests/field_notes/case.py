@@ -9,10 +9,10 @@ from typing import Any
 from cobotwire.simulator.faults import Fault
 
 DONE = "done"
-"""The result of a call that returns nothing: it is judged by what the arm received."""
+"""The result of a call that returns nothing; the frames at the arm decide whether it is right."""
 
 NO_REPLY = "no reply"
-"""Nothing that arrives is a reply to the call: only an error is right."""
+"""The result of a call without a reply; only an error is right."""
 
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 ANGLES_READ = [1.4, 0.61, -0.26, -1.93, 1.75, -1.75]
@@ -28,9 +28,9 @@ class Call:
     Attributes:
         method: the name of the method.
         arguments: its arguments.
-        right: the value that the arm's reply means; or DONE, or NO_REPLY.
-        sends: for calls that are DONE: the one frame that must arrive, once.
-        pymycobot_options: further arguments with which pymycobot sends the same frame.
+        right: the value in the arm's reply; or DONE, or NO_REPLY.
+        sends: if ``right`` is DONE: the frame that must arrive exactly once.
+        pymycobot_options: extra arguments, with which pymycobot sends the same frame.
     """
 
     method: str
@@ -45,12 +45,12 @@ GET_NOTHING = Call("get_angles", (), NO_REPLY)
 
 
 def encoder(joint: int) -> Call:
-    """Return a query whose reply identifies the joint only by its value."""
+    """Return a query; only the value in its reply identifies the joint."""
     return Call("get_encoder", (joint,), 1000 + joint)
 
 
 def encoder_reply(joint: int) -> bytes:
-    """Return the reply to that query."""
+    """Return the reply to ``encoder(joint)``."""
     return bytes.fromhex("FE FE 04 3B") + (1000 + joint).to_bytes(2, "big") + b"\xfa"
 
 
@@ -62,8 +62,8 @@ class Case:
         name: the name in the table.
         notes: which lines of the notes the case covers, see ``notes.py``.
         line: the behaviour of the line, as the table describes it.
-        faults: what goes wrong between the client and an arm that always replies the same.
-        calls: what is called, in this order.
+        faults: what goes wrong between the client and the steady arm.
+        calls: the calls, in order.
         verdicts: how each call ends for our clients: ``right``, or the name of the error.
         requests: how many frames our clients send; None where that depends on chance.
         within: how many seconds our clients may take for all calls.
@@ -72,7 +72,7 @@ class Case:
         threads: whether each call is made in a separate thread.
         clients: how many clients share the line.
         unread: whether nothing reads what the clients send.
-        cooked: whether the port is left in its default mode, XON/XOFF and all.
+        cooked: whether the port keeps its default mode, with XON/XOFF flow control.
     """
 
     name: str

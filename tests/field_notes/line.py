@@ -25,7 +25,7 @@ class Line:
         self.arm = arm
 
     def settle(self) -> None:
-        """Wait until everything that clients wrote has arrived: a while without new bytes."""
+        """Wait until no new bytes arrive for 60 ms, so that all that clients wrote has arrived."""
         received = -1
         while received != (received := len(self.arm.frames) + self.arm.garbled):
             time.sleep(0.06)
@@ -60,7 +60,7 @@ def _unread_pty() -> Iterator[str]:
 
 
 def _make_cooked(url: str) -> None:
-    """Put a pseudo-terminal into the mode that the system gives a new one."""
+    """Put a pseudo-terminal into the mode of a new one."""
     fresh = os.openpty()
     port = os.open(url, os.O_RDWR | os.O_NOCTTY)
     termios.tcsetattr(port, termios.TCSANOW, termios.tcgetattr(fresh[1]))

@@ -1,6 +1,6 @@
-"""The field notes in pieces, word for word, each with its case or test, or neither.
+"""The field notes, quoted in pieces. Each piece has a case, a test elsewhere, or needs no test.
 
-The notes lie beside the repository. The pieces make up all of their lines; a test compares them.
+The notes are outside the repository. The pieces cover all of their lines, which a test checks.
 """
 
 from __future__ import annotations
@@ -55,18 +55,18 @@ NOTES = {
     "minus one": "Fails by returning -1 even where a list is promised.",
 }
 
-# Lines that a case on a pty or over TCP cannot show.
+# Notes that a case on a pty or over TCP cannot cover.
 ELSEWHERE = {
     "dtr": "tests/transport/test_port.py::test_dtr_and_rts_are_lowered_together",
     "0x19": "tests/client/test_field_notes.py::test_no_edition_has_the_query_that_froze_an_arm",
     "truncated": (
-        "tests/codec/test_every_raw_value.py::test_every_raw_value_of_every_field_survives"
+        "tests/codec/test_every_raw_value.py::test_every_raw_value_of_every_field_survives_decode_and_encode"
     ),
 }
 
-# Figures of other people's machines: no client behaviour can be right or wrong here.
+# Figures of other people's machines: they say nothing about a client's behaviour.
 FIGURES = {
     "round trip": "bench/client.py measures what the client adds to it",
-    "polling": "how often is asked is the caller's choice",
+    "polling": "the caller chooses the rate",
     "line rate": "10 bits a byte, 17 bytes a reply",
 }

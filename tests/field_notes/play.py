@@ -1,4 +1,4 @@
-"""Make a case's calls with one client of any library, and judge how each of them ends."""
+"""Make a case's calls with one client of any library, and judge how each call ends."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def open_asyncio(url: str) -> Any:
 
 
 def open_pymycobot(url: str) -> Any:
-    """Open the maker's client. The import is here, since tests of ours do not need the library."""
+    """Open the maker's client. The import is local, since our clients do not need it."""
     if url.startswith("socket://"):
         from pymycobot import MyCobot280Socket
 

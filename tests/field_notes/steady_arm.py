@@ -1,4 +1,4 @@
-"""An arm that always replies the same, so that only the line can change what a client reads."""
+"""An arm that always sends the same replies, so that only the line changes what a client reads."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ REPLIES: dict[str, Callable[[Mapping[str, Any]], Any]] = {
 
 
 class SteadyArm:
-    """A peer that counts what it receives; a restart changes nothing.
+    """A peer that records what it receives; a restart changes nothing.
 
     Attributes:
         frames: every frame that arrived.

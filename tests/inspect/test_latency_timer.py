@@ -7,7 +7,7 @@ from pathlib import Path
 from cobotwire.inspect.latency_timer import latency_timer
 
 
-def test_latency_timer_is_read_where_the_system_has_one(tmp_path: Path) -> None:
+def test_latency_timer_is_read_if_the_port_has_one(tmp_path: Path) -> None:
     folder = tmp_path / "class" / "tty" / "ttyUSB7" / "device"
     folder.mkdir(parents=True)
     (folder / "latency_timer").write_text("16\n")

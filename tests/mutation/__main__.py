@@ -1,7 +1,7 @@
 """Count how many broken subjects the testers find; print killed / total and every survivor.
 
-PYTHONPATH=tests python -m mutation                      all suites
-PYTHONPATH=tests python -m mutation device --sample 5    five mutants of each kind, device suites
+PYTHONPATH=tests python -m mutation                      run all suites
+PYTHONPATH=tests python -m mutation device --sample 5    run five mutants a kind of device suites
 """
 
 from __future__ import annotations
@@ -38,7 +38,9 @@ def main() -> int:
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("suites", nargs="*", help="words in the names of suites; none: all")
+    parser.add_argument(
+        "suites", nargs="*", help="words in the names of the suites to run; default: all"
+    )
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--sample", type=int, help="at most this many mutants of each kind")
     parser.add_argument("--seed", type=int, default=1)

@@ -13,9 +13,9 @@ from cobotwire.simulator.peer import Peer
 class Mutant:
     """A device with one fault.
 
-    ``kind`` is the class of fault (``scale``), ``command`` and ``field`` where it is (empty: in the
-    line as a whole), ``text`` what the device does wrong. ``make`` returns a new device with the
-    fault, by a clock.
+    ``kind`` is the class of fault (``scale``). ``command`` and ``field`` are its place; both are
+    empty if it concerns the whole line. ``text`` is what the device does wrong. ``make`` returns a
+    new device with the fault, which uses the given clock.
     """
 
     kind: str

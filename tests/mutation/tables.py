@@ -12,7 +12,7 @@ DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 
 
 class Place(NamedTuple):
-    """The field of one variant of one message that a fault sits in; ``field`` -1: the variant."""
+    """The variant that has a fault, and the index of its wrong field; -1 for the whole variant."""
 
     command: str
     direction: Direction
@@ -86,7 +86,7 @@ def _chosen(variant: Variant, *indices: int) -> bool:
 
 def _of_field(field: Field) -> Iterator[tuple[str, str, Field]]:
     for kind, text, change in NUMBERS:
-        if field.choices and kind in UNREAD_BEHIND_LISTS:
+        if field.choices and kind in NOT_USED_WITH_LISTS:
             continue
         wrong = _each_number(field, change)
         if wrong != field:
@@ -99,7 +99,7 @@ def _of_field(field: Field) -> Iterator[tuple[str, str, Field]]:
             replace(second, numbers=first.numbers),
             *field.cases[2:],
         )
-        yield "case", "read by another case", replace(field, cases=cases)
+        yield "case", "first two cases swapped", replace(field, cases=cases)
 
 
 def _of_list(field: Field) -> Iterator[tuple[str, str, Field]]:
@@ -109,7 +109,7 @@ def _of_list(field: Field) -> Iterator[tuple[str, str, Field]]:
     if len(field.choices) > 1:
         yield (
             "list",
-            "without its last",
+            "without its last choice",
             replace(field, choices=field.choices[:-1], labels=field.labels[:-1]),
         )
     more = max(field.choices) + 1
@@ -119,7 +119,7 @@ def _of_list(field: Field) -> Iterator[tuple[str, str, Field]]:
         cases = (wider,) if len(field.cases) == 1 and not field.many else field.cases
         yield (
             "list",
-            "with one more",
+            "with one more choice",
             replace(field, choices=(*field.choices, more), labels=labels, cases=cases),
         )
 
@@ -133,7 +133,7 @@ def _each_number(field: Field, change: Callable[[Number], Number]) -> Field:
 
 
 def _sign(number: Number) -> Number:
-    """Return the number with the other sign rule, unless no legal value would show it."""
+    """Return the number with the other sign rule, if that changes any legal value."""
     top = 256**number.width - 1
     if number.minimum >= 0 and number.maximum <= top // 2:
         return number
@@ -192,8 +192,8 @@ NUMBERS: tuple[tuple[str, str, Callable[[Number], Number]], ...] = (
 )
 
 
-# A closed list defines what is allowed; bounds and sign rule of its numbers are not used.
-UNREAD_BEHIND_LISTS = ("bounds", "sign")
+# A closed list defines the legal values, so the bounds and the sign rule are not used.
+NOT_USED_WITH_LISTS = ("bounds", "sign")
 
 
 def _with_field(table: Table, place: Place, field: Field) -> Table:

@@ -1,4 +1,4 @@
-"""The device tester kills a sample of the broken devices, and the figures are listed."""
+"""The device tester kills a sample of the broken devices; the listing names the survivors."""
 
 from __future__ import annotations
 
@@ -22,11 +22,10 @@ from mutation.suite import Case, Outcome, RightRun, total
 
 TABLES = (mycobot.TABLE, mycobot280.TABLE)
 BOTH = pytest.mark.parametrize("table", TABLES, ids=lambda table: table.edition)
-# The kinds of fault.
 KINDS = {
     *("sign", "scale", "width", "order", "endianness", "range", "value", "echo", "text"),
     *("LEN", "id", "footer", "header", "no reply", "late reply", "double reply"),
-    *("ignored", "stored wrong", "wrong part", "ack where none is due", "malformed input"),
+    *("ignored", "stored wrong", "wrong part", "undefined ack", "malformed input"),
 }
 
 
@@ -59,7 +58,7 @@ def test_oracle_explains_why_a_survivor_cannot_be_distinguished() -> None:
     table = mycobot.TABLE
     mutants = {mutant.id: mutant for mutant in device_mutants(table)}
     colour = mutants["stored wrong: set_color.red: half of it"]
-    assert "no reply shows what it does" in reason(table, colour)
+    assert "no reply shows the effect of the fault" in reason(table, colour)
     assert reason(table, mutants["LEN: get_angles: one too many in LEN"]) == ""
 
 
@@ -90,7 +89,7 @@ def _verdicts(outcomes: Sequence[Outcome], *, accepted: bool = True) -> Verdicts
 
 
 KILLED = Outcome(Case("one", "sign"), "a test case")
-EXCUSED = Outcome(Case("two", "sign"), "", "nobody could tell")
+EXCUSED = Outcome(Case("two", "sign"), "", "equal on the line")
 MISSED = Outcome(Case("three", "scale"), "")
 CRASHED = Outcome(Case("four", "scale"), "", "", "ValueError: no")
 
@@ -108,7 +107,7 @@ def test_listing_names_each_survivor_with_its_reason(tmp_path: Path) -> None:
     for text in ("\n".join(lines(verdicts)), page([verdicts], 1.0)):
         for part in (
             "two",
-            "nobody could tell",
+            "equal on the line",
             "three",
             "the tester missed it",
             "ValueError",

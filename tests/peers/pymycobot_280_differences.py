@@ -19,7 +19,7 @@ _RADIANS = "0x22: the limits and speeds of send_angles; pymycobot checks none of
 _COUNT = "0x23 0x8D: six numbers; pymycobot sends as many as it is given"
 _STEP = "0x33 0x34: what fits a signed word; pymycobot silently clamps the rest"
 _SPAN = "0x33: any step that fits the wire; pymycobot rejects more than the joint's range"
-_ASKED = "0x2A: any target may be queried; pymycobot applies the limits of motion"
+_QUERIED = "0x2A: any target may be queried; pymycobot applies the limits of motion"
 _TEXT = "0xB0: ASCII that reads in one way only; pymycobot sends any text, as UTF-8"
 
 _OFF = [0, 0, 0, 0, 0, 0.29]
@@ -75,8 +75,8 @@ LIMITS: Differences = dict(
         _same("set_joint_max", "half a degree", (1, 12.5), NOT_SENT, _LIMIT),
         _same("set_tool_reference", "500 mm", (_FAR,), NOT_SENT, _SPACE),
         _same("set_world_reference", "500 mm", (_FAR,), NOT_SENT, _SPACE),
-        _same("is_in_position", "170 degrees", ([170, 0, 0, 0, 0, 0], 0), NOT_SENT, _ASKED),
-        _same("is_in_position", "500 mm", (_FAR, 1), NOT_SENT, _ASKED),
+        _same("is_in_position", "170 degrees", ([170, 0, 0, 0, 0, 0], 0), NOT_SENT, _QUERIED),
+        _same("is_in_position", "500 mm", (_FAR, 1), NOT_SENT, _QUERIED),
         _same("jog_increment_angle", "300 degrees", (2, 300, 50), NOT_SENT, _SPAN),
         _same("jog_increment_angle", "330", (1, 330, 50), (1, 327.67, 50), _STEP),
         _same("jog_increment_angle", "-330", (1, -330, 50), (1, -327.68, 50), _STEP),
@@ -121,4 +121,4 @@ TEXTS = [
 def rejected_by_pymycobot(command: str) -> str | None:
     """Return the ruling for a legal request of ours that pymycobot rejects, or None."""
     rulings = {d.ruling for (name, _), d in LIMITS.items() if name == command}
-    return next((r for r in sorted(rulings) if r in (_LIMIT, _SPACE, _ASKED, _SPAN, _PORT)), None)
+    return next((r for r in sorted(rulings) if r in (_LIMIT, _SPACE, _QUERIED, _SPAN, _PORT)), None)

@@ -68,10 +68,10 @@ def _points(ours: list[int]) -> Any:
     return [ours[::2], ours[1::2]] if any(ours) else -1
 
 
-# The ruling, and the result of pymycobot as a function of ours.
-OtherForm = tuple[str, Callable[[Any], Any]]
+# The ruling, and pymycobot's result as a function of ours.
+OtherResult = tuple[str, Callable[[Any], Any]]
 
-DIFFERENCES: dict[str, OtherForm] = {
+DIFFERENCES: dict[str, OtherResult] = {
     "get_radians": (
         "0x20: the float nearest to the angle; pymycobot rounds it to thousandths",
         lambda ours: [round(math.degrees(value) * (math.pi / 180), 3) for value in ours],
@@ -86,7 +86,7 @@ DIFFERENCES: dict[str, OtherForm] = {
     ),
     "read_next_error": (
         "0x15: 7 or 6 bytes, as they come, never words; pymycobot sorts 7 bytes into classes and "
-        "gives their bit numbers, and takes 6 bytes for three words",
+        "gives their bit numbers, and reads 6 bytes as three words",
         _errors,
     ),
     "drag_get_record_data": (

@@ -16,8 +16,8 @@ from cobotwire.editions.mycobot import MyCobot as OurMyCobot
 from pymycobot_ports import RecordingPort, RecordingTransport, Written
 
 with warnings.catch_warnings():
-    # Importing it compiles and calls what Python 3.11 deprecates (locale.getdefaultlocale). Pytest
-    # marks do not apply to imports, and we cannot fix these warnings.
+    # Its import uses features that Python 3.11 deprecates (locale.getdefaultlocale). We cannot fix
+    # that, and marks of pytest do not apply to imports.
     warnings.simplefilter("ignore")
     from pymycobot import CommandGenerator, MyCobot, MyCobot280, MyPalletizer260
     from pymycobot.error import MyCobot280DataException, MyCobotDataException
@@ -31,13 +31,13 @@ CLASSES: dict[str, type[Any]] = {
     "MyPalletizer260": MyPalletizer260,
 }
 
-# What a call raises before it writes: on purpose, for an argument outside of its limits; or by
-# accident, for a number that does not fit into its bytes (pyserial raises the last of these).
+# Exceptions that a call raises before it writes: on purpose, for an argument outside its limits; or
+# by accident, for a number that does not fit into its bytes (pyserial raises the last of these).
 REJECTIONS = (MyCobotDataException, MyCobot280DataException, struct.error, TypeError, ValueError)
 
 
 def peer_on(name: str, port: Any) -> Any:
-    """Build one of its classes like its constructor does, without the port and 1.5 s of sleep."""
+    """Make an object of one of its classes, without opening a port or sleeping 1.5 s."""
     kind = CLASSES[name]
     peer = object.__new__(kind)
     CommandGenerator.__init__(peer)
@@ -58,7 +58,7 @@ def without_port(name: str) -> Any:
 def recording_client(codec: CodecName, kind: type[Client] = OurMyCobot) -> Client:
     """Return a new generated client of ours on a transport that only records.
 
-    A client cannot be used twice: after an abandoned request it delays the next one of its kind.
+    A client cannot be used twice: after an abandoned request, it holds the next equal one.
     """
     return kind(RecordingTransport(), codec=codec)
 

@@ -1,4 +1,4 @@
-"""Records of differences between pymycobot's requests and ours, and how to measure one."""
+"""Record differences between pymycobot's requests and ours, and measure each."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NOT_SENT = "not sent"
 
 
 class Difference(NamedTuple):
-    """One intent and the request that each side makes of it.
+    """One intention, and the request that each side makes of it.
 
     ``becomes`` is what an arm of this edition decodes from pymycobot's bytes: the values, or the
     reason why it rejects them.
@@ -68,7 +68,7 @@ def other_variant(
     theirs: Arguments,
     ruling: str,
 ) -> Row:
-    """Describe a call of pymycobot whose frame has a LEN that this edition does not know."""
+    """Describe a call of pymycobot that gives a frame with a LEN that this edition lacks."""
     return Row(peers, command, topic, Difference(ours, method, theirs, "bad-length", ruling))
 
 

@@ -7,7 +7,7 @@ from typing import NoReturn
 
 
 class Written(Exception):
-    """Raised by a port at its first write, so that nobody waits for a reply or writes again."""
+    """Raised by a port at its first write, so that the call neither waits nor writes again."""
 
     def __init__(self, data: bytes) -> None:
         self.data = data

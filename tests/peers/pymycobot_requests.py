@@ -20,7 +20,7 @@ _BASIC_PINS: list[Arguments] = [(2, 0), (5, 1), (35, 1)]
 _ANGLES = [
     [0, 0, 0, 0, 0, 0],
     [1.5, -20.25, 30, -45.75, 120, -179.99],
-    # The words of the second are FE FE and of the third 00 FA: header and footer inside the data.
+    # The second number is FE FE and the third 00 FA: header and footer inside the data.
     [-165, -2.58, 2.5, -0.01, 0.01, 0.06],
 ]
 _COORDS = [
@@ -96,7 +96,7 @@ REQUESTS: dict[str, list[Arguments]] = {
 
 
 def accepts(peer: str, command: str, arguments: Arguments) -> bool:
-    """Whether a class takes these arguments: the palletizer has four joints and coordinates.
+    """Return whether a class takes these arguments: the palletizer has only four joints and axes.
 
     The palletizer's class does not check six angles or encoders, and encodes them as we do.
     """

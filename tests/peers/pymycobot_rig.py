@@ -63,7 +63,7 @@ class Rig:
         return coords
 
     def start_over(self) -> None:
-        """Reset the arm and power it: if pymycobot powered it, each test would take 1.5 s more."""
+        """Reset the arm and power it; powering it by pymycobot would take 1.5 s in each test."""
         self.arm.state = ArmState(self.arm.table.joints, self.arm.state.geometry)
         self.state.powered = True
         self.state.enabled = [True] * self.arm.table.joints

@@ -44,7 +44,7 @@ TRUNCATIONS = [
 
 REACH = [
     same_call(BOTH, "set_encoders", "4096", ([4096] * 6, 50), "bad-value", _ENCODER),
-    # The sign rule of the document makes a step of -327 degrees one of +328.36.
+    # The sign rule of the document turns a step of -327 degrees into one of +328.36.
     same_call(ALL, "jog_increment", "-327 degrees", (1, -327, 50), (1, 328.36, 50), _SIGNED),
     same_call(ALL, "jog_increment", "328 degrees", (1, 328, 50), NOT_SENT, _SIGNED),
     same_call((M280,), "set_joint_min", "half a degree", (1, -12.5), NOT_SENT, _LIMIT),

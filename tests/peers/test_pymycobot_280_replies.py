@@ -80,13 +80,13 @@ def _assert_read_alike(
     echoed = {f.name: v for f, v in zip(variant.variant.fields, values) if f.echo}
     arguments = arguments_for(variant.command, echoed)
     ours = read_by_us(codec_name, name, arguments, frame)
-    _, other_form = DIFFERENCES.get(name, ("", lambda same: same))
-    assert read_by_pymycobot(name, arguments, frame) == other_form(ours)
+    _, to_theirs = DIFFERENCES.get(name, ("", lambda same: same))
+    assert read_by_pymycobot(name, arguments, frame) == to_theirs(ours)
 
 
 @pytest.mark.parametrize("name", DIFFERENCES)
 def test_listed_difference_of_result_exists(name: str, codec: Codec) -> None:
-    ruling, other_form = DIFFERENCES[name]
+    ruling, to_theirs = DIFFERENCES[name]
     variant = next(variant for variant in RESULT_VARIANTS if variant.command.name == name)
     rows = tuple(
         tuple(17.0 + i if n.scaled else 17 + i for i, n in enumerate(field.cases[0].numbers))
@@ -95,7 +95,7 @@ def test_listed_difference_of_result_exists(name: str, codec: Codec) -> None:
     frame = strategies.frame_of(codec_of("mycobot280", codec.name), variant, rows)
     ours = read_by_us(codec.name, name, (), frame)
     theirs = read_by_pymycobot(name, (), frame)
-    assert theirs == other_form(ours) != ours
+    assert theirs == to_theirs(ours) != ours
     assert ruling
 
 

@@ -1,7 +1,7 @@
 """pymycobot's class MyCobot280, unmodified, drives a simulated arm of its own edition over a pty.
 
-Here the arm acknowledges setters, so pymycobot sends each once and returns 1 at once. With the
-older edition the same calls are sent three times, take 1.5 s and return -1.
+In this edition the arm acknowledges setters, so pymycobot sends each once and returns 1 at once. In
+the older edition, the same calls send three times, take 1.5 s and return -1.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ def test_arm_reads_the_wireless_account_that_was_sent(rig: Rig) -> None:
     assert rig.state.port == 9100
 
 
-def test_queries_of_pymycobot_are_no_noise_to_the_arm(rig: Rig) -> None:
+def test_queries_of_pymycobot_get_replies_and_none_is_rejected(rig: Rig) -> None:
     for call, arguments in [
         ("get_system_version", ()),
         ("get_error_information", ()),

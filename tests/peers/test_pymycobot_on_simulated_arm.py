@@ -1,7 +1,7 @@
 """pymycobot's class MyCobot, unmodified, drives the simulated arm of edition mycobot over a pty.
 
-In this edition nothing acknowledges a setter. pymycobot waits for a reply all the same, so it sends
-each setter three times, takes 1.5 s and returns -1. The arm obeys the setter nevertheless.
+In this edition the arm does not acknowledge setters. pymycobot waits for a reply all the same. So
+it sends each setter three times, takes 1.5 s and returns -1, although the arm obeys.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""pymycobot's MyCobot280 and MyPalletizer260 on an arm of edition mycobot: which calls work.
+"""Check which calls of MyCobot280 and MyPalletizer260 work on an arm of edition mycobot.
 
-MyCobot280 waits for replies like MyCobot, but with ``_async=True`` it sends a motion once, at once.
-MyPalletizer260 sends every setter once and does not wait; only its rows are too short for six
+MyCobot280 waits for replies like MyCobot, but with ``_async=True`` it sends a motion once and does
+not wait. MyPalletizer260 sends every setter once and does not wait; its rows are too short for six
 joints.
 """
 
@@ -43,7 +43,7 @@ def palletizer(connection_260: Rig) -> Rig:
     return connection_260
 
 
-def test_280_step_with_async_flag_is_made_once(cobot: Rig) -> None:
+def test_280_step_with_async_flag_moves_the_arm_once(cobot: Rig) -> None:
     assert cobot.peer.jog_increment(1, 10, 100, _async=True) is None
     cobot.settle()
     assert cobot.received == ["jog_increment"]
@@ -100,7 +100,7 @@ def test_280_reference_arrives_ten_times_too_small_but_reads_back_as_sent(
     assert getattr(cobot.state, which) == (10.0, 2.05, -3.0, 45.0, 0.0, -90.0)
 
 
-def test_280_joint_limit_arrives_ten_times_too_small_and_reads_back_so(cobot: Rig) -> None:
+def test_280_joint_limit_arrives_ten_times_too_small_and_reads_back_too_small(cobot: Rig) -> None:
     # Disputed: pymycobot writes limits in tenths, this edition in hundredths. Both read tenths.
     assert cobot.peer.get_joint_max_angle(1) == 165.0
     assert cobot.peer.set_joint_max(1, 90) == UNANSWERED
@@ -139,7 +139,7 @@ def test_palletizer_speed_reads_back(palletizer: Rig) -> None:
 
 
 def test_palletizer_free_mode_reads_back_in_a_list(palletizer: Rig) -> None:
-    # pymycobot returns the list that holds the one value.
+    # pymycobot returns a list with the only value.
     peer = palletizer.peer
     peer.set_free_mode(1)
     assert (peer.is_free_mode(), palletizer.state.free) == ([1], True)

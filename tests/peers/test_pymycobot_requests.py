@@ -1,4 +1,4 @@
-"""For every command that pymycobot shares with edition mycobot, the requests are equal bytes."""
+"""pymycobot's requests equal ours, for every command that it shares with edition mycobot."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_request_in_disputed_scale_equals_ours_for_a_tenth(
 
 @pytest.mark.parametrize("codec_name", ["reference", "native"])
 @given(data=st.data())
-def test_number_that_truncation_keeps_is_encoded_alike_by_both_sides(
+def test_number_that_truncation_does_not_change_is_encoded_equally_by_both_sides(
     data: st.DataObject, codec_name: CodecName
 ) -> None:
     command, peer = data.draw(st.sampled_from(SCALED))

@@ -1,4 +1,4 @@
-"""pymycobot, unmodified, plays a whole session over a pty and over TCP, with its own waiting.
+"""pymycobot, unmodified, runs a whole session over a pty and over TCP, with its own waiting.
 
 The session comes from bench/pymycobot_session.py; docs/simulation.md shows its table.
 """
@@ -17,7 +17,7 @@ ARM_SPEED = 4.0
 
 @pytest.fixture(scope="module", params=list(SERVERS))
 def called(request: pytest.FixtureRequest) -> list[Called]:
-    """Play one session on each kind of transport, with accelerated time."""
+    """Run one session on each kind of transport, in accelerated time."""
     with session("pymycobot", request.param, ARM_SPEED) as (client, clock):
         return play(client, clock)
 
@@ -58,7 +58,7 @@ def test_gripper_and_pins_read_back_as_they_were_set(called: list[Called]) -> No
     assert results(called, "get_basic_input") == [1]
 
 
-def test_our_client_plays_the_same_session_without_an_error() -> None:
+def test_our_client_runs_the_same_session_without_an_error() -> None:
     with session("cobotwire", "TCP", ARM_SPEED) as (client, clock):
         called = play(client, clock)
     assert not [one.result for one in called if isinstance(one.result, Exception)]

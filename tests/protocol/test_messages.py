@@ -83,7 +83,7 @@ def test_message_names_its_command_and_its_counterpart() -> None:
     assert Go.reply_type is None
 
 
-def test_message_accepts_arguments_by_place_and_by_name() -> None:
+def test_message_accepts_arguments_by_position_and_by_name() -> None:
     assert Go((1, 2), Mode.FAST) == Go(mode=Mode.FAST, point=(1, 2)) == Go((1, 2), 1, speed=None)
     assert Go((1, 2), 1) != Go((1, 2), 0)
     assert Aim() != Done()
@@ -99,7 +99,7 @@ def test_message_accepts_arguments_by_place_and_by_name() -> None:
         (((1, 2), 1), {"sped": 2}, r"Go\(\) has no argument sped"),
     ],
 )
-def test_wrong_arguments_are_a_type_error(
+def test_wrong_arguments_raise_a_type_error(
     arguments: tuple[Any, ...], named: dict[str, Any], words: str
 ) -> None:
     with pytest.raises(TypeError, match=words):
@@ -128,7 +128,7 @@ def test_message_is_shown_as_the_call_that_makes_it() -> None:
     assert repr(Aim()) == "Aim()"
 
 
-def test_message_matches_by_place_and_by_name() -> None:
+def test_message_matches_patterns_by_position_and_by_name() -> None:
     match Go((1, 2), Mode.FAST, 30):
         case Where():
             pytest.fail("a message of another type")
@@ -155,7 +155,7 @@ def test_request_omits_trailing_none_arguments() -> None:
     assert Go((1, 2), 1).fields == {"point": (1, 2), "mode": 1}
 
 
-def test_text_outside_the_frame_is_apart_from_the_values() -> None:
+def test_text_outside_the_frame_is_not_among_the_values() -> None:
     request = Join(3, "secret")
     assert request.values == (3,)
     assert request.text_values == {"password": "secret"}
@@ -218,7 +218,7 @@ def table(request: pytest.FixtureRequest) -> Table:
     return found
 
 
-def test_table_knows_the_message_types_of_each_command(table: Table) -> None:
+def test_table_returns_the_message_types_of_each_command(table: Table) -> None:
     for command in table.commands:
         request, reply = table.request_type(command.name), table.reply_type(command.name)
         assert (request.command, request.__name__) == (command.name, class_name(command.name))

@@ -1,4 +1,4 @@
-"""A session with a 280 as calls: every family of commands, values of all signs and sizes.
+"""A session with a 280, as calls: commands of every family, values of all signs and sizes.
 
 pymycobot and our clients have the same method names and arguments. ``fields`` are the values that
 a call must send if they differ from its arguments.

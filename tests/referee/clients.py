@@ -1,4 +1,4 @@
-"""The clients that play the session: pymycobot, unmodified, and our two clients."""
+"""Run the session with pymycobot, unmodified, and with our two clients."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 from cobotwire.protocol.errors import CobotwireError
 from referee.calls import SESSION
 
-# Opens the URL, makes all calls, closes it; returns the calls that failed, and how.
+# Opens a URL, makes all calls and closes it; returns the failed calls, each with its error.
 Play = Callable[[str], list[str]]
 
 
@@ -22,19 +22,19 @@ def _failed(name: str, result: Any) -> list[str]:
 
 
 def pymycobot_serial(url: str) -> list[str]:
-    """Play the session with the maker's class for a serial port."""
+    """Run the session with the maker's class for a serial port."""
     return _pymycobot(lambda kinds: kinds.MyCobot280(url))
 
 
 def pymycobot_socket(url: str) -> list[str]:
-    """Play the session with the maker's class for TCP."""
+    """Run the session with the maker's class for TCP."""
     host, _, port = url.removeprefix("socket://").rpartition(":")
     return _pymycobot(lambda kinds: kinds.MyCobot280Socket(host, int(port)))
 
 
 def _pymycobot(opened: Callable[[Any], Any]) -> list[str]:
     with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
-        # Importing it calls what newer Pythons deprecate, and it prints while it decodes.
+        # Its import uses deprecated features, and pymycobot prints while it decodes.
         warnings.simplefilter("ignore")
         import pymycobot
 
@@ -50,7 +50,7 @@ def _pymycobot(opened: Callable[[Any], Any]) -> list[str]:
 
 
 def ours_blocking(url: str) -> list[str]:
-    """Play the session with our blocking client."""
+    """Run the session with our blocking client."""
     failures = []
     with MyCobot280(url) as arm:
         for call in SESSION:
@@ -62,7 +62,7 @@ def ours_blocking(url: str) -> list[str]:
 
 
 def ours_asyncio(url: str) -> list[str]:
-    """Play the session with our asyncio client."""
+    """Run the session with our asyncio client."""
     return asyncio.run(_ours_asyncio(url))
 
 

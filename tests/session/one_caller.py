@@ -1,4 +1,4 @@
-"""A single caller of an exchange, for tests about single requests."""
+"""A caller that uses an exchange alone, for tests of single requests."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class OneCaller:
             self.exchange.give_up(self.pending)
 
     def free_at(self, name: str, *values: Any, now: float) -> float:
-        """Return when a request could be sent that is submitted now; nothing is sent."""
+        """Return the time at which a request submitted now could be sent; send nothing."""
         probe = self.exchange.submit(self.encode(name, values), now, ONCE)
         seconds = self.exchange.idle_seconds(now)
         self.exchange.give_up(probe)

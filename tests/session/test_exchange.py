@@ -1,4 +1,4 @@
-"""The exchange's guarantees for callers who share a transport; the test owns bytes and times."""
+"""The exchange keeps its guarantees for callers that share a transport."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def test_echo_of_a_one_way_request_does_not_hide_the_echo_of_the_request(
     assert not pending.done, "the first copy of the request is its echo"
 
 
-def test_held_request_is_overtaken_by_one_that_is_not(exchange: Exchange) -> None:
+def test_held_request_is_overtaken_by_a_request_that_is_not_held(exchange: Exchange) -> None:
     lost = submit(exchange, "get_encoder", 1)
     exchange.outgoing(0.0, drained=True)
     exchange.give_up(lost)
@@ -147,7 +147,9 @@ def test_outstanding_reply_of_a_repeated_request_holds_the_next_one(
     exchange.receive(ANGLES, 0.3)
     assert pending.done
     again = submit(exchange, "get_angles", now=0.3)
-    assert exchange.outgoing(0.3, drained=True) == b"", "the other reply could be taken for its own"
+    assert exchange.outgoing(0.3, drained=True) == b"", (
+        "the outstanding reply would look like its own"
+    )
     exchange.receive(ANGLES, 0.35)
     assert not again.done
     assert exchange.outgoing(0.35, drained=True) == QUERY_ANGLES
@@ -163,7 +165,7 @@ def test_grace_of_the_policy_ends_the_hold(exchange: Exchange) -> None:
     assert exchange.outgoing(0.31, drained=True) == QUERY_ANGLES
 
 
-def test_request_is_sent_in_the_end_on_a_line_that_is_never_drained(exchange: Exchange) -> None:
+def test_request_is_sent_after_60_ms_on_a_line_that_is_never_drained(exchange: Exchange) -> None:
     submit(exchange, "get_angles")
     assert exchange.outgoing(0.0, drained=False) == b""
     assert exchange.outgoing(0.06, drained=False) == QUERY_ANGLES
@@ -199,7 +201,9 @@ def test_missing_acknowledgement_is_a_timeout(exchange_280: Exchange) -> None:
         pending.result()
 
 
-def test_one_acknowledgement_confirms_neither_of_two_like_requests(exchange_280: Exchange) -> None:
+def test_first_acknowledgement_does_not_confirm_the_second_of_two_equal_requests(
+    exchange_280: Exchange,
+) -> None:
     request = encode_280("set_color", (1, 2, 3))
     exchange_280.send_one_way(request, 0.0)
     _, second = exchange_280.send_one_way(request, 0.1, ack_within=0.5)
@@ -210,7 +214,7 @@ def test_one_acknowledgement_confirms_neither_of_two_like_requests(exchange_280:
     assert second.done
 
 
-def test_copy_that_may_be_an_echo_acknowledges_at_the_end_of_the_wait(
+def test_copy_that_may_be_an_echo_counts_as_acknowledgement_at_the_deadline(
     exchange_280: Exchange,
 ) -> None:
     data, pending = exchange_280.send_one_way(encode_280("stop", ()), 0.0, ack_within=0.5)

@@ -63,7 +63,7 @@ def encoder(codec: Codec) -> RequestEncoder:
 def scenario(
     exchange: Exchange, encoder: RequestEncoder, step: str
 ) -> tuple[Callable[[], object], list[PendingRequest]]:
-    """Prepare an exchange for a step; return the step, and the requests of other callers."""
+    """Prepare an exchange for a step; return the step, and the requests that must end."""
     one = exchange.submit(encoder.encode("get_encoder", (1,)), 0.0, POLICY, WAIT)
     if step == "first sending":
         return lambda: exchange.outgoing(0.0, drained=True), [one]
@@ -98,7 +98,7 @@ def test_interrupt_at_any_point_of_a_step_leaves_the_exchange_usable(
         now = 0.5
         while not all(pending.done for pending in others):
             idle = exchange.idle_seconds(now)
-            assert idle is not None, f"a request waits for ever after point {number}"
+            assert idle is not None, f"a request waits forever after point {number}"
             now += max(idle, 0.001)
             exchange.wake(now)
             exchange.outgoing(now, drained=True)

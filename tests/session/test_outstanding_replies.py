@@ -1,4 +1,4 @@
-"""Late replies are never taken for the reply to another request."""
+"""A late reply never becomes the reply to another request."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_request_is_held_while_a_reply_that_looks_like_its_own_is_outstanding(
     assert session.request("get_encoder", (2,), now=GRACE_SECONDS)
 
 
-def test_late_reply_lifts_the_hold(session: OneCaller) -> None:
+def test_late_reply_ends_the_hold(session: OneCaller) -> None:
     give_up(session, "get_encoder", 1)
     assert [type(e) for e in session.receive(ENCODER, 0.15)] == [LateReply]
     assert session.free_at("get_encoder", 2, now=0.16) == 0.16
@@ -72,13 +72,13 @@ def test_replies_that_may_not_repeat_their_argument_are_not_distinguished(
     assert session.free_at("is_servo_enable", 4, now=0.2) == GRACE_SECONDS
 
 
-def test_late_text_does_not_lift_the_hold(session: OneCaller) -> None:
+def test_late_text_does_not_end_the_hold(session: OneCaller) -> None:
     give_up(session, "get_ssid_pwd")
     session.receive(TEXT, 0.3)
     assert session.free_at("get_ssid_pwd", now=0.4) == GRACE_SECONDS
 
 
-def test_echo_of_a_request_does_not_lift_the_hold(session: OneCaller) -> None:
+def test_echo_of_a_request_does_not_end_the_hold(session: OneCaller) -> None:
     session.request("is_servo_enable", (1,), now=0.0)
     session.give_up()
     session.receive(bytes.fromhex("FE FE 03 50 01 FA"), 0.1)

@@ -46,7 +46,7 @@ def test_noise_is_listed_with_its_diagnosis(codec: Codec, data: bytes, message: 
     assert line.partition(": ")[2] == message
 
 
-def test_panic_around_a_frame_is_diagnosed_where_it_begins(codec: Codec) -> None:
+def test_panic_interrupted_by_a_frame_is_diagnosed_in_its_first_line(codec: Codec) -> None:
     [frame] = codec.framer("reply").feed(bytes.fromhex("FE FE 03 12 01 FA"))
     assert isinstance(frame, Frame)
     received = ReceivedMeanwhile()
@@ -59,7 +59,7 @@ def test_panic_around_a_frame_is_diagnosed_where_it_begins(codec: Codec) -> None
     assert third.startswith("noise (no-header)")
 
 
-def test_last_lines_are_kept(codec: Codec) -> None:
+def test_only_the_last_lines_are_kept(codec: Codec) -> None:
     received = ReceivedMeanwhile()
     for index in range(1000):
         received.add(UnexpectedFrame(Frame(index, bytes([index % 256]), 1)))

@@ -103,7 +103,7 @@ def test_missed_slot_is_counted_for_line_or_consumer() -> None:
     assert "1 samples at 1.2 of 10 Hz" in str(report)
 
 
-def test_line_a_little_slower_than_the_rate_is_used_nearly_fully() -> None:
+def test_line_slightly_slower_than_the_rate_is_used_almost_completely() -> None:
     sampler = Sampler((GET_ANGLES,), 50.0)
     now = 0.0
     for _ in range(1000):

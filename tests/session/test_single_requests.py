@@ -81,7 +81,7 @@ def test_illegal_reply_ends_the_wait_with_its_reason(codec: Codec) -> None:
     assert event.error.reason == "bad-value"
 
 
-def test_text_reply_ends_by_silence(codec: Codec) -> None:
+def test_text_reply_ends_after_a_silence(codec: Codec) -> None:
     session = OneCaller(codec)
     session.request("get_ssid_pwd", (), now=0.0)
     session.receive(TEXT[:10], now=0.10)

@@ -1,4 +1,4 @@
-"""Replies outside any frame."""
+"""Encode and decode text outside any frame."""
 
 from __future__ import annotations
 

@@ -14,9 +14,9 @@ TEXT = b"ssid: one two password: three four"
 ACCOUNT = {"ssid": "one two", "password": "three four"}
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
 LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
-FORM = TABLE.command("get_ssid_pwd").text
-assert FORM is not None
-SILENCE = FORM.silence_ms / 1000
+VARIANT = TABLE.command("get_ssid_pwd").text
+assert VARIANT is not None
+SILENCE = VARIANT.silence_ms / 1000
 DEADLINE = 0.5
 
 
@@ -45,9 +45,7 @@ def test_pause_of_100_ms_inside_the_text_does_not_end_it(session: OneCaller) -> 
 @pytest.mark.parametrize(
     "before", [LEAK, POWERED, b"cmd_len error\r\n", b"\xfe", b"ssid", bytes(9)]
 )
-def test_bytes_before_the_text_neither_end_nor_spoil_the_wait(
-    session: OneCaller, before: bytes
-) -> None:
+def test_bytes_before_the_text_do_not_change_the_wait(session: OneCaller, before: bytes) -> None:
     session.receive(before, 0.01)
     assert session.wake_at == DEADLINE, "the silence starts with the text"
     assert session.wake(0.01 + SILENCE) == []
@@ -95,7 +93,7 @@ def test_text_hidden_after_a_false_header_is_found_at_the_deadline(
     session: OneCaller,
 ) -> None:
     session.receive(bytes.fromhex("FE FE 0E 20") + b"ssid: a", 0.1)
-    assert ending(session.wake(DEADLINE)) is None, "it has only begun"
+    assert ending(session.wake(DEADLINE)) is None, "the text has only begun"
     session.receive(b" password: b", DEADLINE + 0.05)
     assert isinstance(ending(session.wake(DEADLINE + SILENCE)), RequestExpired)
 

@@ -36,7 +36,7 @@ def test_template_of_the_page_renders_the_output_of_the_page(template: Path) -> 
     status, text = _run(template)
     assert status == 0
     assert text.startswith(OUTPUT)
-    assert len(TEMPLATE.splitlines()) <= 30, "the page promises a short one"
+    assert len(TEMPLATE.splitlines()) <= 30, "the page promises a short template"
 
 
 @pytest.mark.parametrize("edition", sorted(TABLES))

@@ -25,7 +25,7 @@ class PtyEnd:
         self._slave = slave
 
     def accept(self) -> None:
-        # Only the transport has it open now, so that closing the master unplugs it.
+        # Now only the transport has the port open, so closing the master unplugs it.
         os.close(self._slave)
         self._slave = -1
 
@@ -86,7 +86,7 @@ End = PtyEnd | TcpEnd
 
 
 class Line:
-    """A transport and its far end, for the length of a ``with`` block."""
+    """A transport and its far end, open during a ``with`` block."""
 
     def __init__(self, kind: str, baudrate: int = FAST) -> None:
         self.end: End = PtyEnd() if kind == "serial" else TcpEnd()

@@ -1,4 +1,4 @@
-"""Behaviour that a serial port and TCP share."""
+"""Check the behaviour that a serial port and TCP share."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_transport_names_its_url_and_kind(line: Line) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @settings(max_examples=25)
 @given(chunks=st.lists(st.binary(min_size=1, max_size=60), max_size=12))
-def test_bytes_go_both_ways_in_any_chunks(kind: str, chunks: list[bytes]) -> None:
+def test_bytes_arrive_in_both_directions_in_any_chunks(kind: str, chunks: list[bytes]) -> None:
     whole = b"".join(chunks)
     with Line(kind) as line:
         for chunk in chunks:
@@ -57,7 +57,7 @@ def test_bytes_go_both_ways_in_any_chunks(kind: str, chunks: list[bytes]) -> Non
         assert line.end.receive(len(whole)) == whole
 
 
-def test_every_byte_value_goes_through_unchanged(line: Line) -> None:
+def test_every_byte_value_arrives_unchanged(line: Line) -> None:
     # XON, XOFF, NUL, Ctrl-C, CR, LF, 0xFF: all of these mean something to a terminal.
     every = bytes(range(256)) * 2
     line.transport.write(every)
@@ -74,12 +74,12 @@ def test_read_waits_for_its_timeout(line: Line) -> None:
 
 
 def test_received_byte_ends_the_wait(line: Line) -> None:
-    saying = threading.Timer(0.05, line.end.send, [b"x"])
-    saying.start()
+    sending = threading.Timer(0.05, line.end.send, [b"x"])
+    sending.start()
     started = time.monotonic()
     assert line.transport.read(10.0) == b"x"
     assert time.monotonic() - started < AT_ONCE
-    saying.join()
+    sending.join()
 
 
 def test_descriptor_can_be_waited_for(line: Line) -> None:
@@ -92,19 +92,19 @@ def test_descriptor_can_be_waited_for(line: Line) -> None:
 
 
 def test_unplugging_ends_the_wait_at_once(line: Line) -> None:
-    pulling = threading.Timer(0.05, line.end.unplug)
-    pulling.start()
+    unplugging = threading.Timer(0.05, line.end.unplug)
+    unplugging.start()
     started = time.monotonic()
     with pytest.raises(LinkError, match="cannot be read"):
         line.transport.read(10.0)
     assert time.monotonic() - started < AT_ONCE
-    pulling.join()
-    # And it stays that way.
+    unplugging.join()
+    # Every later read fails, too.
     with pytest.raises(LinkError):
         line.transport.read(0)
 
 
-def test_data_from_before_the_end_is_read_first() -> None:
+def test_data_sent_before_the_connection_ends_is_read_first() -> None:
     with Line("socket") as line:
         line.end.send(b"last words")
         line.end.unplug()
@@ -135,7 +135,7 @@ def test_signal_handler_may_close_the_transport_that_is_read(line: Line) -> None
         signal.signal(signal.SIGALRM, old)
 
 
-def test_closed_transport_is_a_link_error(line: Line) -> None:
+def test_use_of_a_closed_transport_is_a_link_error(line: Line) -> None:
     line.transport.close()
     line.transport.close()
     for use in (
@@ -176,9 +176,9 @@ def test_closing_ends_a_waiting_write_at_once(line: Line) -> None:
     closing.join()
 
 
-def test_ctrl_c_in_a_write_finishes_the_frame_first(line: Line) -> None:
+def test_ctrl_c_during_a_write_is_raised_after_the_whole_frame(line: Line) -> None:
     data = bytes(range(251)) * (400 if line.end.kind == "serial" else 40_000)
-    line.transport._baudrate = 100_000  # type: ignore[attr-defined]  # so that there is time enough
+    line.transport._baudrate = 100_000  # type: ignore[attr-defined]  # so that the write takes long enough
     received: list[bytes] = []
 
     def interrupt_and_receive() -> None:
@@ -187,11 +187,11 @@ def test_ctrl_c_in_a_write_finishes_the_frame_first(line: Line) -> None:
         time.sleep(0.1)
         received.append(line.end.receive(len(data)))
 
-    hearing = threading.Thread(target=interrupt_and_receive)
-    hearing.start()
+    interrupting = threading.Thread(target=interrupt_and_receive)
+    interrupting.start()
     with pytest.raises(KeyboardInterrupt):
         line.transport.write(data)
-    hearing.join()
+    interrupting.join()
     assert received == [data]
 
 
@@ -209,8 +209,8 @@ def test_one_thread_reads_while_another_writes(line: Line) -> None:
     reading = threading.Thread(target=lambda: received.append(line.transport.read(5.0)))
     reading.start()
     time.sleep(0.05)
-    line.transport.write(b"question")
-    assert line.end.receive(8) == b"question"
-    line.end.send(b"answer")
+    line.transport.write(b"request!")
+    assert line.end.receive(8) == b"request!"
+    line.end.send(b"reply")
     reading.join()
-    assert received == [b"answer"]
+    assert received == [b"reply"]

@@ -1,4 +1,4 @@
-"""Behaviour that only serial ports have: locks, control lines, the terminal's modes."""
+"""Check what only serial ports have: locks, control lines, terminal modes."""
 
 from __future__ import annotations
 
@@ -33,8 +33,7 @@ else:
     print("opened")
 """
 
-
-# Becomes `nobody` only when Python is loaded: its files may be in a folder of root's.
+# Becomes `nobody` only after Python is loaded, since other users may not read Python's files.
 OPEN_WITHOUT_LOCK = """
 import os, sys
 os.setuid(65534)
@@ -73,7 +72,7 @@ def test_second_transport_of_this_process_on_a_port_is_a_link_error() -> None:
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
-def test_programs_that_check_no_lock_are_kept_out() -> None:
+def test_program_that_ignores_locks_cannot_open_the_port() -> None:
     end = PtyEnd()
     os.chmod(end.url, 0o666)
     try:
@@ -123,7 +122,7 @@ def test_low_latency_is_requested() -> None:
         def set_low_latency_mode(self, wanted: bool) -> None:
             modes.append(wanted)
 
-    # No port here has that mode.
+    # No port of the test machines has that mode.
     assert request_low_latency(Port()) is True
     assert modes == [True]
 
@@ -151,7 +150,7 @@ def test_descriptor_too_high_for_select_can_be_waited_for() -> None:
     resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
-def test_unusual_baud_rate_is_set() -> None:
+def test_port_with_an_unusual_baud_rate_carries_bytes() -> None:
     with Line("serial", baudrate=FAST + 1) as line:
         line.transport.write(b"x")
         assert line.end.receive(1) == b"x"
@@ -160,7 +159,7 @@ def test_unusual_baud_rate_is_set() -> None:
 def test_hwgrep_url_finds_the_port(monkeypatch: pytest.MonkeyPatch) -> None:
     ends = [PtyEnd(), PtyEnd()]
     plugged = ends[:1]
-    # Without such hardware, pyserial finds a pty here, and later another one.
+    # This machine has no such port, so pyserial is made to find a pty, and later another one.
     monkeypatch.setattr(list_ports, "grep", lambda text: [(end.url, "", "") for end in plugged])
     transport = open_transport("hwgrep://1A86:55D4", FAST)
     assert transport.kind == "serial"

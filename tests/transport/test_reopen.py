@@ -1,4 +1,4 @@
-"""Reopen a transport."""
+"""Reopen transports that were closed, lost, or are still present."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cobotwire.transport import open_transport
 from transport.ends import FAST, Line, TcpEnd
 
 
-def test_server_that_comes_back_is_reopened() -> None:
+def test_transport_reconnects_to_a_server_that_hung_up() -> None:
     with Line("socket") as line:
         assert isinstance(line.end, TcpEnd)
         for round_ in range(3):

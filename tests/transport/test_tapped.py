@@ -1,4 +1,4 @@
-"""A transport that passes its traffic to a tap."""
+"""Tap a transport, so that its traffic is passed on."""
 
 from __future__ import annotations
 

@@ -42,11 +42,11 @@ def test_impossible_host_name_is_a_link_error() -> None:
 
 def test_ipv6_address_in_brackets_is_accepted() -> None:
     if not socket.has_ipv6:
-        pytest.skip("no IPv6 here")
+        pytest.skip("this machine has no IPv6")
     try:
         server = socket.create_server(("::1", 0), family=socket.AF_INET6)
     except OSError:
-        pytest.skip("no IPv6 loopback here")
+        pytest.skip("this machine has no IPv6 loopback")
     with server:
         transport = open_transport(f"SOCKET://[::1]:{server.getsockname()[1]}", FAST)
         peer, _ = server.accept()
@@ -70,7 +70,7 @@ def test_connecting_to_a_silent_host_times_out(monkeypatch: pytest.MonkeyPatch) 
         url = f"socket://127.0.0.1:{server.getsockname()[1]}"
         waiting: list[OpenedTransport] = []
         started = time.monotonic()
-        # The queue of a server that accepts no connection is full after a few.
+        # A server that accepts no connection has a queue that is full after a few clients.
         with pytest.raises(LinkError, match=r"cannot be opened: .*timed out"):
             waiting.extend(open_transport(url, FAST) for _ in range(20))
         assert time.monotonic() - started < 5.0

@@ -14,7 +14,7 @@ from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 
 
 def drive(arm: MyCobot) -> None:
-    """Call methods as a user does."""
+    """Call methods as users do."""
     arm.send_angles([0, 0, 0, 0, 0, 0], speed=30)
     arm.send_angles((0.5, 0, 0, 0, 0, 0), 30)
     arm.send_angles(arm.get_angles(), 30)
@@ -62,7 +62,7 @@ async def sample_async(arm: AsyncMyCobot) -> float:
 
 
 async def drive_async(port: str) -> float:
-    """Call methods of the asyncio client as a user does."""
+    """Call methods of the asyncio client as users do."""
     async with AsyncMyCobot(port) as arm:
         await arm.send_angles(await arm.get_angles(), 30)
     async with AsyncMyCobot280(port, timeout=1.0) as other:

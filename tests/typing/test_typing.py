@@ -1,4 +1,4 @@
-"""The generated API under ``mypy --strict`` and pyright: what each accepts and what it rejects."""
+"""Check what ``mypy --strict`` and pyright accept and reject in code that uses the API."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Checker = Callable[[Path], tuple[str, set[int]]]
 
 
 def mypy(path: Path) -> tuple[str, set[int]]:
-    """Return what mypy prints of a file, and the lines with errors."""
+    """Return what mypy prints about a file, and the lines with errors."""
     config = str(vectors.ROOT / "pyproject.toml")
     out, err, _ = api.run(["--strict", "--config-file", config, str(path)])
     assert not err
@@ -29,7 +29,7 @@ def mypy(path: Path) -> tuple[str, set[int]]:
 
 
 def pyright(path: Path) -> tuple[str, set[int]]:
-    """Return what pyright prints of a file, and the lines with errors."""
+    """Return what pyright prints about a file, and the lines with errors."""
     if not PYRIGHT.exists():
         pytest.skip("basedpyright is not installed; it is in the dependency group test")
     settings = {
@@ -54,14 +54,14 @@ def pyright(path: Path) -> tuple[str, set[int]]:
 
 @pytest.mark.parametrize("check", [mypy, pyright])
 @pytest.mark.parametrize("name", ["right.py", "messages_right.py"])
-def test_right_code_type_checks(name: str, check: Checker) -> None:
+def test_correct_code_has_no_type_error(name: str, check: Checker) -> None:
     out, errors = check(HERE / name)
     assert not errors, out
 
 
 @pytest.mark.parametrize("check", [mypy, pyright])
 @pytest.mark.parametrize("name", ["wrong.py", "messages_wrong.py"])
-def test_each_wrong_line_and_no_other_is_an_error(name: str, check: Checker) -> None:
+def test_exactly_the_wrong_lines_are_type_errors(name: str, check: Checker) -> None:
     out, errors = check(HERE / name)
     lines = (HERE / name).read_text().splitlines()
     assert errors == {n for n, line in enumerate(lines, 1) if line.endswith("# wrong")}, out

@@ -32,8 +32,8 @@ def record(path: Path, scenario: Scenario, samples: int = 40) -> int:
     peer = scenario.wrap(SimulatedArm(TABLE, clock=clock), CODEC, clock=clock)
     complete = 0
     with Recording(str(path), CODEC, url="memory://arm", baudrate=115200) as recording:
-        link = TappedTransport(MemoryTransport(peer, clock), recording.record)
-        arm = MyCobot280(link, retry=RetryPolicy(attempts=1))
+        transport = TappedTransport(MemoryTransport(peer, clock), recording.record)
+        arm = MyCobot280(transport, retry=RetryPolicy(attempts=1))
         arm.power_on()
         arm.send_angles([90, 0, 0, 0, 0, -45], 20)
         for _ in range(samples):
@@ -133,7 +133,7 @@ def test_plot_draws_recordings_and_raw_bytes(tmp_path: Path) -> None:
     assert png.read_bytes().startswith(b"\x89PNG")
 
 
-def test_plot_rejects_what_it_cannot_draw(tmp_path: Path) -> None:
+def test_plot_rejects_wrong_file_names_and_interfaces(tmp_path: Path) -> None:
     path = tmp_path / "arm.pcapng"
     record(path, Scenario(name="well"), samples=1)
     for words, message in (

@@ -13,7 +13,7 @@ from mutation.client.sessions import Session
 
 
 def wrong_frames(session: Session) -> Iterator[ClientMutant]:
-    """Yield requests with a wrong header, LEN, id or footer, too short, or too long."""
+    """Yield requests with a wrong header, LEN, id or footer, or with a wrong size."""
     whole = session.frame
     at = session.table.frame.overhead
     taken = {command.id for command in session.table.commands}
@@ -27,7 +27,7 @@ def wrong_frames(session: Session) -> Iterator[ClientMutant]:
         kind = name.rstrip("0123456789ABCDEF+-").rstrip("-") or name
         writes = session.writes(data + session.text) if data else session.writes()
         if name == "twice" and session.command.safety == "query":
-            continue  # may be repeated; a copy sent too soon is a mutant below
+            continue  # a query may be repeated; a copy sent too soon is a mutant below
         yield ClientMutant(kind, f"{kind}: {session.place}: {name}", session.script(), writes)
 
 

@@ -18,7 +18,7 @@ class Sent(NamedTuple):
 
 
 class ClientMutant(NamedTuple):
-    """``script`` is what the client should send; if ``lost``, no reply reaches it."""
+    """A client with a fault. ``script`` is what it should send; if ``lost``, it gets no reply."""
 
     kind: str
     id: str

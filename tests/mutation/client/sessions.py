@@ -43,10 +43,10 @@ class Session(NamedTuple):
     @property
     def text(self) -> bytes:
         """The text that follows the request, if it has one."""
-        spelled = self.command.request_text
-        if spelled is None:
+        request_text = self.command.request_text
+        if request_text is None:
             return b""
-        return text.encode(spelled, {name: "word" for name in spelled.fields})
+        return text.encode(request_text, {name: "word" for name in request_text.fields})
 
     @property
     def other(self) -> Command:
@@ -78,7 +78,7 @@ def sessions(table: Table) -> list[Session]:
         for index, variant in enumerate(command.request):
             session = Session(table, command, variant, index, ordinary(variant))
             values: list[Any] = list(named_values(variant, session.raw_values).values())
-            # A variant that another one hides is never sent.
+            # Skip a variant that no values select, because an earlier one allows them.
             if codec.encode(command.name, "request", values) == session.frame:
                 found.append(session)
     return found

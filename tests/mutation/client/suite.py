@@ -1,4 +1,4 @@
-"""The suite of the referee: clients with one fault, and right ones, with or without a script."""
+"""The suite of the referee: broken and correct clients, with or without a script."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ class ClientSuite:
         return Outcome(case, found, "" if found else self._reason(mutant))
 
     def right_runs(self) -> Sequence[str]:
-        """Return the names of right clients on good lines, and with each kind of fault."""
+        """Return the names of a correct client's runs: on good lines and with each fault."""
         lines = ("good", "no-acks", *FAULTS)
         return [f"{lines[number % len(lines)]} {number}" for number in range(RUNS)]
 
     def accept(self, run: str) -> RightRun:
-        """Let the referee judge a right client: every request once, in a random order."""
+        """Let the referee judge a correct client: every request once, in a random order."""
         line, number = run.split()
         every = sessions(self._table)
         off = [s for s in every if s.command.safety == "power"]
@@ -75,7 +75,9 @@ class ClientSuite:
         repeats = [sent for sent in mutant.writes if len(sent.data) and sent.after < PAUSE]
         if repeats and mutant.kind != "resent":
             return ""
-        return "legal requests at fair times; without a script nobody knows what was meant"
+        return (
+            "legal requests at allowed times; without a script, the intended requests are unknown"
+        )
 
     def _legal(self, sent: Sent) -> bool:
         framer = self._codec.framer("request")
@@ -120,7 +122,7 @@ def first_failure(
 
 
 def _pass_time(referee: Referee, clock: SteppedClock, seconds: float) -> None:
-    """Let time pass as a server does: it flushes the referee whenever that is due."""
+    """Let time pass as a server does, which flushes the referee whenever it is due."""
     end = clock() + seconds
     while referee.wait is not None and clock() + referee.wait <= end:
         clock.sleep(referee.wait)

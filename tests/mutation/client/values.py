@@ -13,7 +13,7 @@ from mutation.tables import wrong_tables
 
 
 def wrong_values(session: Session) -> Iterator[ClientMutant]:
-    """Yield every number of the request, wrong in every way that shows in its bytes."""
+    """Yield a client for each way to send a number wrong, if the frame differs."""
     seen = {session.frame}
     for kind, text, frame in _frames(session):
         if frame not in seen:
@@ -59,7 +59,7 @@ def _rows(session: Session, index: int, field: Field) -> Iterator[tuple[str, str
     before, after = session.raw_values[:index], session.raw_values[index + 1 :]
     for text, turned in (
         ("last element first", row[::-1]),
-        ("first two changed over", (row[1], row[0], *row[2:])),
+        ("first two swapped", (row[1], row[0], *row[2:])),
     ):
         frame = session.frame_with((*before, turned, *after))
         yield "order", f"{field.name} {text}", frame

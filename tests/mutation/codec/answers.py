@@ -207,7 +207,7 @@ ANSWERS: tuple[tuple[str, Make], ...] = (
 
 
 def turned(table: Table, command: str, direction: str, name: str, first_two: bool) -> OurCodec:
-    """Return a codec that has the elements of a row in another order."""
+    """Return a codec that reads and writes the elements of a row in another order."""
 
     def turn(row: Any) -> Any:
         if not isinstance(row, list):

@@ -274,7 +274,7 @@ BROKEN: tuple[type[_Broken], ...] = (
 
 
 class FramingCodec(ReferenceCodec):
-    """The reference codec with a broken framer for one direction; the others are right."""
+    """The reference codec with a framer that is broken for one direction only."""
 
     def __init__(self, table: Table, kind: type[_Broken], listening: Listening) -> None:
         super().__init__(table)
@@ -289,7 +289,7 @@ class FramingCodec(ReferenceCodec):
 
 
 class DeafCodec(ReferenceCodec):
-    """A codec whose framer listens to another direction than requested."""
+    """A codec with a framer that listens to another direction than requested."""
 
     def __init__(self, table: Table, requested: Listening, used: Listening) -> None:
         super().__init__(table)

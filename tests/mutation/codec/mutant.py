@@ -11,9 +11,10 @@ from mutation.tables import Place
 
 
 class CodecMutant(NamedTuple):
-    """``make`` returns a new one. ``place`` says where a table is wrong, ``table`` is that table.
+    """A codec with one fault; ``make`` returns a new one.
 
-    ``command`` is where to look first; empty: anywhere.
+    If its table is wrong, ``table`` is that table and ``place`` the wrong part. The questions about
+    ``command`` come first; if it is empty, all questions are asked in order.
     """
 
     kind: str

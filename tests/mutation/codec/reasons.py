@@ -19,12 +19,12 @@ from cobotwire.protocol.table import Field, Number, Table
 from mutation.codec.mutant import CodecMutant
 from mutation.tables import Place, variant_at
 
-# A number of three bytes or more has too many values to try all of them.
+# A number of three bytes or more has too many values to try all, so nothing excuses its mutant.
 MOST_VALUES = 65536
 
 
 def reason(table: Table, mutant: CodecMutant) -> str:
-    """Compare every number that the field can carry, both ways; empty if the codecs differ."""
+    """Return why a mutant equals the correct codec for every raw value; empty if they differ."""
     place = mutant.place
     if place is None or mutant.table is None:
         return ""
@@ -37,15 +37,17 @@ def reason(table: Table, mutant: CodecMutant) -> str:
         count += 1
         if not _alike(table, right, wrong, place, raw_values):
             return ""
-    return f"alike for each of the {count} values that it can carry, and one more each way"
+    if not count:
+        return ""
+    return f"equal results for {count} raw values: all of the field, and one beyond each end"
 
 
 def _shadowed(table: Table, place: Place) -> str:
-    """Return whether another variant with the same fields and size replaces the variant."""
+    """Return the reason if another variant has the same fields and size; otherwise nothing."""
     variants = table.command(place.command).variants(place.direction)
     own = variants[place.variant]
     twins = [variant for variant in variants if variant is not own and variant == own]
-    return "another variant of the command is the same" if twins else ""
+    return "another variant of the command is equal" if twins else ""
 
 
 def _all_samples(table: Table, place: Place, field: Field) -> list[RawValues]:

@@ -1,4 +1,4 @@
-"""The suite of the codec runner: codecs with one fault, and right ones."""
+"""The suite of the codec runner: broken and correct codecs."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ class CodecSuite:
         return Outcome(case, found, "" if found else reason(self._table, mutant))
 
     def right_runs(self) -> Sequence[str]:
-        """Return the names of several runs with each of our codecs."""
+        """Return the names of the runs with our own codecs, which are correct."""
         names = ("native", "reference")
         return [f"{name} {number}" for name in names for number in range(RUNS)]
 
     def accept(self, run: str) -> RightRun:
-        """Ask a right codec every question."""
+        """Ask a correct codec every question."""
         name = "native" if run.startswith("native") else "reference"
         codec = OurCodec(codecs.load(self._table, name))  # type: ignore[arg-type]
         found = _complaint(Run(self._table, codec).ask_all(self._questions))
@@ -65,7 +65,7 @@ class CodecSuite:
         return found
 
     def _about(self, command: str) -> Iterator[Question]:
-        """Yield the questions about a command, then the general ones; without a command, all."""
+        """Yield the questions about a command and then the general ones; without a command, all."""
         if not command:
             yield from self._questions
             return

@@ -1,4 +1,4 @@
-"""Devices that send acknowledgements the edition does not have."""
+"""Devices that send acknowledgements that the edition does not define."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DONE = b"\x01"
 
 
 class Acknowledged(Fault):
-    """One command is acknowledged although the edition has no acknowledgement of it."""
+    """One command is acknowledged, although the edition defines no acknowledgement for it."""
 
     def __init__(self, command: Command, data: bytes) -> None:
         self._command = command
@@ -32,14 +32,14 @@ def wrong_acks(table: Table) -> Iterator[Mutant]:
     """Yield a mutant for every command without an acknowledgement."""
     for command in distinct(table):
         if not command.ack:
-            yield _mutant(table, command, "one that reports done", DONE)
+            yield _mutant(table, command, "it reports done", DONE)
         if not command.ack and not command.answers:
-            yield _mutant(table, command, "an empty one", b"")
+            yield _mutant(table, command, "it has no data", b"")
 
 
 def _mutant(table: Table, command: Command, text: str, data: bytes) -> Mutant:
     return Mutant(
-        "ack where none is due",
+        "undefined ack",
         command.name,
         "",
         text,

@@ -1,4 +1,4 @@
-"""Take a frame apart into numbers, so that any of them can be sent wrong."""
+"""Take a frame apart into numbers, so that any number can be changed."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from cobotwire.protocol.frame_format import FrameFormat
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One number on the wire: how it is written, and the raw number that is."""
+    """One number on the wire: its encoding and its raw value."""
 
     number: Number
     raw: int
 
     @property
     def data(self) -> bytes:
-        """Its bytes. What the width has no room for is cut off, as firmware in C does."""
+        """The bytes of the number. Bits beyond its width are cut off, as in C."""
         return self.number.pack(self.raw)
 
 

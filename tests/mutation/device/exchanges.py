@@ -1,12 +1,13 @@
-"""The commands of an edition that a device can be wrong about, each once."""
+"""Find the commands and fields of an edition that can have a fault, each once."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from random import Random
 
 from cobotwire import codec as codecs
 from cobotwire.protocol.errors import ProtocolError
-from cobotwire.protocol.table import Command, Field, Table
+from cobotwire.protocol.table import Command, Field, Table, Variant
 from mutation.device.legal import draw_request
 
 DRAWS = 8
@@ -35,17 +36,17 @@ def distinct(table: Table) -> list[Command]:
 
 def reply_fields(command: Command) -> list[Field]:
     """Return the fields of all variants of a reply, each name once."""
-    found: dict[str, Field] = {}
-    for variant in command.reply:
-        for field in variant.fields:
-            found.setdefault(field.name, field)
-    return list(found.values())
+    return _distinct_fields(command.reply)
 
 
 def request_fields(command: Command) -> list[Field]:
     """Return the fields of all variants of a request, each name once."""
+    return _distinct_fields(command.request)
+
+
+def _distinct_fields(variants: Sequence[Variant]) -> list[Field]:
     found: dict[str, Field] = {}
-    for variant in command.request:
+    for variant in variants:
         for field in variant.fields:
             found.setdefault(field.name, field)
     return list(found.values())

@@ -48,7 +48,7 @@ class WrongField(Fault):
 
 
 def wrong_fields(table: Table) -> Iterator[Mutant]:
-    """Yield every field of every reply that is due, wrong in every way."""
+    """Yield a mutant for each field of each required reply and each way to send it wrong."""
     for command in distinct(table):
         for field in reply_fields(command) if command.answers else ():
             number = field.cases[0].numbers[0]
@@ -174,8 +174,8 @@ ALTERATIONS = (
         _room_below,
         lambda f, cells: [replace(c, raw=min(f.choices or (c.number.minimum,)) - 1) for c in cells],
     ),
-    Alteration("value", "the next legal one", lambda f, _: bool(f.choices), _next_choice),
-    Alteration("value", "always the first legal one", lambda f, _: bool(f.choices), _first),
+    Alteration("value", "the next legal value", lambda f, _: bool(f.choices), _next_choice),
+    Alteration("value", "always the first legal value", lambda f, _: bool(f.choices), _first),
     Alteration("value", "always zero", _is_number, _change_raw(lambda *_: 0)),
 )
 ECHOES = (

@@ -29,7 +29,7 @@ class WrongFrame(Fault):
 
 
 def wrong_frames(table: Table) -> Iterator[Mutant]:
-    """Yield every reply and every acknowledgement in every kind of wrong frame."""
+    """Yield a mutant for each reply or acknowledgement and each kind of wrong frame."""
     for command in distinct(table):
         ways = TEXTS if command.text is not None else FRAMES if command.reply else ()
         for kind, text, reframe in ways:

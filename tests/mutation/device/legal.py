@@ -1,4 +1,4 @@
-"""Draw legal requests of an edition with a seed; shares no values and no code with testers."""
+"""Draw legal requests of an edition with a seed; share no values and no code with the testers."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from random import Random
 from cobotwire.protocol.table import Case, Command, Field, Number, Table, Variant
 from mutation.device.cells import Cell, framed, joined
 
-# The values that a reply reported last, by unit and scale of each number of a row.
+# The last reported values, by the unit and scale of each number of a row.
 Reported = Mapping[tuple[object, ...], list[int]]
 
 
 def draw_request(
     table: Table, command: Command, random: Random, reported: Reported | None = None
 ) -> bytes:
-    """Return a legal request of ``command``; perhaps with reported values, or near them."""
+    """Return a legal request of ``command``; some have reported values, or values near them."""
     variant = random.choice(command.request)
     return framed(table.frame, command.id, joined(draw_fields(variant, random, reported or {})))
 
@@ -52,7 +52,7 @@ def _recall(case: Case, reported: list[int], random: Random) -> list[Cell]:
 
 
 def _draw(field: Field, number: Number, random: Random) -> int:
-    """Return a bound, the middle, a small number or any: different faults show at each."""
+    """Return a bound, a value near zero, or any value: each kind reveals different faults."""
     if field.choices:
         return random.choice(field.choices)
     low, high = number.minimum, number.maximum

@@ -86,9 +86,9 @@ class NeedsWholeWrites(Fault):
 
 
 def breaks_on_malformed(table: Table) -> Iterator[Mutant]:
-    """Yield every kind of malformed input, with every way to break on it."""
+    """Yield a mutant for each kind of malformed input and each way to break on it."""
     for stimulus in STIMULI:
-        yield _silent(table, stimulus, None, "silent for good")
+        yield _silent(table, stimulus, None, "the device sends no more replies")
         yield _silent(table, stimulus, 1, "the next good request is lost")
         yield _silent(table, stimulus, 2, "the next two good requests are lost")
         for text, reply in ANSWERS:
@@ -108,7 +108,7 @@ def _silent(table: Table, after: Stimulus, requests: int | None, text: str) -> M
 def _answering(
     table: Table, to: Stimulus, text: str, reply: Callable[[Codec, bytes], bytes]
 ) -> Mutant:
-    return _plain(table, f"to {to}, {text}", lambda: RepliesToMalformed(to, reply))
+    return _plain(table, f"in reply to {to}, {text}", lambda: RepliesToMalformed(to, reply))
 
 
 def _plain(table: Table, text: str, fault: Callable[[], Fault]) -> Mutant:
@@ -125,8 +125,8 @@ def _frame(codec: Codec, data: bytes) -> bytes:
     return framed(codec.table.frame, data[at] if at < len(data) else data[-1], b"\x01")
 
 
-# A text is not a fault: firmware sends ``cmd_len error``, and the edition does not forbid it.
+# A text in reply is not a fault: firmware sends ``cmd_len error``, which no edition forbids.
 ANSWERS: tuple[tuple[str, Callable[[Codec, bytes], bytes]], ...] = (
-    ("it is sent back", _same),
+    ("the same bytes", _same),
     ("an acknowledgement", _frame),
 )

@@ -1,4 +1,4 @@
-"""Devices that ignore a change, store a wrong value, or apply it to another part."""
+"""Devices that ignore a setter, store a wrong value, or apply it to another part."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ Change = Callable[[Field, Cell], int]
 
 
 class Ignored(Fault):
-    """One change gets a reply but is not carried out."""
+    """One setter gets its reply, but is not carried out."""
 
     def __init__(self, command: Command) -> None:
         self._command = command
         self._answer = b""
 
     def request(self, codec: Codec, request: DecodedMessage, data: bytes) -> bytes:
-        """Keep the request from the arm."""
+        """Return nothing, so that the arm does not receive the request."""
         return b"" if request.command is self._command else data
 
     def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
@@ -99,7 +99,7 @@ def _misreadings(field: Field, parts: set[str]) -> Iterator[tuple[str, str, Chan
     if field.choices and len(field.choices) < 2:
         return
     if field.name in parts:
-        yield "wrong part", "the next one is meant", _next
+        yield "wrong part", "the next part instead", _next
     elif field.choices:
         yield "stored wrong", "as the next legal value", _next
     else:

@@ -17,8 +17,8 @@ from mutation.oracle.reasons import reason
 from mutation.suite import Case, Outcome, RightRun
 
 RUNS = 20
-# What a healthy arm's line carries, before one reply in twelve and after one reply in twelve. Four
-# pieces in seven are servo packets. The class "text" is left out: it also draws panics, and a
+# The noise on the line of a healthy arm, before one reply in twelve and after one reply in twelve.
+# Four pieces in seven are servo packets. The class "text" is left out: it also draws panics, and a
 # device that panics does not conform.
 NOISE = (*4 * ("servo",), "command error", "log", "nuls")
 LIGHT_NOISE = Scenario(
@@ -37,7 +37,7 @@ class DeviceSuite:
         self._table = table
         self._mutants = {mutant.id: mutant for mutant in device_mutants(table)}
         self.name = f"device, {table.edition}"
-        # Failures that the correct device has too, which do not count, by the tested command.
+        # Failures that the correct device has, too; they do not count. Keyed by the tested command.
         self._groundless: dict[str, set[tuple[str, str]]] = {}
 
     def cases(self) -> Sequence[Case]:
@@ -80,7 +80,7 @@ class DeviceSuite:
         return [f"{line} {number}" for line in ("clean", "noisy") for number in range(RUNS)]
 
     def accept(self, run: str) -> RightRun:
-        """Run the tester on the right device to the end."""
+        """Run all test cases on the correct device."""
         line, number = run.split()
         # Each run starts at another time, so that all runs differ.
         clock = SteppedClock(int(number) * 1000.003)

@@ -12,7 +12,7 @@ from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.memory import MemoryTransport
 from cobotwire.simulator.peer import Peer
 
-# Every joint may move this far, and at full speed: a simulated arm cannot be damaged.
+# Each joint may move this far (degrees), at full speed: a simulated arm cannot be damaged.
 WORKSPACE = (-60.0, 60.0)
 FASTEST = 100
 

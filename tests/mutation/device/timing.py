@@ -33,7 +33,7 @@ class WrongTime(Fault):
 
 
 def wrong_times(table: Table) -> Iterator[Mutant]:
-    """Yield every reply at wrong times; acknowledgements may be late or missing, but not double."""
+    """Yield a mutant for each reply and wrong time; for acknowledgements, only with copies."""
     for command in distinct(table):
         ways = WAYS if command.answers else TWICE if command.reply else ()
         for kind, text, send in ways:

@@ -1,1 +1,1 @@
-"""Decide without any tester whether a broken device can be distinguished from a correct one."""
+"""Decide, without a tester, whether a broken device can be distinguished from a correct one."""

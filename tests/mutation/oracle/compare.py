@@ -48,9 +48,9 @@ _kept: dict[tuple[str, str], list[Conversation]] = {}
 
 
 def _conversation(table: Table, command: str, seed: int) -> Conversation:
-    """Return a conversation about some commands only, drawn anew for each.
+    """Return a conversation about some of the commands, drawn at random.
 
-    If every conversation had a command that stops the arm for good, none would show motion.
+    If all commands took part, one that stops the arm for good would hide all motion.
     """
     random = Random(f"{table.edition} {command} {seed}")
     some = random.sample(table.commands, len(table.commands) // SHARE)

@@ -1,4 +1,4 @@
-"""Long random conversations, legal and not, made from a table, and a device's replies."""
+"""Have long random conversations with a device, with legal and malformed requests."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Conversation:
         _play(self._right, self._clock, [QUIET], self.received)
 
     def again(self, peer: Peer, clock: SteppedClock) -> list[Received]:
-        """Return what another device sends when it receives the same at the same times."""
+        """Return what another device sends when it receives the same bytes at the same times."""
         received: list[Received] = []
         _play(peer, clock, (*self.steps, QUIET), received)
         return received

@@ -1,4 +1,4 @@
-"""Explain why nobody on the line can distinguish a mutant from the correct device."""
+"""Explain why a mutant cannot be distinguished, on the line, from the correct device."""
 
 from __future__ import annotations
 
@@ -31,25 +31,25 @@ def reason(table: Table, mutant: Mutant) -> str:
         return _alike(table, mutant, had)
     assert field is not None
     return (
-        f"nobody knows the true value: every wrong one is legal, no command sets "
-        f"`{field.name}` and no other reply repeats it"
+        f"the true value is unknown on the line: every wrong value is legal, no command sets "
+        f"`{field.name}`, and no other reply repeats it"
     )
 
 
 def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
-    """Return how the mutant was compared, with the values that it could have sent wrongly."""
+    """Return how the mutant was compared, and the values that it could have sent wrongly."""
     requests = sum(len(conversation.steps) for conversation in had)
-    same = f"not one byte differs in {len(had)} conversations of {requests} writes in all"
+    same = f"no byte differs in {len(had)} conversations with {requests} writes in all"
     field = _field(table, mutant)
     if field is None:
-        return f"{same}: no reply shows what it does"
+        return f"{same}: no reply shows the effect of the fault"
     seen = {
         value
         for conversation in had
         for reported in values_of(table, mutant.command, field.name, conversation.received)
         for value in (reported if isinstance(reported, tuple) else (reported,))
     }
-    return f"{same}: `{field.name}` was {_range(seen)}, which is sent alike"
+    return f"{same}: `{field.name}` was {_range(seen)}, which both devices encode equally"
 
 
 # What the edition leaves undefined, by the unit or the labels of a request's field.
@@ -67,10 +67,10 @@ def _undefined(table: Table, mutant: Mutant) -> str:
     field = fields[mutant.field]
     if field.cases[0].numbers[0].unit == SHARE and field.name == "speed":
         return (
-            "the edition gives a speed as a share of the fastest, and no line says how fast that is"
+            "the edition defines a speed as a share of the fastest, and does not define the fastest"
         )
     if TURNS in field.labels:
-        return "the edition does not say whether the angle of a joint that turns clockwise grows"
+        return "the edition does not define whether the angle grows when a joint turns clockwise"
     return ""
 
 
@@ -81,13 +81,13 @@ def _replied(table: Table, name: str) -> list[str]:
 
 def _range(values: set[int | float]) -> str:
     if not values:
-        return "never told"
+        return "never reported"
     low, high = min(values), max(values)
     return f"always {low:g}" if low == high else f"between {low:g} and {high:g}"
 
 
 def _field(table: Table, mutant: Mutant) -> Field | None:
-    """Return the field of the reply that is wrong; None if something else is."""
+    """Return the wrong field of the reply; None if something else is wrong."""
     if not mutant.command:
         return None
     command = table.command(mutant.command)

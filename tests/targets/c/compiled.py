@@ -1,4 +1,4 @@
-"""Compile editions to programs that a test can talk to, or say which tool is missing."""
+"""Compile editions to programs that tests run, or name the tool that is missing."""
 
 from __future__ import annotations
 

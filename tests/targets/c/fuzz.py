@@ -2,7 +2,7 @@
 
     PYTHONPATH=tests .venv/bin/python tests/targets/c/fuzz.py 60
 
-Prints how many streams gave the same frames and messages; ends at the first difference.
+It prints how many streams gave the same frames and messages, and ends at the first difference.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cobotwire.codec.interface import Frame, Listening
 from strategies import TABLES, codec_of
 from targets.c.comparison import joined
 from targets.c.compiled import program
-from targets.c.ours import Beside, events
+from targets.c.ours import CodecSide, events
 from targets.c.peer import CPeer
 from targets.vectors.comparison import read
 
@@ -43,25 +43,25 @@ def stream(chance: random.Random, frames: list[bytes]) -> bytes:
     return bytes(made)
 
 
-def differs(chance: random.Random, frames: list[bytes], beside: Beside, peer: CPeer) -> str:
-    """Frame one stream with both, cut and flushed anywhere; return the difference or nothing."""
+def differs(chance: random.Random, frames: list[bytes], ours: CodecSide, peer: CPeer) -> str:
+    """Frame one stream with both, cut and flushed anywhere; return the difference, if any."""
     data, listening = stream(chance, frames), chance.choice(LISTENING)
     cuts = sorted(chance.randrange(len(data) + 1) for _ in range(chance.randrange(5)))
     chunks = [data[a:b] for a, b in zip([0, *cuts], [*cuts, len(data)])]
     flushes = [chance.random() < 0.2 for _ in chunks]
-    framer = beside.codec.framer(listening)
+    framer = ours.codec.framer(listening)
     right = []
     for chunk, flush in zip(chunks, flushes):
         right += framer.feed(chunk) + (framer.flush() if flush else [])
     found, pending = peer.events(listening, list(zip(chunks, flushes)))
     summary = f"{data.hex(' ')}, {listening}, cut at {cuts}, flushed {flushes}"
     if joined(found) != joined(list(events(right))) or pending != framer.pending:
-        return f"framed otherwise: {summary}"
+        return f"framed differently: {summary}"
     for event in right:
         if not isinstance(event, Frame):
             continue
-        if beside.read_in_c(peer.read(listening, event.data)) != beside.event(event):
-            return f"read otherwise: {event.data.hex(' ')} of {summary}"
+        if ours.read_in_c(peer.read(listening, event.data)) != ours.event(event):
+            return f"read differently: {event.data.hex(' ')} of {summary}"
     return ""
 
 
@@ -73,15 +73,15 @@ def main() -> int:
         document = read(edition)
         frames = [bytes.fromhex(r["bytes"]) for r in document["messages"] + document["malformed"]]
         frames = [frame for frame in frames if frame]
-        beside = Beside(vectors.edition(edition), codec_of(edition, "native"))
+        ours = CodecSide(vectors.edition(edition), codec_of(edition, "native"))
         with CPeer(program(vectors.edition(edition), "gcc", FLAGS, f"fuzz-{edition}")) as peer:
             count, end = 0, time.monotonic() + seconds / len(TABLES)
             while time.monotonic() < end:
-                if found := differs(chance, frames, beside, peer):
+                if found := differs(chance, frames, ours, peer):
                     print(f"{edition}: stream {count}: {found}")
                     return 1
                 count += 1
-        print(f"{edition}: {count:,} streams alike")
+        print(f"{edition}: {count:,} streams gave equal results")
     return 0
 
 

@@ -75,7 +75,7 @@ def _from_physical(p: str, message: Message) -> Iterator[str]:
     for member, when, place, index, type in ordered:
         where = f"any->{message.symbol}.{place}"
         helper = _helper(p, type, "from")
-        # The largest number, which no field allows, marks a value that no number of steps holds.
+        # No field allows the largest number, so it marks a value that has no raw value.
         scaled = f"if (!{helper}(in[{index}], &{where})) {where} = INT32_MAX;"
         plain = f"{where} = ({p}_whole_t)in[{index}];"
         yield f"{_condition(message, member, when)}{{ {scaled if helper else plain} }}"

@@ -1,5 +1,5 @@
-/* Puts an edition's C code at the end of a pipe: one operation after the other, native byte order.
- * Input stands in memory of just its size, so that the sanitizers see every byte too many. */
+/* Runs an edition's C code on operations from standard input, in native byte order. Each input has
+ * memory of exactly its size, so that the sanitizers detect every access beyond it. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,12 +99,12 @@ static void encode(bool from_values)
     free(out);
 }
 
-/* What is refused must leave the struct as it was. */
+/* A rejected frame must leave the struct unchanged. */
 static void check_untouched(const void *memory, size_t size)
 {
     for (; size != 0; size--) {
         if (((const uint8_t *)memory)[size - 1] != UNTOUCHED) {
-            fprintf(stderr, "a refused frame was written\n");
+            fprintf(stderr, "a rejected frame changed the struct\n");
             exit(5);
         }
     }
@@ -181,7 +181,7 @@ static void frame(void)
     free(framer);
 }
 
-static void tell_names(void)
+static void give_names(void)
 {
     unsigned message, field;
 
@@ -206,7 +206,7 @@ int main(void)
         case 'd': decode(true); break;
         case 'r': decode(false); break;
         case 'f': frame(); break;
-        case 'n': tell_names(); break;
+        case 'n': give_names(); break;
         default: return 4;
         }
         fflush(stdout);

@@ -1,4 +1,4 @@
-/* A line for the guide's loop: standard input and output. */
+/* Provides the functions that the guide's loop calls; its line is standard input and output. */
 #include <stdint.h>
 #include <stdio.h>
 

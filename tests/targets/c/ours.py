@@ -16,8 +16,8 @@ from strategies import CommandVariant
 from targets.c import peer
 
 
-class Beside:
-    """An edition's messages as the C code numbers them, with a codec of ours to compare."""
+class CodecSide:
+    """Results of one of our codecs, with messages numbered as in the C code."""
 
     def __init__(self, edition: Edition, codec: Codec) -> None:
         self.codec = codec
@@ -100,7 +100,7 @@ def _or_rejection(build: Callable[[], bytes], variant: CommandVariant) -> object
 
 def _argument(argument: str, variant: CommandVariant) -> object:
     for field in variant.variant.fields:
-        # Each case names its elements itself.
+        # Each case has its own names for its elements.
         for element, number in chain.from_iterable(enumerate(c.numbers) for c in field.cases):
             part = f".{number.name}" if number.name else f"[{element}]"
             if argument == field.name + (part if field.many else ""):

@@ -1,4 +1,4 @@
-"""Run an edition's C code in its own process, and talk to it from Python."""
+"""Run an edition's C code in a separate process, and send it operations."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ class CPeer:
         chunks: Sequence[tuple[bytes, bool]],
         accept_unknown: bool = False,
     ) -> tuple[list[list[Event]], int]:
-        """Frame a stream as ``events`` does; return the events of each chunk by themselves."""
+        """Frame a stream as ``events`` does; return a list of events for each chunk."""
         parts = [struct.pack("=cHHH", b"f", LISTENING[listening], accept_unknown, len(chunks))]
         for data, flush in chunks:
             parts += [struct.pack("=HH", flush, len(data)), data]

@@ -27,7 +27,7 @@ from strategies import (
 )
 from targets.c.comparison import joined
 from targets.c.compiled import missing, program
-from targets.c.ours import Beside, events
+from targets.c.ours import CodecSide, events
 from targets.c.peer import CPeer
 
 pytestmark = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
@@ -43,8 +43,8 @@ def edition(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture(scope="module")
-def beside(edition: str) -> Beside:
-    return Beside(vectors.edition(edition), codec_of(edition, "reference"))
+def ours(edition: str) -> CodecSide:
+    return CodecSide(vectors.edition(edition), codec_of(edition, "reference"))
 
 
 @pytest.fixture(scope="module")
@@ -56,18 +56,18 @@ def peer(edition: str) -> Iterator[CPeer]:
 @QUICK
 @given(data=st.data())
 def test_legal_message_encodes_and_decodes_as_in_codec(
-    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+    edition: str, ours: CodecSide, peer: CPeer, data: st.DataObject
 ) -> None:
     variant = data.draw(st.sampled_from(variants_of(TABLES[edition])))
     values = data.draw(legal_values(variant.variant))
-    frame, number = beside.encoded(variant, values), beside.number(variant)
+    frame, number = ours.encoded(variant, values), ours.number(variant)
     assert isinstance(frame, bytes)
     found = peer.decode(number, frame)
-    assert found == (number, found[1], beside.flat(number, values))
+    assert found == (number, found[1], ours.flat(number, values))
     assert peer.encode(number, found[1]) == frame
-    assert peer.encode_values(number, beside.flat(number, values)) == frame
+    assert peer.encode_values(number, ours.flat(number, values)) == frame
     direction = variant.direction
-    assert beside.read_in_c(peer.read(direction, frame)) == beside.read(direction, frame)
+    assert ours.read_in_c(peer.read(direction, frame)) == ours.read(direction, frame)
 
 
 def _numbers() -> st.SearchStrategy[float]:
@@ -99,36 +99,34 @@ def _any_values(draw: st.DrawFn, variant: CommandVariant) -> tuple[Any, ...]:
 @QUICK
 @given(data=st.data())
 def test_any_value_is_encoded_or_rejected_as_in_codec(
-    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+    edition: str, ours: CodecSide, peer: CPeer, data: st.DataObject
 ) -> None:
     variant = data.draw(
         st.sampled_from(variants_of(TABLES[edition])).filter(lambda f: f.variant.fields)
     )
     values = data.draw(_any_values(variant))
-    number = beside.number(variant)
-    found = beside.rejected_in_c(peer.encode_values(number, beside.flat(number, values)))
-    assert found == beside.encoded(variant, values)
+    number = ours.number(variant)
+    found = ours.rejected_in_c(peer.encode_values(number, ours.flat(number, values)))
+    assert found == ours.encoded(variant, values)
 
 
 @pytest.mark.parametrize("eighths", [1, 3, 5, 7, -1, -3, -5, -7])
 def test_half_a_step_rounds_to_even(
-    edition: str, beside: Beside, peer: CPeer, eighths: int
+    edition: str, ours: CodecSide, peer: CPeer, eighths: int
 ) -> None:
     # Only eighths lie exactly between two hundredths.
     variant = next(
         variant for variant in variants_of(TABLES[edition]) if variant.command.name == "send_angle"
     )
     values = (1, eighths / 8, 20)
-    number = beside.number(variant)
-    assert peer.encode_values(number, beside.flat(number, values)) == beside.encoded(
-        variant, values
-    )
+    number = ours.number(variant)
+    assert peer.encode_values(number, ours.flat(number, values)) == ours.encoded(variant, values)
 
 
 @QUICK
 @given(data=st.data())
 def test_any_bytes_are_decoded_or_rejected_as_in_codec(
-    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+    edition: str, ours: CodecSide, peer: CPeer, data: st.DataObject
 ) -> None:
     table = TABLES[edition]
     direction = data.draw(DIRECTIONS)
@@ -139,7 +137,7 @@ def test_any_bytes_are_decoded_or_rejected_as_in_codec(
         if place < len(frame):
             frame[place] = data.draw(st.integers(0, 255))
     cut = bytes(frame[: data.draw(st.integers(0, 60))])
-    assert beside.read_in_c(peer.read(direction, cut)) == beside.read(direction, cut)
+    assert ours.read_in_c(peer.read(direction, cut)) == ours.read(direction, cut)
 
 
 def _near_values(make: Any) -> st.SearchStrategy[bytes]:
@@ -155,7 +153,7 @@ def variant_bytes(variant: CommandVariant) -> st.SearchStrategy[bytes]:
 
 
 def test_ambiguous_frame_decodes_as_first_command(
-    edition: str, beside: Beside, peer: CPeer
+    edition: str, ours: CodecSide, peer: CPeer
 ) -> None:
     table = TABLES[edition]
     lengths = Counter((variant.command.id, variant.variant.size) for variant in variants_of(table))
@@ -165,17 +163,17 @@ def test_ambiguous_frame_decodes_as_first_command(
         head = table.frame.header + bytes([table.frame.length(size), id])
         for fill in (0, 1, 2, 7, 23, 64, 101, 128, 200, 255):
             frame = head + bytes([fill] * size) + table.frame.footer
-            (event,) = beside.codec.framer("both").feed(frame)
+            (event,) = ours.codec.framer("both").feed(frame)
             assert isinstance(event, Frame)
-            assert beside.read_in_c(peer.read("both", frame)) == beside.event(event)
+            assert ours.read_in_c(peer.read("both", frame)) == ours.event(event)
             for way in ("request", "reply"):
-                assert beside.read_in_c(peer.read(way, frame)) == beside.read(way, frame)
+                assert ours.read_in_c(peer.read(way, frame)) == ours.read(way, frame)
 
 
 @QUICK
 @given(data=st.data())
-def test_frame_is_rejected_as_the_requested_message(
-    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+def test_frame_decodes_as_a_named_message_or_is_rejected_as_in_codec(
+    edition: str, ours: CodecSide, peer: CPeer, data: st.DataObject
 ) -> None:
     variants = variants_of(TABLES[edition])
     alone = [
@@ -183,21 +181,21 @@ def test_frame_is_rejected_as_the_requested_message(
     ]
     variant = data.draw(st.sampled_from(alone))
     frame = data.draw(variant_bytes(variant) | real_frames(TABLES[edition]))
-    found = beside.read_in_c(peer.decode(beside.number(variant), frame))
-    assert found == beside.read(variant.direction, frame, variant.command.name)
+    found = ours.read_in_c(peer.decode(ours.number(variant), frame))
+    assert found == ours.read(variant.direction, frame, variant.command.name)
 
 
 @QUICK
 @given(data=st.data())
-def test_stream_is_framed_as_in_codec_however_it_is_cut(
-    edition: str, beside: Beside, peer: CPeer, data: st.DataObject
+def test_stream_in_any_chunks_is_framed_as_in_codec(
+    edition: str, ours: CodecSide, peer: CPeer, data: st.DataObject
 ) -> None:
     table, listening = TABLES[edition], data.draw(LISTENING)
     unknown = data.draw(st.booleans())
     lines = received(table, listening).map(lambda line: line.data)
     chunks = data.draw(chunked(data.draw(streams(table) | lines)))
     flushes = [data.draw(st.integers(0, 4)) == 0 for _ in chunks]
-    framer = beside.codec.framer(listening, accept_unknown=unknown)
+    framer = ours.codec.framer(listening, accept_unknown=unknown)
     right = []
     for chunk, flush in zip(chunks, flushes):
         right += framer.feed(chunk) + (framer.flush() if flush else [])
@@ -206,36 +204,36 @@ def test_stream_is_framed_as_in_codec_however_it_is_cut(
     assert pending == framer.pending
     for event in right if not unknown else []:
         if isinstance(event, Frame):
-            assert beside.read_in_c(peer.read(listening, event.data)) == beside.event(event)
+            assert ours.read_in_c(peer.read(listening, event.data)) == ours.event(event)
 
 
 @pytest.mark.parametrize("longer", [-1, 0, 1])
 def test_frame_of_unknown_id_is_limited_to_the_longest_length(
-    edition: str, beside: Beside, peer: CPeer, longer: int
+    edition: str, ours: CodecSide, peer: CPeer, longer: int
 ) -> None:
     table = TABLES[edition]
     unknown = min(set(range(256)) - {command.id for command in table.commands})
     length = table.frame.maximum_length + longer
     size = length - table.frame.length(0)
     stream = table.frame.header + bytes([length, unknown]) + bytes(size) + table.frame.footer
-    framer = beside.codec.framer("both", accept_unknown=True)
+    framer = ours.codec.framer("both", accept_unknown=True)
     right = list(events(framer.feed(stream) + framer.flush()))
     assert right[0].reason == ("bad-length" if longer > 0 else "ok")
     found, _ = peer.events("both", [(stream, True)], True)
     assert joined(found) == joined(right)
 
 
-def test_names_in_c_are_those_of_the_spec(beside: Beside, peer: CPeer) -> None:
+def test_names_in_c_equal_the_names_in_the_spec(ours: CodecSide, peer: CPeer) -> None:
     assert peer.names() == [
         [message.command.name, *(member.field.name for member in message.members)]
-        for message in beside.messages
+        for message in ours.messages
     ]
 
 
-def test_too_small_buffer_is_rejected_and_unchanged(
-    edition: str, beside: Beside, peer: CPeer
+def test_too_small_buffer_is_rejected_and_not_overrun(
+    edition: str, ours: CodecSide, peer: CPeer
 ) -> None:
-    for number, message in enumerate(beside.messages):
+    for number, message in enumerate(ours.messages):
         size = message.size + 5
         wholes = [0] * message.count
         short = peer.encode(number, wholes, room=size - 1)

@@ -19,7 +19,7 @@ from json_tables import table_of
 from strategies import CommandVariant, chunked
 from targets.c.comparison import joined
 from targets.c.compiled import missing, program
-from targets.c.ours import Beside, events
+from targets.c.ours import CodecSide, events
 from targets.c.peer import CPeer, Read
 
 pytestmark = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
@@ -34,44 +34,44 @@ def test_random_protocol_runs_in_c(tmp_path: Path, data: st.DataObject) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}"))
     check(edition)
     table = table_of(lower.table(edition))
-    beside = Beside(edition, codecs.load(table, "reference"))
+    ours = CodecSide(edition, codecs.load(table, "reference"))
     address = table.frame.addresses[0] if table.frame.addresses else 0
     frames = [vector.frame or b"" for vector in edition.vectors]
     with CPeer(program(edition)) as peer:
         for vector, frame in zip(edition.vectors, frames):
-            message = beside.codec.decode(vector.direction, frame)
+            message = ours.codec.decode(vector.direction, frame)
             variants = message.command.variants(vector.direction)
             number = next(i for i, variant in enumerate(variants) if variant is message.variant)
-            index = beside.number(
+            index = ours.number(
                 CommandVariant(message.command, vector.direction, message.variant, number)
             )
             found = peer.decode(index, frame)
             assert isinstance(found, Read)
-            assert found == beside.read(vector.direction, frame)
+            assert found == ours.read(vector.direction, frame)
             assert peer.encode(index, found.wholes, address) == frame
-            assert peer.encode_values(index, beside.flat(index, message.values), address) == frame
+            assert peer.encode_values(index, ours.flat(index, message.values), address) == frame
         for _ in range(8):
-            _any_bytes(data, frames, beside, peer)
-            _any_stream(data, frames, beside, peer)
+            _any_bytes(data, frames, ours, peer)
+            _any_stream(data, frames, ours, peer)
 
 
-def _any_bytes(data: st.DataObject, frames: list[bytes], beside: Beside, peer: CPeer) -> None:
+def _any_bytes(data: st.DataObject, frames: list[bytes], ours: CodecSide, peer: CPeer) -> None:
     frame = bytearray(data.draw(st.sampled_from(frames)))
     for place in data.draw(st.lists(st.integers(0, len(frame) - 1), max_size=2)):
         frame[place] = data.draw(st.integers(0, 255))
     cut = bytes(frame[: data.draw(st.integers(0, 90))])
     direction = data.draw(DIRECTIONS)
-    assert beside.read_in_c(peer.read(direction, cut)) == beside.read(direction, cut)
+    assert ours.read_in_c(peer.read(direction, cut)) == ours.read(direction, cut)
 
 
-def _any_stream(data: st.DataObject, frames: list[bytes], beside: Beside, peer: CPeer) -> None:
+def _any_stream(data: st.DataObject, frames: list[bytes], ours: CodecSide, peer: CPeer) -> None:
     pieces = st.sampled_from(frames) | st.binary(max_size=9)
     cut = st.sampled_from(frames).flatmap(
         lambda frame: st.integers(0, len(frame)).map(lambda end: frame[:end])
     )
     stream = b"".join(data.draw(st.lists(pieces | cut, max_size=9)))
     listening = data.draw(LISTENING)
-    framer = beside.codec.framer(listening)
+    framer = ours.codec.framer(listening)
     chunks = data.draw(chunked(stream))
     right = [event for chunk in chunks for event in framer.feed(chunk)] + framer.flush()
     found, _ = peer.events(listening, [*((chunk, False) for chunk in chunks), (b"", True)])

@@ -49,7 +49,7 @@ def test_c_code_of_other_frame_formats_agrees_with_vectors(family: str, compiler
 
 @WITH_GCC
 @pytest.mark.parametrize("kind", WRONG)
-def test_wrong_model_is_detected(kind: str) -> None:
+def test_c_code_of_a_wrong_model_differs_from_the_vectors(kind: str) -> None:
     # The changed quantity gets a new name, since a quantity has one scale wherever it is used.
     wrong = with_wrong_angles(
         vectors.edition("mycobot"), lambda part: replace(WRONG[kind](part), name="wrong_angle")

@@ -45,7 +45,7 @@ def numbers(value: Any) -> list[Any]:
 
 
 def as_built_from(record: Record) -> dict[str, Any]:
-    """Return a vector's values as construct builds a frame from them."""
+    """Return a vector's values as construct takes them to build a frame."""
     return {field["name"]: field["value"] for field in record["fields"]}
 
 
@@ -75,7 +75,7 @@ def _message(record: Record, declaration: Any) -> Iterator[str]:
         parsed = declaration.parse(data)
         again = frame_built(declaration, as_built_from(record))
     except ConstructError as error:
-        yield f"refused: {error}"
+        yield f"rejected: {error}"
         return
     for name, right in as_built_from(record).items():
         if numbers(parsed[name]) != right:
@@ -94,7 +94,7 @@ def _malformed(record: Record, declared: dict[Key, Any]) -> Iterator[str]:
                 declaration.parse(data)
             except ConstructError:
                 continue
-            yield f"taken for variant {variant} of {command}"
+            yield f"accepted as variant {variant} of {command}"
 
 
 def _id(declaration: Any) -> bytes:

@@ -91,7 +91,9 @@ def _reads(codec: Codec, variant: CommandVariant, frame: bytes) -> bool:
 
 @pytest.mark.parametrize("kind", WRONG)
 @pytest.mark.parametrize("name", EDITIONS)
-def test_wrong_model_is_detected(name: str, kind: str, tmp_path: Path) -> None:
+def test_declarations_of_a_wrong_model_differ_from_the_vectors(
+    name: str, kind: str, tmp_path: Path
+) -> None:
     wrong = with_wrong_angles(vectors.edition(name), WRONG[kind])
     for path, text in render_construct([wrong]).items():
         (tmp_path / path).write_text(text)

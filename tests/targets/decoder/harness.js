@@ -1,5 +1,5 @@
 "use strict";
-// Runs every vector through the page's own law, and writes what it made of each for Python to judge.
+// Decode every vector with the page's own code, and write the results as JSON, for Python to judge.
 (function () {
   const bytes = (text) => cobotwire.parse(text);
   const parts = {
@@ -23,8 +23,8 @@
       return {};
     },
     streams(record, table) {
-      const heard = record.direction === "both" ? ["request", "reply"] : [record.direction];
-      return new cobotwire.Law(table, heard).cut(bytes(record.bytes));
+      const listening = record.direction === "both" ? ["request", "reply"] : [record.direction];
+      return new cobotwire.Law(table, listening).cut(bytes(record.bytes));
     },
   };
   const table = cobotwire.tables[cobotwireVectors.edition];

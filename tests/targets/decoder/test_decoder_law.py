@@ -66,7 +66,7 @@ def _record(codec: Codec, data: bytes) -> Record:
 
 
 @pytest.mark.parametrize("kind", WRONG)
-def test_wrong_model_is_detected(kind: str) -> None:
+def test_decoder_page_of_a_wrong_model_differs_from_the_vectors(kind: str) -> None:
     wrong = with_wrong_angles(vectors.edition("mycobot"), WRONG[kind])
     script = render_decoder([wrong]).popitem()[1]
     found = judged(read("mycobot"), script).differences

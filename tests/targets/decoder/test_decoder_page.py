@@ -1,4 +1,4 @@
-"""The decoder page shows pasted bytes at once, one by one, as the codec reads them."""
+"""The decoder page shows pasted bytes, byte by byte, as the codec reads them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from vectors import ROOT
 
 PAGE = (ROOT / "docs" / "decoder.md").read_text()
 STREAMS = 2
-DRESSES = [
+NOTATIONS = [
     ("b'\\xfe\\xfe\\x02\\x20\\xfa'", "request at 0"),
     ("[0xFE, 0xFE, 0x2, 0x20, 0xFA]", "request at 0"),
     ("fefe0220fa", "request at 0"),
@@ -28,7 +28,7 @@ DRESSES = [
     ("hello <script>", "not hex"),
 ]
 WRONG = "FE FE 03 12 07 FA"
-# Act as a person at the page: choose and paste. Keep what is shown each time.
+# Use the page as a person does: choose, paste, and keep what it shows each time.
 DRIVER = """
 document.addEventListener("DOMContentLoaded", () => {
   const root = document.getElementById("decoder");
@@ -74,7 +74,7 @@ def _shown(page: Path, **state: str) -> str:
 @pytest.fixture(scope="module")
 def typed(page: Path) -> dict[str, str]:
     """Return what the page shows of each pasted text; one browser, since it starts slowly."""
-    states = [*_streams(), *(_state(pasted) for pasted, _ in DRESSES), _state(WRONG, "reply")]
+    states = [*_streams(), *(_state(pasted) for pasted, _ in NOTATIONS), _state(WRONG, "reply")]
     driven = page.with_name("driven.html")
     driver = DRIVER.replace("STATES", json.dumps(states).replace("<", "\\u003c"))
     driven.write_text(page.read_text().replace("</body>", f"<script>{driver}</script></body>"))
@@ -135,7 +135,7 @@ def test_decoder_page_shows_the_events_of_the_codec(typed: dict[str, str], editi
         assert f"{len(data)} byte(s): {frames} frame(s)" in shown
 
 
-@pytest.mark.parametrize(("pasted", "shown_text"), DRESSES)
+@pytest.mark.parametrize(("pasted", "shown_text"), NOTATIONS)
 def test_hex_in_any_notation_is_read_or_its_error_is_shown(
     typed: dict[str, str], pasted: str, shown_text: str
 ) -> None:

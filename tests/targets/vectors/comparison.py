@@ -10,6 +10,7 @@ from typing import Any
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import Variant
 from cobotwire.session import text
 from strategies import codec_of
 from targets.built import built
@@ -17,7 +18,7 @@ from targets.comparison import Comparison
 
 Record = dict[str, Any]
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
-# A stream is fed whole, byte by byte, and in pieces of these sizes.
+# A stream is fed in pieces of these sizes: byte by byte, in few bytes, and whole.
 PIECES = (1, 2, 7, 1000)
 
 
@@ -59,18 +60,14 @@ def judged(document: Record, codec: Codec) -> Comparison:
 
 def _message(record: Record, codec: Codec) -> Iterator[str]:
     data = bytes.fromhex(record["bytes"])
-    variant = codec.table.command(record["command"]).variants(record["direction"])[
-        record["variant"]
-    ]
+    variant = _variant(record, codec)
     values = _values(record, variant.fields)
     try:
-        built = codec.encode(
-            record["command"], record["direction"], values, variant=record["variant"]
-        )
+        built = _built(record, codec)
         read = codec.decode(record["direction"], data, of=record["command"])
         named = codec.decode(record["direction"], data).command.name
     except (UsageError, ProtocolError) as error:
-        yield f"refused: {error}"
+        yield f"rejected: {error}"
         return
     if built != data:
         yield f"built {built.hex(' ')}, not {data.hex(' ')}"
@@ -80,18 +77,22 @@ def _message(record: Record, codec: Codec) -> Iterator[str]:
         yield f"read as {named}, not {record['read_as']}"
 
 
+def _variant(record: Record, codec: Codec) -> Variant:
+    return codec.table.command(record["command"]).variants(record["direction"])[record["variant"]]
+
+
+def _built(record: Record, codec: Codec) -> bytes:
+    """Return the frame that the codec encodes from a record's values."""
+    values = _values(record, _variant(record, codec).fields)
+    return codec.encode(record["command"], record["direction"], values, variant=record["variant"])
+
+
 def _refused(record: Record, codec: Codec) -> Iterator[str]:
-    variant = codec.table.command(record["command"]).variants(record["direction"])[
-        record["variant"]
-    ]
-    values = _values(record, variant.fields)
     try:
-        built = codec.encode(
-            record["command"], record["direction"], values, variant=record["variant"]
-        )
+        built = _built(record, codec)
     except UsageError as error:
         if not error.argument.startswith(record["field"]):
-            yield f"refused for {error.argument}, not for {record['field']}"
+            yield f"rejected for {error.argument}, not for {record['field']}"
     else:
         yield f"built {built.hex(' ')}"
 
@@ -137,9 +138,9 @@ def _text(record: Record, codec: Codec) -> Iterator[str]:
     variant = command.request_text if record["direction"] == "request" else command.text
     data = bytes.fromhex(record["bytes"])
     if variant is None or text.encode(variant, record["fields"]) != data:
-        yield "spelt otherwise"
+        yield "encoded differently"
     elif text.decode(variant, data) != record["fields"]:
-        yield "read otherwise"
+        yield "read differently"
 
 
 def _values(record: Record, fields: Any) -> tuple[Any, ...]:

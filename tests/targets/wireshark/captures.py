@@ -21,7 +21,7 @@ _GLOBAL = struct.pack("<IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 262144, 1)
 
 
 class Chunk(NamedTuple):
-    """Bytes sent together on line number ``line``; without a time, right after the last ones."""
+    """Bytes sent together on line number ``line``; without a time, right after the last chunk."""
 
     line: int
     direction: Listening

@@ -1,4 +1,4 @@
-"""The dissector matches replies to requests, on captures of the simulated arm and on made lines."""
+"""The dissector matches replies to requests, in recordings and in generated captures."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def test_recording_of_the_simulated_arm_is_dissected(
     codec = codecs.load(package.TABLE)
     with PtyServer(SimulatedArm(package.TABLE)) as server:
         with Recording(path, codec if cut == "frames" else None, url=server.url) as recording:
-            link = TappedTransport(open_transport(server.url, 115200), recording.record)
-            with package.CLIENT(link) as arm:
+            transport = TappedTransport(open_transport(server.url, 115200), recording.record)
+            with package.CLIENT(transport) as arm:
                 arm.power_on()
                 arm.send_angles([1, 2, 3, 4, 5, 6], speed=50)
                 for _ in range(3):
@@ -72,7 +72,7 @@ def test_recording_of_the_simulated_arm_is_dissected(
                     arm.is_power_on()
                 arm.get_ssid_pwd()
     packets = list(read(path))
-    # Chunks name no edition; if only one is installed, it is used.
+    # Chunks name no edition; if only one dissector is installed, it is used.
     only = [built("wireshark") / f"{edition}.lua"]
     shown = dissected(path, edition, *TWICE, scripts=only if cut == "chunks" else None)
     items = [item for found in shown for item in found]
@@ -137,7 +137,7 @@ def test_simultaneous_requests_match_replies_in_order(tmp_path: Path) -> None:
     assert [exchange(item) for item in two_replies] == [{"request_in": "1", "ms": "5"}] * 2
 
 
-def test_late_reply_or_one_with_other_arguments_matches_no_request(tmp_path: Path) -> None:
+def test_late_reply_and_reply_with_other_arguments_match_no_other_request(tmp_path: Path) -> None:
     chunks = line(
         "mycobot",
         (0, "request", "get_joint_min_angle", (1,)),

@@ -50,9 +50,9 @@ def test_other_frame_formats_are_dissected(name: str, tmp_path: Path) -> None:
     chunks = []
     for number, vector in enumerate(edition.vectors):
         assert vector.frame is not None
-        spoilt = vector.frame[:-1] + bytes([vector.frame[-1] ^ 1])
+        damaged = vector.frame[:-1] + bytes([vector.frame[-1] ^ 1])
         chunks.append(Chunk(2 * number, vector.direction, vector.frame))
-        chunks.append(Chunk(2 * number + 1, vector.direction, spoilt))
+        chunks.append(Chunk(2 * number + 1, vector.direction, damaged))
     path = tmp_path / "frames.pcapng"
     path.write_bytes(serial(chunks, name))
     shown = dissected(path, name, scripts=[script])

@@ -1,4 +1,4 @@
-"""The dissector shows the Python framer's events for any stream, however it is cut."""
+"""The dissector shows the Python framer's events for any stream in any packets."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def test_silence_ends_a_waiting_candidate_on_serial_but_not_on_tcp(tmp_path: Pat
         ("no-header", FRAME[1:6]),
         ("frame", ON),
     ]
-    # As for the recorder, silence is half a second or more.
+    # As in the recorder, a silence lasts half a second or more.
     for gap, kind in ((499_000_000, "frame"), (500_000_000, "truncated")):
         path.write_bytes(
             serial([Chunk(0, "reply", FRAME[:6], 0), Chunk(0, "reply", FRAME[6:], gap)], "mycobot")

@@ -1,4 +1,4 @@
-"""The Python framer's events of a line, in the form that joined dissected packets have."""
+"""The Python framer's events of a line, as ``dissecting.joined`` represents them."""
 
 from __future__ import annotations
 
