@@ -5,7 +5,7 @@
     with MyCobot("/dev/ttyACM0") as arm:
         arm.send_angles([0, 0, 0, 0, 0, 0], speed=30)
 
-``codec_in_use()`` says which codec does the work: ``native`` (Rust) or ``reference`` (Python).
+``codec_in_use()`` returns the name of the codec: ``native`` (Rust) or ``reference`` (Python).
 """
 
 from typing import TYPE_CHECKING, Any
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     from cobotwire.session.policy import RetryPolicy
     from cobotwire.session.sample import Sample, StreamReport
 else:
-    # Each name is imported when it is asked for: whoever wants another edition, or the codec alone,
-    # loads no client of this one; and asyncio takes longer to import than all the rest.
+    # Each name is imported when it is first used. So a program that uses another edition, or only
+    # the codec, imports no client of this one. asyncio takes longer to import than all the rest.
     _PLACES = {
         "AsyncMyCobot": "editions.mycobot",
         "Limits": "protocol.limits",

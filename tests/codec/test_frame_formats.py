@@ -166,7 +166,7 @@ def test_frame_with_an_address_is_decoded_found_and_encoded(
         (B, "FE FE 04 58 01 FD 88", "bad-check", 5, "the CRC is wrong"),
         (B, "FE FE 04 58 01 87 FD", "bad-check", 5, "the CRC is wrong"),
         (B, "FE FE 04 58 02 FD 87", "bad-check", 5, "the CRC is wrong"),
-        (B, "FE FE 04 58 01 FD", "truncated", 6, "the last 1 byte\\(s\\) of the frame are missing"),
+        (B, "FE FE 04 58 01 FD", "truncated", 6, "the last byte of the frame is missing"),
         (B, "FE FE 02 58 FD 87", "bad-length", 2, "LEN of the request 58 .* is 02; allowed: 04"),
         (C, "FE FE 01 02 10 11", "bad-check", 5, "the sum is wrong"),
         (C, "FE FE 04 02 10 10", "bad-address", 2, "the address is 04; allowed: 01, 00, 02, 03"),
