@@ -13,6 +13,7 @@ import pytest
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise, NoiseReason
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Direction
+from framed_events import joined
 from json_tables import codec_of
 from vectors import ROOT
 
@@ -82,18 +83,13 @@ STREAMS = [_stream(*line) for line in _lines("streams.txt")]
 SINGLES = [_single(*line) for line in _lines("frames.txt")]
 
 
-def _cut(codec: Codec, stream: Stream, chunks: list[tuple[bytes, bool]]) -> list[Event]:
+def _events(codec: Codec, stream: Stream, chunks: list[tuple[bytes, bool]]) -> list[Event]:
     """Return the events, with adjacent noise of one reason joined."""
     framer = codec.framer(stream.listening, accept_unknown=stream.unknown)
-    joined: list[Event] = []
+    events: list[Event] = []
     for chunk, silence in [*chunks, (b"", True)]:
-        for event in framer.feed(chunk) + (framer.flush() if silence else []):
-            last = joined[-1] if joined else None
-            if isinstance(event, Noise) and isinstance(last, Noise) and last.reason == event.reason:
-                joined[-1] = Noise(last.offset, last.data + event.data, last.reason)
-            else:
-                joined.append(event)
-    return joined
+        events += framer.feed(chunk) + (framer.flush() if silence else [])
+    return joined(events)
 
 
 @pytest.mark.parametrize(
@@ -101,13 +97,13 @@ def _cut(codec: Codec, stream: Stream, chunks: list[tuple[bytes, bool]]) -> list
 )
 def test_found_stream_has_its_events_in_any_chunks(codec: Codec, stream: Stream) -> None:
     codec = codec_of(stream.table, codec.name)
-    assert _cut(codec, stream, stream.chunks) == stream.events
+    assert _events(codec, stream, stream.chunks) == stream.events
     if any(silence for _, silence in stream.chunks):
         return
     data = stream.data
     for size in range(1, len(data) + 1):
         chunks = [(data[at : at + size], False) for at in range(0, len(data), size)]
-        assert _cut(codec, stream, chunks) == stream.events
+        assert _events(codec, stream, chunks) == stream.events
 
 
 @pytest.mark.parametrize("single", SINGLES, ids=lambda single: f"{single.table} {single.data!r}")

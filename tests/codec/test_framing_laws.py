@@ -12,28 +12,11 @@ import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.editions.mycobot import TABLE
+from framed_events import cut, joined
 
 CODECS = st.sampled_from([codecs.load(TABLE, "reference"), codecs.load(TABLE, "native")])
 LISTENING = st.sampled_from(["request", "reply", "both"])
 LONGEST = TABLE.frame.maximum_length + TABLE.frame.overhead
-
-
-def _joined(events: list[Event]) -> list[Event]:
-    """Join adjacent noise of one reason to one span."""
-    joined: list[Event] = []
-    for event in events:
-        last = joined[-1] if joined else None
-        if isinstance(event, Noise) and isinstance(last, Noise) and last.reason == event.reason:
-            joined[-1] = Noise(last.offset, last.data + event.data, last.reason)
-        else:
-            joined.append(event)
-    return joined
-
-
-def _cut(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[Event]:
-    framer = codec.framer(listening)
-    events = [event for chunk in chunks for event in framer.feed(chunk)]
-    return events + framer.flush()
 
 
 @given(CODECS, LISTENING, st.data())
@@ -62,7 +45,7 @@ def test_events_do_not_depend_on_chunking(
 ) -> None:
     stream = data.draw(strategies.streams())
     chunks = data.draw(strategies.chunked(stream))
-    assert _joined(_cut(codec, listening, chunks)) == _joined(_cut(codec, listening, [stream]))
+    assert joined(cut(codec, listening, chunks)) == joined(cut(codec, listening, [stream]))
 
 
 @given(CODECS, st.data())
@@ -74,7 +57,7 @@ def test_undamaged_frame_is_found_unless_a_legal_one_covers_it(
         data.draw(strategies.real_frames()),
         data.draw(strategies.line_noise()),
     )
-    events = _cut(codec, "both", [before, frame, after])
+    events = cut(codec, "both", [before, frame, after])
     start = len(before)
     if Frame(start, frame, frame[3]) in events:
         return
@@ -86,16 +69,16 @@ def test_undamaged_frame_is_found_unless_a_legal_one_covers_it(
 
 @given(CODECS, strategies.real_frames(), st.integers(1, 40))
 def test_adjacent_frames_are_all_found(codec: Codec, frame: bytes, times: int) -> None:
-    events = _cut(codec, "both", [frame * times])
+    events = cut(codec, "both", [frame * times])
     assert events == [Frame(index * len(frame), frame, frame[3]) for index in range(times)]
 
 
 def test_every_split_of_a_noisy_stream_has_the_same_events(codec: Codec) -> None:
     stream = bytes.fromhex("FF FE FE FE 0E 20 FE FE 03 12 01 FA FE FE 99 FE FE 0E 20") + bytes(13)
-    whole = _joined(_cut(codec, "reply", [stream]))
-    for cut in range(len(stream) + 1):
-        assert _joined(_cut(codec, "reply", [stream[:cut], stream[cut:]])) == whole
-    assert _joined(_cut(codec, "reply", [bytes([byte]) for byte in stream])) == whole
+    whole = joined(cut(codec, "reply", [stream]))
+    for at in range(len(stream) + 1):
+        assert joined(cut(codec, "reply", [stream[:at], stream[at:]])) == whole
+    assert joined(cut(codec, "reply", [bytes([byte]) for byte in stream])) == whole
 
 
 @pytest.mark.parametrize(
@@ -112,7 +95,7 @@ def test_every_split_of_a_noisy_stream_has_the_same_events(codec: Codec) -> None
     ],
 )
 def test_first_byte_of_noise_has_the_reason(codec: Codec, stream: str, reason: str) -> None:
-    first = _cut(codec, "reply", [bytes.fromhex(stream)])[0]
+    first = cut(codec, "reply", [bytes.fromhex(stream)])[0]
     assert isinstance(first, Noise)
     assert first.reason == reason
 

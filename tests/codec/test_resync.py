@@ -17,17 +17,12 @@ from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.faults.noise import COMMAND_ERROR, PANIC
+from framed_events import cut
 from strategies import TABLES, codec_of
 
 EACH_CODEC = pytest.mark.parametrize("name", ["reference", "native"])
 EDITIONS = st.sampled_from(sorted(TABLES))
 LISTENING = st.sampled_from(["request", "reply", "both"])
-
-
-def _cut(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[Event]:
-    framer = codec.framer(listening)
-    events = [event for chunk in chunks for event in framer.feed(chunk)]
-    return events + framer.flush()
 
 
 def _byte_by_byte(events: list[Event]) -> list[object]:
@@ -65,7 +60,7 @@ def test_undamaged_frame_is_recovered_unless_a_legal_false_one_covers_it(
 ) -> None:
     table = TABLES[edition]
     line = data.draw(strategies.received(table, listening))
-    events = _cut(codec_of(edition, name), listening, [line.data])
+    events = cut(codec_of(edition, name), listening, [line.data])
     frames = [event for event in events if isinstance(event, Frame)]
     found = {(frame.offset, bytes(frame.data)) for frame in frames}
     for start, sent in line.whole:
@@ -81,7 +76,7 @@ def test_accepted_frame_is_legal_and_is_part_of_the_stream(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
     line = data.draw(strategies.received(TABLES[edition], listening))
-    for event in _cut(codec_of(edition, name), listening, [line.data]):
+    for event in cut(codec_of(edition, name), listening, [line.data]):
         assert line.data[event.offset : event.offset + len(event.data)] == event.data
         if isinstance(event, Frame):
             assert _legal(TABLES[edition], listening, event.data)
@@ -94,7 +89,7 @@ def test_every_byte_of_a_bad_line_is_in_exactly_one_event(
     name: CodecName, edition: str, listening: Listening, data: st.DataObject
 ) -> None:
     line = data.draw(strategies.received(TABLES[edition], listening))
-    events = _cut(codec_of(edition, name), listening, data.draw(strategies.chunked(line.data)))
+    events = cut(codec_of(edition, name), listening, data.draw(strategies.chunked(line.data)))
     assert b"".join(event.data for event in events) == line.data
     assert all(a.offset + len(a.data) == b.offset for a, b in pairwise(events))
 
@@ -105,9 +100,9 @@ def test_both_codecs_return_the_same_events_in_any_chunks(
 ) -> None:
     line = data.draw(strategies.received(TABLES[edition], listening))
     chunks = data.draw(strategies.chunked(line.data))
-    whole = _byte_by_byte(_cut(codec_of(edition, "reference"), listening, [line.data]))
+    whole = _byte_by_byte(cut(codec_of(edition, "reference"), listening, [line.data]))
     for name in ("reference", "native"):
-        assert _byte_by_byte(_cut(codec_of(edition, name), listening, chunks)) == whole
+        assert _byte_by_byte(cut(codec_of(edition, name), listening, chunks)) == whole
 
 
 @EACH_CODEC
@@ -118,7 +113,7 @@ def test_header_bytes_before_a_frame_do_not_hide_it(
     # FE is not a legal LEN, so FE FE FE is refuted at its first byte.
     count = data.draw(st.integers(1, 40))
     frame = data.draw(strategies.real_frames(TABLES[edition]))
-    events = _cut(codec_of(edition, name), "both", [b"\xfe" * count + frame])
+    events = cut(codec_of(edition, name), "both", [b"\xfe" * count + frame])
     assert events[-1] == Frame(count, frame, frame[3])
     assert {event.reason for event in events[:-1] if isinstance(event, Noise)} == {"bad-length"}
 
@@ -157,24 +152,24 @@ def test_noise_seen_in_the_field_hides_no_frame(codec: Codec, noise: str) -> Non
         sent.append((len(stream), frame))
         stream += frame
     for chunks in ([stream], [bytes([byte]) for byte in stream]):
-        events = _cut(codec, "reply", chunks)
+        events = cut(codec, "reply", chunks)
         assert [(e.offset, e.data) for e in events if isinstance(e, Frame)] == sent
 
 
 def test_false_frame_that_the_table_allows_hides_the_frames_inside_it(codec: Codec) -> None:
     # A header of get_angles, and an FA where that frame would end: the frame is false but legal.
     whole = bytes.fromhex("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA FA")
-    assert _cut(codec, "reply", [whole]) == [Frame(0, whole, 0x20)]
+    assert cut(codec, "reply", [whole]) == [Frame(0, whole, 0x20)]
     # With one byte less it is refuted, and both frames inside it are found.
-    events = _cut(codec, "reply", [whole[:-1] + b"\x00"])
+    events = cut(codec, "reply", [whole[:-1] + b"\x00"])
     assert [e.offset for e in events if isinstance(e, Frame)] == [4, 10]
 
 
 def test_frame_within_a_frame_is_found_only_if_the_outer_one_is_damaged(codec: Codec) -> None:
     outer = bytes.fromhex("FE FE 0E 20 00 00 FE FE 03 12 01 FA 00 00 00 00 FA")
-    assert _cut(codec, "reply", [outer]) == [Frame(0, outer, 0x20)]
+    assert cut(codec, "reply", [outer]) == [Frame(0, outer, 0x20)]
     broken = outer[:-1] + b"\xfb"
-    found = [e for e in _cut(codec, "reply", [broken]) if isinstance(e, Frame)]
+    found = [e for e in cut(codec, "reply", [broken]) if isinstance(e, Frame)]
     assert found == [Frame(6, broken[6:12], 0x12)]
 
 

@@ -105,3 +105,23 @@ def driven_by(kind: type[Any], table: Table = TABLE) -> Iterator[Rig]:
             yield rig
         finally:
             rig.peer.close()
+
+
+def rig_fixtures(kind: type[Any], table: Table = TABLE, *, connection: str) -> tuple[Any, Any]:
+    """Return two fixtures: the connection of a module, and its rig, reset for each test.
+
+    A module opens each class once, since the constructors of two classes sleep 1.5 s.
+    """
+
+    @pytest.fixture(scope="module", name=connection)
+    def opened() -> Iterator[Rig]:
+        with driven_by(kind, table) as rig:
+            yield rig
+
+    @pytest.fixture
+    def rig(request: pytest.FixtureRequest) -> Rig:
+        found: Rig = request.getfixturevalue(connection)
+        found.start_over()
+        return found
+
+    return opened, rig

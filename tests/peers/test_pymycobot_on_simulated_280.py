@@ -8,29 +8,18 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
 
 import pytest
 
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator.state import ArmState
 from pymycobot_classes import MyCobot280
-from pymycobot_rig import READ_BACK, Rig, driven_by, on_ticks
+from pymycobot_rig import READ_BACK, Rig, on_ticks, rig_fixtures
 
 DONE = 1
 
 
-@pytest.fixture(scope="module")
-def connection() -> Iterator[Rig]:
-    """Open one connection for the whole module: the constructor sleeps 1.5 s."""
-    with driven_by(MyCobot280, TABLE) as rig:
-        yield rig
-
-
-@pytest.fixture
-def rig(connection: Rig) -> Rig:
-    connection.start_over()
-    return connection
+opened, rig = rig_fixtures(MyCobot280, TABLE, connection="connection")
 
 
 def test_acknowledged_setter_is_sent_once_and_returns_at_once(rig: Rig) -> None:

@@ -7,40 +7,17 @@ joints.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 
 from cobotwire.simulator.kinematics import DEGREES_PER_TICK
 from pymycobot_classes import MyCobot280, MyPalletizer260
-from pymycobot_rig import Rig, driven_by, on_ticks
+from pymycobot_rig import Rig, on_ticks, rig_fixtures
 
 UNANSWERED = -1
 
 
-@pytest.fixture(scope="module")
-def connection_280() -> Iterator[Rig]:
-    """Open one connection for the whole module: the constructor sleeps 1.5 s."""
-    with driven_by(MyCobot280) as rig:
-        yield rig
-
-
-@pytest.fixture
-def cobot(connection_280: Rig) -> Rig:
-    connection_280.start_over()
-    return connection_280
-
-
-@pytest.fixture(scope="module")
-def connection_260() -> Iterator[Rig]:
-    with driven_by(MyPalletizer260) as rig:
-        yield rig
-
-
-@pytest.fixture
-def palletizer(connection_260: Rig) -> Rig:
-    connection_260.start_over()
-    return connection_260
+opened_280, cobot = rig_fixtures(MyCobot280, connection="connection_280")
+opened_260, palletizer = rig_fixtures(MyPalletizer260, connection="connection_260")
 
 
 def test_280_step_with_async_flag_moves_the_arm_once(cobot: Rig) -> None:

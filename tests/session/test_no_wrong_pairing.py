@@ -5,8 +5,6 @@ It holds if each reply starts to arrive within the grace, and arrives once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from hypothesis import assume, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -16,18 +14,10 @@ from cobotwire.editions.mycobot import TABLE
 from cobotwire.session import ReplyMatched, SessionEvent
 from cobotwire.session.policy import GRACE_SECONDS
 from session.one_caller import OneCaller
+from session.transit import Reply, arrive, bytes_until
 
 REFERENCE = codecs.load(TABLE, "reference")
 TIMEOUT = 0.1
-
-
-@dataclass
-class Reply:
-    """A reply in transit: it starts to arrive by ``due``; ``sent`` bytes have arrived."""
-
-    data: bytes
-    due: float
-    sent: int = 0
 
 
 class Pairing(RuleBasedStateMachine):
@@ -67,14 +57,7 @@ class Pairing(RuleBasedStateMachine):
     @rule(size=st.integers(1, 30), cut=st.sampled_from([False] * 9 + [True]))
     def receive(self, size: int, cut: bool) -> None:
         """Receive some bytes: a part of a reply, or the end of one and the start of the next."""
-        received = b""
-        while self.line and len(received) < size:
-            reply = self.line[0]
-            part = reply.data[reply.sent :][: size - len(received)]
-            reply.sent += len(part)
-            received += part
-            if reply.sent == len(reply.data) or cut:
-                self.line.pop(0)
+        received, _ = arrive(self.line, size, cut)
         self._judge(self.session.receive(received, self.now))
 
     @precondition(lambda self: self.session.waiting)
@@ -90,11 +73,7 @@ class Pairing(RuleBasedStateMachine):
         for reply in self.line:
             self.now = max(self.now, min(reply.due, end))
             if reply.due <= end and reply.sent == 0:
-                # The line keeps the order: bytes sent earlier arrive first.
-                self.receive(
-                    sum(len(r.data) - r.sent for r in self.line[: self.line.index(reply)]) + 1,
-                    cut=False,
-                )
+                self.receive(bytes_until(self.line, reply), cut=False)
                 break
         self.now = end
         if not late:

@@ -1,8 +1,9 @@
-"""The law of pairing where many callers share the line: queries are repeated, one-way requests are
-acknowledged or not, calls are cancelled, replies are late, lost, cut, or duplicated.
+"""The law of pairing for callers that share a line.
 
-No reply goes to another request if it starts to arrive within the grace, and its second copy (if
-any) arrives before the next request is sent. Only acknowledged one-way requests count as such.
+Queries are repeated, one-way requests are acknowledged or not, calls are cancelled, and replies are
+late, lost, cut or duplicated. No reply goes to another request if it starts to arrive within the
+grace, and its second copy (if any) arrives before the next request is sent. A one-way request is
+confirmed only by its own acknowledgement.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.session import Exchange, Pending, PendingAck, PendingRequest, RetryPolicy
 from cobotwire.session.policy import GRACE_SECONDS
 from cobotwire.session.request import RequestEncoder
+from session.transit import Reply, arrive, bytes_until
 
 REFERENCE = codecs.load(TABLE, "reference")
 REQUESTS = ["get_encoder", "get_joint_min_angle", "get_angles_plan"]
@@ -27,13 +29,10 @@ MOST = 1000
 
 
 @dataclass
-class Reply:
-    """A reply in transit: it starts to arrive by ``due``; ``sent`` bytes have arrived."""
+class SharedReply(Reply):
+    """A reply in transit; it may be an acknowledgement, or a second copy."""
 
-    data: bytes
-    due: float
-    acknowledges: Pending | None
-    sent: int = 0
+    acknowledges: Pending | None = None
     twice: bool = False
 
 
@@ -56,7 +55,7 @@ class Sharing(RuleBasedStateMachine):
         self.exchange = Exchange(loaded)
         self.encode = RequestEncoder(loaded).encode
         self.now = 0.0
-        self.line: list[Reply] = []
+        self.line: list[SharedReply] = []
         self.count = 0
         self.known: list[Known] = []
 
@@ -90,9 +89,9 @@ class Sharing(RuleBasedStateMachine):
         if lost:
             return
         reply = REFERENCE.encode(pending.request.command.name, "reply", _values(pending, number))
-        self.line.append(Reply(reply, self.now + delay, None))
+        self.line.append(SharedReply(reply, self.now + delay))
         if twice:
-            self.line.append(Reply(reply, self.now + delay, None, twice=True))
+            self.line.append(SharedReply(reply, self.now + delay, twice=True))
 
     @rule(
         name=st.sampled_from(ONE_WAY),
@@ -107,25 +106,17 @@ class Sharing(RuleBasedStateMachine):
         if pending is not None:
             self.known.append(Known(pending))
         if not lost:
-            self.line.append(
-                Reply(REFERENCE.encode(name, "reply", (1,)), self.now + delay, pending)
-            )
+            ack = REFERENCE.encode(name, "reply", (1,))
+            self.line.append(SharedReply(ack, self.now + delay, acknowledges=pending))
 
     @precondition(lambda self: self.line)
     @rule(size=st.integers(1, 40), cut=st.sampled_from([False] * 9 + [True]))
     def receive(self, size: int, cut: bool) -> None:
         """Receive some bytes: a part of a reply, or the end of one and the start of the next."""
-        received = b""
-        while self.line and len(received) < size:
-            reply = self.line[0]
-            part = reply.data[reply.sent :][: size - len(received)]
-            reply.sent += len(part)
-            received += part
-            if reply.sent == len(reply.data):
-                for known in self.known:
-                    known.acknowledged |= known.pending is reply.acknowledges
-            if reply.sent == len(reply.data) or cut:
-                self.line.pop(0)
+        received, completed = arrive(self.line, size, cut)
+        acknowledged = [reply.acknowledges for reply in completed]
+        for known in self.known:
+            known.acknowledged |= any(known.pending is pending for pending in acknowledged)
         self.exchange.receive(received, self.now)
         self._judge()
 
@@ -145,8 +136,7 @@ class Sharing(RuleBasedStateMachine):
         for reply in list(self.line):
             if reply in self.line and reply.due <= end and reply.sent == 0:
                 self.now = max(self.now, reply.due)
-                before = self.line[: self.line.index(reply)]
-                self.receive(sum(len(r.data) - r.sent for r in before) + 1, cut=False)
+                self.receive(bytes_until(self.line, reply), cut=False)
         self.now = end
         if not late:
             self.exchange.wake(self.now)
