@@ -7,18 +7,28 @@ from hypothesis import strategies as st
 import strategies
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.table import Table
-from cobotwire.simulator.faults.noise import COMMAND_ERROR, PANIC, servo_packet
+from cobotwire.simulator.faults.noise import (
+    BOOT,
+    COMMAND_ERROR,
+    LEAKS,
+    LOG,
+    PANIC,
+    servo_packet,
+)
+from noisy_lines import noise_of
 
 
 def servo_packets() -> st.SearchStrategy[bytes]:
-    """Generate a servo packet with a right checksum."""
+    """Generate a servo packet of the catalogue, sometimes with another id and any instruction."""
     codes = st.sampled_from([0, 1, 2, 3, 4, 5, 0x20, 0x82, 0x83]) | st.integers(0, 255)
-    return st.builds(
-        lambda id, code, rest: servo_packet(bytes([id, len(rest) + 2, code]) + rest),
+    drawn = noise_of(TABLE, "servo", "servo FE")
+    altered = st.builds(
+        lambda packet, id, code: servo_packet(bytes([id, packet[3], code]) + packet[5:-1]),
+        drawn,
         st.sampled_from([1, 2, 7, 0xFE]) | st.integers(0, 0xFE),
         codes,
-        st.binary(max_size=12),
     )
+    return st.one_of(drawn, altered, st.sampled_from(list(LEAKS.values())))
 
 
 def damaged_panics() -> st.SearchStrategy[bytes]:
@@ -43,20 +53,18 @@ def noise() -> st.SearchStrategy[bytes]:
     """Generate noise of firmware, servos and bad lines, complete or cut, short and long."""
     whole = st.one_of(
         servo_packets(),
-        st.sampled_from(
-            [PANIC, COMMAND_ERROR, b"cmd_len error", b"ets Jul 29 2019 12:21:46\r\n\r\n"]
-        ),
+        st.sampled_from([PANIC, BOOT, COMMAND_ERROR, COMMAND_ERROR.rstrip(), *LOG]),
         st.sampled_from([1, 3, 4, 63, 64, 277, 5000]).map(bytes),
         st.integers(1, 3000).map(lambda size: b"~" * size),
         st.binary(max_size=300),
         strategies.line_noise(),
         damaged_panics(),
         # A message at the limit of a line, and directly after a truncated frame.
-        st.integers(1000, 1050).map(lambda size: b"x" * size + b"cmd_len error"),
+        st.integers(1000, 1050).map(lambda size: b"x" * size + COMMAND_ERROR.rstrip()),
         st.builds(
             lambda parts, after: b"".join(parts) + after,
             st.lists(damaged_replies(), min_size=1, max_size=4),
-            st.sampled_from([b"", b"cmd_len error\r\n", PANIC]) | servo_packets(),
+            st.sampled_from([b"", COMMAND_ERROR, PANIC]) | servo_packets(),
         ),
     )
     return st.one_of(
