@@ -12,33 +12,15 @@ import strategies
 from cobotwire import codec as codecs
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE, TargetKind
-from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.behaviour import BEHAVIOURS
+from simulator.bench import Bench, check_legal_replies
 
 REFERENCE = codecs.load(TABLE, "reference")
 
 
-class Bench:
-    """An arm, its clock, and the requests of a test."""
-
-    def __init__(self) -> None:
-        self.now = 0.0
-        self.arm = SimulatedArm(TABLE, clock=lambda: self.now)
-
-    def send(self, name: str, *values: Any) -> bytes:
-        return self.arm.receive(REFERENCE.encode(name, "request", values))
-
-    def query(self, name: str, *values: Any) -> Any:
-        message = REFERENCE.decode("reply", self.send(name, *values))
-        [value] = [v for f, v in zip(message.variant.fields, message.values) if not f.echo]
-        return value
-
-
 @pytest.fixture
 def bench() -> Bench:
-    made = Bench()
-    made.send("power_on")
-    return made
+    return Bench(TABLE)
 
 
 def test_every_command_has_a_behaviour_and_every_behaviour_a_command() -> None:
@@ -51,16 +33,7 @@ def test_every_command_has_a_behaviour_and_every_behaviour_a_command() -> None:
 def test_every_legal_request_gets_exactly_its_legal_reply(
     requests: list[tuple[strategies.CommandVariant, Any]],
 ) -> None:
-    bench = Bench()
-    for variant, values in requests:
-        bench.now += 0.1
-        reply = bench.send(variant.command.name, *values)
-        if variant.command.text is not None:
-            assert reply.startswith(b"ssid: ")
-        elif variant.command.reply:
-            assert REFERENCE.decode("reply", reply).command is variant.command
-        else:
-            assert reply == b""
+    check_legal_replies(TABLE, requests)
 
 
 # The tolerance of a reported angle: a tick, and the truncation to hundredths.
@@ -77,11 +50,11 @@ def test_joints_move_over_time_and_stop_together(bench: Bench) -> None:
     assert bench.query("is_moving") == 1
     # 20 % of speed is 30 degrees a second for the joint with the longest way; at 200 degrees per
     # second squared, accelerating and braking take 0.15 s each.
-    bench.now += 0.075 + 1.0
+    bench.clock.sleep(0.075 + 1.0)
     assert bench.query("get_angles") == near(30.0, -15.0, 0.0, 7.5, 0.0, 0.0)
-    bench.now += 1.0
+    bench.clock.sleep(1.0)
     assert bench.query("is_moving") == 1
-    bench.now += 0.08
+    bench.clock.sleep(0.08)
     assert bench.query("get_angles") == near(*target)
     assert bench.query("is_moving") == 0
     assert bench.query("is_in_position", target, TargetKind.ANGLES) == 1
@@ -91,31 +64,31 @@ def test_joints_move_over_time_and_stop_together(bench: Bench) -> None:
 def test_targets_are_queued_unless_the_newest_replaces_them(bench: Bench) -> None:
     bench.send("send_angle", 1, 30.0, 20)
     bench.send("send_angle", 1, 0.0, 20)
-    bench.now += 1.15
+    bench.clock.sleep(1.15)
     assert bench.query("get_angles")[:1] == near(30.0)
-    bench.now += 1.15
+    bench.clock.sleep(1.15)
     assert bench.query("get_angles")[0] == 0.0
     bench.send("set_fresh_mode", 1)
     bench.send("send_angle", 1, 30.0, 20)
-    bench.now += 0.15
+    bench.clock.sleep(0.15)
     bench.send("send_angle", 1, -30.0, 20)
-    bench.now += 1.5
+    bench.clock.sleep(1.5)
     assert bench.query("get_angles")[:1] == near(-30.0)
 
 
 def test_pause_keeps_the_targets_and_stop_forgets_them(bench: Bench) -> None:
     bench.send("send_angle", 1, 30.0, 20)
-    bench.now += 0.5
+    bench.clock.sleep(0.5)
     bench.send("pause")
     assert bench.query("is_moving") == 1, "it takes 0.15 s to stand"
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     assert (bench.query("is_paused"), bench.query("is_moving")) == (1, 0)
     assert bench.query("get_angles")[:1] == near(15.0)
     bench.send("resume")
-    bench.now += 0.3
+    bench.clock.sleep(0.3)
     assert bench.query("get_angles")[:1] == near(15.0 + 0.225 * 30)
     bench.send("stop")
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     stopped = bench.query("get_angles")
     assert stopped[:1] == near(15.0 + 0.3 * 30)
     bench.send("send_angle", 1, 0.0, 20)
@@ -123,7 +96,7 @@ def test_pause_keeps_the_targets_and_stop_forgets_them(bench: Bench) -> None:
     assert bench.arm.notes[-1].command == "send_angle"
     assert "resume" in bench.arm.notes[-1].text
     bench.send("resume")
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     assert bench.query("get_angles") == stopped
     bench.send("send_angle", 1, 0.0, 20)
     assert bench.query("is_moving") == 1
@@ -132,15 +105,15 @@ def test_pause_keeps_the_targets_and_stop_forgets_them(bench: Bench) -> None:
 def test_target_sent_during_a_pause_starts_with_resume(bench: Bench) -> None:
     bench.send("pause")
     bench.send("send_angle", 1, 30.0, 20)
-    bench.now += 3.0
+    bench.clock.sleep(3.0)
     assert bench.query("get_angles")[0] == 0.0
     bench.send("resume")
-    bench.now += 0.575
+    bench.clock.sleep(0.575)
     assert bench.query("get_angles")[:1] == near(15.0)
 
 
 def test_arm_without_power_or_torque_does_not_move() -> None:
-    bench = Bench()
+    bench = Bench(TABLE, powered=False)
     bench.send("send_angle", 1, 30.0, 100)
     assert bench.query("is_moving") == 0
     bench.send("power_on")
@@ -166,12 +139,12 @@ def test_target_beyond_a_joint_limit_is_rejected(bench: Bench) -> None:
 
 def test_jog_continues_until_it_is_stopped(bench: Bench) -> None:
     bench.send("jog_angle", 1, 0, 20)
-    bench.now += 1.0
+    bench.clock.sleep(1.0)
     bench.send("jog_stop")
-    bench.now += 1.0
+    bench.clock.sleep(1.0)
     assert bench.query("get_angles")[:1] == near(-30.0)
     bench.send("jog_angle", 1, 0, 100)
-    bench.now += 60.0
+    bench.clock.sleep(60.0)
     # The outermost tick inside -165 degrees.
     assert bench.query("get_angles")[0] == -164.97
     bench.send("jog_angle", 1, 0, 100)
@@ -181,7 +154,7 @@ def test_jog_continues_until_it_is_stopped(bench: Bench) -> None:
 def test_encoders_and_angles_agree(bench: Bench) -> None:
     assert bench.query("get_encoders") == (2048,) * 6
     bench.send("set_encoders", (1024, 3072, 3072, 2048, 2048, 2048), 100)
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     # Signs of the joints: -1 -1 +1 -1 -1 -1; 1024 ticks are 90 degrees.
     assert bench.query("get_angles") == (90.0, -90.0, 90.0, 0.0, 0.0, 0.0)
     assert bench.query("get_encoder", 2) == 3072
@@ -189,7 +162,7 @@ def test_encoders_and_angles_agree(bench: Bench) -> None:
 
 def test_calibration_takes_the_present_position_as_zero(bench: Bench) -> None:
     bench.send("send_angle", 4, 30.0, 100)
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     bench.send("set_servo_calibration", 4)
     assert bench.query("get_angles")[3] == 0.0
     assert bench.query("get_encoder", 4) == 2048
@@ -222,9 +195,9 @@ def test_power_off_disconnects_the_atom_and_power_on_connects_it(
 
 def test_gripper_does_not_move_without_power(bench: Bench) -> None:
     bench.send("set_gripper_value", 60, 10)
-    bench.now += 2.0
+    bench.clock.sleep(2.0)
     bench.send("power_off")
-    bench.now += 9.0
+    bench.clock.sleep(9.0)
     assert bench.query("is_gripper_moving") == 0
     assert bench.query("get_gripper_value") == 30, "it stands where the power left it"
     bench.send("set_gripper_state", 0, 100)

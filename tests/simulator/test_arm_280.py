@@ -12,53 +12,27 @@ import strategies
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.simulator import PtyServer, SimulatedArm
+from simulator.bench import Bench, check_legal_replies
 
 REFERENCE = codecs.load(TABLE, "reference")
 REQUESTS = strategies.messages(TABLE).filter(lambda message: message[0].direction == "request")
 
 
-class Bench:
-    """An arm, its clock, and the requests of a test."""
-
-    def __init__(self, *, acks: bool = True) -> None:
-        self.now = 0.0
-        self.arm = SimulatedArm(TABLE, clock=lambda: self.now, acks=acks)
-
-    def send(self, name: str, *values: Any) -> bytes:
-        return self.arm.receive(REFERENCE.encode(name, "request", values))
-
-    def query(self, name: str, *values: Any) -> Any:
-        message = REFERENCE.decode("reply", self.send(name, *values), of=name)
-        found = [v for f, v in zip(message.variant.fields, message.values) if not f.echo]
-        return found[0] if len(found) == 1 else tuple(found)
-
-
 @pytest.fixture
 def bench() -> Bench:
-    made = Bench()
-    made.send("power_on")
-    return made
+    return Bench(TABLE)
 
 
 @given(st.lists(REQUESTS, max_size=8))
 def test_every_legal_request_gets_exactly_its_legal_reply(
     requests: list[tuple[strategies.CommandVariant, Any]],
 ) -> None:
-    bench = Bench()
-    for variant, values in requests:
-        bench.now += 0.1
-        reply = bench.send(variant.command.name, *values)
-        if variant.command.text is not None:
-            assert reply.startswith(b"ssid: ")
-        elif variant.command.reply:
-            assert REFERENCE.decode("reply", reply).command.id == variant.command.id
-        else:
-            assert reply == b""
+    check_legal_replies(TABLE, requests)
 
 
 def test_setters_are_acknowledged_unless_acks_are_off(bench: Bench) -> None:
     assert bench.send("set_color", 1, 2, 3) == bytes.fromhex("FE FE 03 6A 01 FA")
-    silent = Bench(acks=False)
+    silent = Bench(TABLE, acks=False, powered=False)
     assert silent.send("set_color", 1, 2, 3) == b""
     assert silent.query("is_power_on") == 0
 
@@ -82,15 +56,15 @@ def test_settings_are_read_back(bench: Bench) -> None:
 
 def test_increment_moves_by_its_distance_and_the_plan_reports_its_target(bench: Bench) -> None:
     bench.send("send_angles", (0, -30.0, -60.0, 0, 0, 0), 50)
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     height = bench.query("get_coords")[2]
     bench.send("jog_increment_coord", 3, 12.5, 50)
     planned = bench.query("get_coords_plan")[2]
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     assert bench.query("get_coords")[2] == planned == pytest.approx(height + 12.5, abs=0.8)
     bench.send("send_angle", 1, 10.0, 50)
     assert bench.query("get_angles_plan")[0] == 10.01, "the tick's angle, cut to hundredths"
-    bench.now += 5.0
+    bench.clock.sleep(5.0)
     angles, coords = bench.query("get_angles_coords")
     assert (angles[0], coords[2]) == (10.01, planned)
 

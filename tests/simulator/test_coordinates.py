@@ -12,6 +12,7 @@ from cobotwire.editions.mycobot280 import TABLE, TargetKind
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.kinematics import Pose
+from simulator.bench import Bench
 
 REFERENCE = codecs.load(TABLE, "reference")
 BENT = (10.0, -30.0, -60.0, 20.0, 5.0, 30.0)
@@ -20,21 +21,13 @@ TICKS = 0.8
 LINEAR, FORWARD, BACKWARD = 1, 1, 0
 
 
-class Bench:
-    """A powered, bent arm, and a clock that the test steps."""
+class BentBench(Bench):
+    """A powered, bent arm."""
 
     def __init__(self) -> None:
-        self.clock = SteppedClock()
-        self.arm = SimulatedArm(TABLE, clock=self.clock)
-        self.send("power_on")
+        super().__init__(TABLE)
         self.send("send_angles", BENT, 100)
         self.clock.sleep(10)
-
-    def send(self, name: str, *values: Any) -> bytes:
-        return self.arm.receive(REFERENCE.encode(name, "request", values))
-
-    def query(self, name: str, *values: Any) -> Any:
-        return REFERENCE.decode("reply", self.send(name, *values), of=name).values[-1]
 
     @property
     def end(self) -> Pose:
@@ -42,15 +35,15 @@ class Bench:
 
 
 @pytest.fixture
-def bench() -> Bench:
-    return Bench()
+def bench() -> BentBench:
+    return BentBench()
 
 
 def shifted(coords: tuple[float, ...], *shift: float) -> tuple[float, ...]:
     return tuple(round(a + b, 2) for a, b in zip(coords, (*shift, 0, 0, 0, 0, 0, 0)))
 
 
-def test_coordinate_target_is_reached_and_read_back(bench: Bench) -> None:
+def test_coordinate_target_is_reached_and_read_back(bench: BentBench) -> None:
     target = shifted(bench.query("get_coords"), -20, 30, -25, 5, -10, 15)
     bench.send("send_coords", target, 60, 0)
     bench.clock.sleep(10)
@@ -61,7 +54,7 @@ def test_coordinate_target_is_reached_and_read_back(bench: Bench) -> None:
     assert bench.arm.notes == ()
 
 
-def test_unreachable_target_is_rejected_with_a_note(bench: Bench) -> None:
+def test_unreachable_target_is_rejected_with_a_note(bench: BentBench) -> None:
     before = bench.query("get_angles")
     bench.send("send_coords", (281.4, 281.4, 412.6, 0, 0, 0), 60, 0)
     bench.clock.sleep(10)
@@ -77,7 +70,7 @@ def test_unreachable_target_is_rejected_with_a_note(bench: Bench) -> None:
     assert bench.query("get_error_information") == 3
 
 
-def test_linear_motion_is_straight(bench: Bench) -> None:
+def test_linear_motion_is_straight(bench: BentBench) -> None:
     start = bench.query("get_coords")
     target = shifted(start, -60, 40, -50)
     bench.send("send_coords", target, 60, LINEAR)
@@ -92,7 +85,7 @@ def test_linear_motion_is_straight(bench: Bench) -> None:
     assert bench.query("is_in_position", target, TargetKind.COORDS) == 1
 
 
-def test_angular_motion_is_not_straight(bench: Bench) -> None:
+def test_angular_motion_is_not_straight(bench: BentBench) -> None:
     start = bench.query("get_coords")
     bench.send("send_coords", shifted(start, -120, 100, -50), 60, 0)
     off = []
@@ -105,7 +98,9 @@ def test_angular_motion_is_not_straight(bench: Bench) -> None:
 
 @pytest.mark.parametrize("axis", range(1, 7))
 @pytest.mark.parametrize("direction", [BACKWARD, FORWARD])
-def test_jog_coord_continues_until_it_is_stopped(bench: Bench, axis: int, direction: int) -> None:
+def test_jog_coord_continues_until_it_is_stopped(
+    bench: BentBench, axis: int, direction: int
+) -> None:
     start = bench.query("get_coords")
     bench.send("jog_coord", axis, direction, 20)
     bench.clock.sleep(0.5)
@@ -118,7 +113,7 @@ def test_jog_coord_continues_until_it_is_stopped(bench: Bench, axis: int, direct
     assert bench.query("is_moving") == 0
 
 
-def test_jog_ends_at_the_end_of_the_reach(bench: Bench) -> None:
+def test_jog_ends_at_the_end_of_the_reach(bench: BentBench) -> None:
     bench.send("jog_coord", 3, FORWARD, 50)
     bench.clock.sleep(60)
     assert bench.query("is_moving") == 0
@@ -129,7 +124,7 @@ def test_jog_ends_at_the_end_of_the_reach(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize("axis", [1, 2, 3])
-def test_jog_rpy_keeps_its_axis_and_the_position(bench: Bench, axis: int) -> None:
+def test_jog_rpy_keeps_its_axis_and_the_position(bench: BentBench, axis: int) -> None:
     start = bench.end
     bench.send("jog_rpy", axis, FORWARD, 20)
     bench.clock.sleep(0.7)
@@ -142,7 +137,7 @@ def test_jog_rpy_keeps_its_axis_and_the_position(bench: Bench, axis: int) -> Non
     assert [part[axis - 1] for part in end[:3]] == pytest.approx(row, abs=0.01)
 
 
-def test_tool_and_world_references_apply_when_they_are_chosen(bench: Bench) -> None:
+def test_tool_and_world_references_apply_when_they_are_chosen(bench: BentBench) -> None:
     flange = bench.end
     tool, world = (0, 0, 50, 10, 20, 30), (100, -40, 20, 0, 0, 90)
     bench.send("set_tool_reference", tool)
@@ -152,7 +147,7 @@ def test_tool_and_world_references_apply_when_they_are_chosen(bench: Bench) -> N
     x, y, z = (p + 50 * axis for p, axis in zip(flange.origin, flange.z))
     assert bench.end.origin == pytest.approx((x, y, z), abs=0.3)
     bench.send("set_reference_frame", 1)
-    # The world frame sees the pedestal turned by 90 degrees: x along its y.
+    # In the world frame the pedestal is turned by 90 degrees: its x points along the world's y.
     assert bench.end.origin == pytest.approx((100 - y, -40 + x, 20 + z), abs=0.3)
     target = shifted(bench.query("get_coords"), 15, -20, -10)
     bench.send("send_coords", target, 60, LINEAR)
@@ -160,12 +155,12 @@ def test_tool_and_world_references_apply_when_they_are_chosen(bench: Bench) -> N
     assert bench.end.distance(Pose.of(target))[0] < TICKS
     bench.send("set_reference_frame", 0)
     bench.send("set_end_type", 0)
-    # The same move, as the flange and the base see it: 15 along the world's x is -y.
+    # The same motion of the flange, in the frame of the base: 15 along the world's x is -y.
     expected = [a + b for a, b in zip(flange.origin, (-20, -15, -10))]
     assert bench.end.origin == pytest.approx(expected, abs=2 * TICKS)
 
 
-def test_kinematics_commands_agree_with_the_arm(bench: Bench) -> None:
+def test_kinematics_commands_agree_with_the_arm(bench: BentBench) -> None:
     coords = bench.query("get_coords")
     standing = bench.arm.state.standing(bench.clock())
     assert bench.query("angles_to_coords", bench.query("get_angles")) == pytest.approx(
@@ -179,7 +174,7 @@ def test_kinematics_commands_agree_with_the_arm(bench: Bench) -> None:
 
 
 def test_arm_outside_its_limits_stays_there_until_it_is_sent_inside(
-    bench: Bench,
+    bench: BentBench,
 ) -> None:
     bench.arm.state.angles.place((88.1, -148.33, 140.4, -140.0, 104.2, -13.7), bench.clock())
     assert bench.query("get_angles")[1] == -148.35

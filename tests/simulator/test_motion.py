@@ -112,7 +112,7 @@ def test_bends_keep_to_the_acceleration() -> None:
     axes = Axes((0.0, 0.0, 0.0), MOST)
     axes.follow(circle, 150.0, 0.0)
     speeds = []
-    step = 0.05  # longer than from one corner to the next: corners stand for bends
+    step = 0.05  # longer than the way between two corners, so the corners approximate a bend
     seen: list[Any] = [axes.position(step * n) for n in range(200)]
     for one, two in pairwise(seen):
         speeds.append([(b - a) / step for a, b in zip(one, two)])

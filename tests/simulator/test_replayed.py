@@ -41,7 +41,7 @@ def let_pass(arm: ReplayedArm, clock: Clock, seconds: float) -> list[tuple[float
     start, end = clock.now, clock.now + seconds
     received = []
     while arm.wait is not None and clock.now + arm.wait <= end:
-        # A hair beyond, or the sum of two numbers may fall short of the third.
+        # Slightly later: rounding may make the sum smaller than the time that is due.
         clock.now += arm.wait + 1e-9
         if data := arm.flush():
             received.append((round(clock.now - start, 6), data))

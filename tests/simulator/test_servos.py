@@ -3,38 +3,21 @@
 from __future__ import annotations
 
 import random
-from typing import Any
 
 import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.simulator import SimulatedArm
-from cobotwire.simulator.clock import SteppedClock
 from kinematic_samples import random_angles
+from simulator.bench import Bench
 
 REFERENCE = codecs.load(TABLE, "reference")
 STEPS_A_DEGREE = 4096 / 360
 
 
-class Bench:
-    """A powered arm, and a clock that the test steps."""
-
-    def __init__(self) -> None:
-        self.clock = SteppedClock()
-        self.arm = SimulatedArm(TABLE, clock=self.clock)
-        self.send("power_on")
-
-    def send(self, name: str, *values: Any) -> bytes:
-        return self.arm.receive(REFERENCE.encode(name, "request", values))
-
-    def query(self, name: str, *values: Any) -> Any:
-        return REFERENCE.decode("reply", self.send(name, *values), of=name).values[-1]
-
-
 @pytest.fixture
 def bench() -> Bench:
-    return Bench()
+    return Bench(TABLE)
 
 
 def test_servo_speeds_have_the_signs_of_the_encoders(bench: Bench) -> None:

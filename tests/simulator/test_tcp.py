@@ -1,4 +1,4 @@
-"""Test one simulated arm over TCP, with several clients, some of which misbehave."""
+"""Test one simulated arm over TCP, with several clients; some of them misbehave."""
 
 from __future__ import annotations
 

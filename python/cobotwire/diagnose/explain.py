@@ -43,7 +43,7 @@ class FrameReader:
         self.read = lru_cache(REMEMBERED)(self._read)
 
     def _read(self, data: bytes) -> tuple[Reading, ...]:
-        """Return the messages that ``data`` can be; if there are none, the reasons why not.
+        """Return the messages that ``data`` can be; if there are none, each direction's reason.
 
         Bytes that do not start with the header of a frame have no readings.
         """

@@ -15,13 +15,12 @@ from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator.behaviour import BEHAVIOURS
 from cobotwire.simulator.kinematics import Geometry, geometry_of
+from cobotwire.simulator.peer import IDLE_SECONDS
 from cobotwire.simulator.replies import clamped, completed
 from cobotwire.simulator.state import ArmState
 
 # A joint's own limits lie within half a turn; wider ones are only what the wire can express.
 HALF_TURN = 180.0
-# An incomplete request is given up after this pause, so that the next request does not complete it.
-IDLE_SECONDS = 0.2
 NOTES_KEPT = 1000
 
 Clock = Callable[[], float]

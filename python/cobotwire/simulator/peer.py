@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import Protocol
 
+# Peers give up an incomplete request after this pause, so that the next request does not complete
+# it.
+IDLE_SECONDS = 0.2
+
 
 class PeerDisconnected(Exception):
     """Raised by a peer that disappears; whatever serves it closes the connection."""

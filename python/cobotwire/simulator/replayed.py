@@ -9,9 +9,7 @@ from typing import NamedTuple
 
 from cobotwire.capture import Packet
 from cobotwire.codec.interface import Codec
-
-# An incomplete request is looked up as it is after this pause.
-IDLE_SECONDS = 0.2
+from cobotwire.simulator.peer import IDLE_SECONDS
 
 
 class ReplayedRequest(NamedTuple):

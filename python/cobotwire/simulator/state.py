@@ -108,10 +108,6 @@ class ArmState:
         pairs = list(zip(self.minimum, self.maximum))
         return [inside(low, high) for low, high in pairs] if self.geometry else pairs
 
-    def halt(self, now: float) -> None:
-        """End every motion of the arm at once, as without torque."""
-        self.angles.halt(now)
-
     def resume(self, now: float) -> None:
         """End a pause and a stop: continue, and obey motion again."""
         self.paused, self.stopped = False, False
@@ -148,7 +144,7 @@ class ArmState:
         return None if pose is None else reported_coords(pose.coords)
 
     def end(self, angles: tuple[float, ...], *, base: bool = False) -> Pose | None:
-        """Return the pose of flange or tool, in the frame of base or world, as it is set."""
+        """Return the pose of the flange or the tool, in the frame of the base or the world."""
         if self.geometry is None:
             return None
         pose = flange(self.geometry, angles)

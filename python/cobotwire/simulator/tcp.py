@@ -23,9 +23,9 @@ MOST_CLIENTS = 64
 class TcpServer(Server):
     """Serves clients over TCP while its ``with`` block runs; ``url`` is what they open.
 
-    Each client has a connection of its own: their bytes never mix, and each gets only the replies
-    to its own requests. A real serial line that ser2net serves is shared by all clients; fault
-    scenarios show how that damages replies.
+    Each client has its own connection: bytes of two clients never mix, and each gets only the
+    replies to its own requests. A real serial line that ser2net serves is shared by all clients;
+    fault scenarios show how that damages replies.
     """
 
     def __init__(

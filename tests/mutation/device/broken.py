@@ -10,8 +10,9 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Table
-from cobotwire.simulator.arm import IDLE_SECONDS, SimulatedArm
+from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.clock import Clock
+from cobotwire.simulator.peer import IDLE_SECONDS
 from mutation.device.stimulus import Stimulus, kind_of
 
 

@@ -174,7 +174,7 @@ def test_power_cycle_wakes_a_frozen_arm() -> None:
 
 
 def test_xoff_is_swallowed_and_stops_the_host() -> None:
-    # 0x1300 hundredths of a degree is no joint's angle, but a register may hold 0x13.
+    # No joint can have an angle of 0x1300 hundredths of a degree, but a register may hold 0x13.
     request = bytes.fromhex("FE FE 04 53 01 13 FA")
     clock = SteppedClock()
     faults = (
@@ -192,7 +192,7 @@ def test_xoff_is_swallowed_and_stops_the_host() -> None:
 
 
 def test_wrong_baud_rate_gives_the_garbage_of_the_field_notes() -> None:
-    # "ets " is how an ESP32's boot output begins; a receiver four times as fast reads it so.
+    # An ESP32's boot output begins with "ets "; a receiver four times as fast reads these bytes.
     assert noise.at_other_rate(noise.BOOT, 4).startswith(b"\x78\x80\x78")
     assert talk([WrongBaud()], [IS_POWERED]).data == noise.at_other_rate(OFF, 4)
 

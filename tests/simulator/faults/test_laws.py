@@ -44,7 +44,7 @@ FIELDS: dict[str, st.SearchStrategy[Any]] = {
     "jitter_seconds": SECONDS,
     "deaf_seconds": SECONDS,
 }
-# A port that goes ends the talk.
+# Nothing can be sent after the port disappears.
 LASTING = sorted(set(KINDS) - {"unplugged"})
 TIMES = (Late, Stalled, Split, Slow, Merged)
 REQUESTS = st.lists(

@@ -83,19 +83,19 @@ def deaf(arm):
         arm.get_angles()
     return type(arm).__name__
 
-def test_the_module_s(simulated_arm):
+def test_mark_of_the_module(simulated_arm):
     assert deaf(simulated_arm) == "MyCobot280"
 
 @pytest.mark.simulated_arm(edition="mycobot")
-def test_a_test_s_own_goes_before_it_argument_by_argument(simulated_arm):
+def test_own_mark_overrides_single_arguments(simulated_arm):
     assert deaf(simulated_arm) == "MyCobot"
 
 @pytest.mark.simulated_arm(scenario=Scenario(name="own", faults=(Lost(),)), seed=3)
-def test_an_object(simulated_arm):
+def test_scenario_as_an_object(simulated_arm):
     deaf(simulated_arm)
 
 @pytest.mark.simulated_arm(scenario=None)
-def test_none(simulated_arm):
+def test_no_scenario(simulated_arm):
     assert simulated_arm.is_power_on() is False
 """
     assert "4 passed" in (output := run(tmp_path, test)), output

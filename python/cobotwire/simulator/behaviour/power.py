@@ -18,7 +18,7 @@ def power_on(arm: ArmState, now: float, request: m.PowerOn) -> None:
 @behaviour(m.PowerOff)
 def power_off(arm: ArmState, now: float, request: m.PowerOff) -> None:
     """End every motion, release the joints, and disconnect the Atom."""
-    arm.halt(now)
+    arm.angles.halt(now)
     arm.gripper.halt(now)
     arm.powered, arm.connected = False, False
     arm.enabled = [False] * arm.joints
@@ -30,7 +30,7 @@ query(m.IsPowerOn, lambda arm, now, request: arm.powered)
 @behaviour(m.ReleaseAllServos)
 def release_all_servos(arm: ArmState, now: float, request: m.ReleaseAllServos) -> None:
     """Release every joint."""
-    arm.halt(now)
+    arm.angles.halt(now)
     arm.enabled = [False] * arm.joints
 
 
@@ -43,7 +43,7 @@ def set_free_mode(arm: ArmState, now: float, request: m.SetFreeMode) -> None:
     """Switch the torque off or on."""
     arm.free = bool(request.free)
     if arm.free:
-        arm.halt(now)
+        arm.angles.halt(now)
 
 
 query(m.IsFreeMode, lambda arm, now, request: arm.free)

@@ -14,7 +14,7 @@ from cobotwire.simulator.faults.rules import nearest
 class Chooser:
     """Chooses the requests of one fault.
 
-    Each fault has random numbers of its own: a further fault in the scenario does not change them.
+    Each fault has its own random draws: another fault in the scenario does not change them.
     """
 
     def __init__(self, fault: Fault, seed: int, number: int) -> None:

@@ -12,10 +12,7 @@ from cobotwire.simulator.faults.chooser import Chooser
 from cobotwire.simulator.faults.exchange import AppliedFault, Piece, Reply, Request, joined
 from cobotwire.simulator.faults.fault import Moment
 from cobotwire.simulator.faults.faulty_connection import FaultyConnection
-from cobotwire.simulator.peer import Peer, PeerDisconnected
-
-# An incomplete request is handled as it is after this pause.
-IDLE_SECONDS = 0.2
+from cobotwire.simulator.peer import IDLE_SECONDS, Peer, PeerDisconnected
 
 Chosen = list[tuple[Chooser, Moment]]
 

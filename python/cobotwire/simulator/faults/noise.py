@@ -151,7 +151,7 @@ def _servo(random: Random, table: Table) -> bytes:
 
 @_noise("servo FE", before_frames=True)
 def _servo_with_header_byte(random: Random, table: Table) -> bytes:
-    """Draw a servo packet whose checksum is FE: with a frame after it, FE FE FE LEN."""
+    """Draw a servo packet with the checksum FE: a frame after it then reads FE FE FE LEN."""
     count = random.randrange(9)
     body = bytes([random.randrange(255), count + 3, 3]) + random.randbytes(count)
     return servo_packet(body + bytes([(0x01 - sum(body)) & 0xFF]))
@@ -219,7 +219,7 @@ def _byte(random: Random, table: Table) -> bytes:
 
 @_noise("frame bytes", 3)
 def _frame_bytes(random: Random, table: Table) -> bytes:
-    """Draw eight bytes, many of which occur in frames: FE, FA, short lengths, known ids."""
+    """Draw eight bytes that are frequent in frames: FE, FA, short lengths, known ids."""
     return bytes(random.choices(b"\xfe\xfe\xfe\xfa\x03\x04\x0e\x12\x20", k=8))
 
 

@@ -52,7 +52,7 @@ def prepare() -> None:
 def nearest(
     geometry: Geometry, target: Pose, present: Sequence[float], limits: Limits
 ) -> Angles | None:
-    """Return the solution inside the limits that is nearest to the present angles; None if none is.
+    """Return the solution inside the limits that is nearest to the present angles, or None.
 
     Args:
         geometry: the arm.

@@ -44,9 +44,7 @@ class Axes:
     def stop_at(self, now: float) -> Point:
         """Return where the axes would stop if they braked now."""
         leg = self._at(now)
-        if leg is None:
-            return self._rest
-        return leg.braked(now - self._since, self._acceleration).end
+        return self._rest if leg is None else self._braked(leg, now).end
 
     def moving(self, now: float) -> bool:
         """Return whether the axes move."""
@@ -93,8 +91,7 @@ class Axes:
         leg = self._at(now)
         self._waiting.clear()
         if leg is not None:
-            self._leg = leg.braked(now - self._since, self._acceleration)
-            self._since = now
+            self._leg, self._since = self._braked(leg, now), now
 
     def halt(self, now: float) -> None:
         """Stop at once, like axes that nothing drives, and forget every target."""
@@ -119,9 +116,8 @@ class Axes:
             return
         self._paused = True
         if leg is not None:
-            self._leg = leg.braked(now - self._since, self._acceleration)
-            self._since = now
-            self._waiting.appendleft(self._leg.rest(self._leg.end))
+            self._leg, self._since = self._braked(leg, now), now
+            self._waiting.appendleft(self._leg.rest())
 
     def resume(self, now: float) -> None:
         """Continue towards the targets, from standstill."""
@@ -130,6 +126,9 @@ class Axes:
         self._paused = False
         if self._leg is None:
             self._start()
+
+    def _braked(self, leg: Leg, now: float) -> Leg:
+        return leg.braked(now - self._since, self._acceleration)
 
     def _at(self, now: float) -> Leg | None:
         """Return the present leg; end those that are over by now."""

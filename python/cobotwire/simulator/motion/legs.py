@@ -1,4 +1,8 @@
-"""A leg: the motion of axes to their next standstill, from standstill or at full speed."""
+"""Legs: the motion of axes to their next standstill, from standstill or at full speed.
+
+Each leg has a ``duration`` in seconds and an ``end``. Its methods return where the axes are and how
+fast each one is after a time, which leg follows if all axes brake, and what is left to do then.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +11,8 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
-from typing import Protocol
 
-from cobotwire.simulator.motion.travel import Further, Travel, braking, lasting, quickest
+from cobotwire.simulator.motion.travel import Travel, braking, lasting, quickest
 
 Point = tuple[float, ...]
 # Two steps of a route count as even if their lengths differ by less than this share.
@@ -29,34 +32,11 @@ class Plan:
     rate: float
 
 
-class Leg(Protocol):
-    """A motion of axes."""
-
-    duration: float
-    end: Point
-
-    def position(self, time: float) -> Point:
-        """Return where the axes are, at 0..duration seconds."""
-        ...
-
-    def speed(self, time: float) -> Point:
-        """Return how fast each axis is."""
-        ...
-
-    def braked(self, time: float, acceleration: float) -> Leg:
-        """Return the leg that follows when all axes brake."""
-        ...
-
-    def rest(self, end: Point) -> Plan:
-        """Return what is left to do once the axes have stopped at ``end``."""
-        ...
-
-
 class Route:
     """From standstill to standstill, along points that are close to each other.
 
     In each step, the axis with the longest way has the speed and acceleration of the route. On a
-    bent route half of the acceleration is left for the bends, so that no axis exceeds all of it.
+    bent route, half of the acceleration is reserved for the bends, so that no axis exceeds it.
     """
 
     def __init__(self, points: Sequence[Point], rate: float, acceleration: float) -> None:
@@ -68,20 +48,21 @@ class Route:
         if bend > 0:
             acceleration /= 2
             rate = min(rate, math.sqrt(acceleration / bend))
-        self._travel: Travel = quickest(0.0, self._reached[-1], rate, acceleration)
-        self._finish()
+        self._begin(0.0, quickest(0.0, self._reached[-1], rate, acceleration))
 
-    def _finish(self) -> None:
-        self.duration = self._travel.duration
-        self.end = self._at(self._travel.at(self.duration))
+    def _begin(self, start: float, travel: Travel) -> None:
+        """Travel along the route, from ``start`` units after its first point."""
+        self._start, self._travel = start, travel
+        self.duration = travel.duration
+        self.end = self.position(self.duration)
 
     def position(self, time: float) -> Point:
         """Return where the axes are."""
-        return self._at(self._travel.at(time))
+        return self._at(self._done(time))
 
     def speed(self, time: float) -> Point:
         """Return how fast each axis is."""
-        step = self._step(self._travel.at(time))
+        step = self._step(self._done(time))
         length = self._reached[step + 1] - self._reached[step]
         share = self._travel.speed(time) / length if length else 0.0
         return tuple((b - a) * share for a, b in zip(*self._points[step : step + 2]))
@@ -90,18 +71,19 @@ class Route:
         """Return the same route, braked: the axes stay on it."""
         stopped = object.__new__(Route)
         stopped.__dict__.update(self.__dict__)
-        travel = braking(self._travel.speed(time), acceleration)
-        stopped._travel = Further(self._travel.at(time), travel)
-        stopped._finish()
+        stopped._begin(self._done(time), braking(self._travel.speed(time), acceleration))
         return stopped
 
-    def rest(self, end: Point) -> Plan:
+    def rest(self) -> Plan:
         """Return the points ahead."""
-        done = self._travel.at(self.duration)
+        done = self._done(self.duration)
         ahead = [
             point for point, reached in zip(self._points, self._reached) if reached > done
         ] or [self._points[-1]]
         return Plan(tuple(ahead), self._rate)
+
+    def _done(self, time: float) -> float:
+        return self._start + self._travel.at(time)
 
     def _step(self, done: float) -> int:
         return min(max(bisect_right(self._reached, done) - 1, 0), len(self._points) - 2)
@@ -123,7 +105,7 @@ class Turn:
         self._target = target
         ways = [b - a for a, b in zip(start, target)]
         takes = max(quickest(v, way, rate, most).duration for v, way in zip(speed, ways))
-        self._travels: list[Travel] = [lasting(v, way, most, takes) for v, way in zip(speed, ways)]
+        self._travels = [lasting(v, way, most, takes) for v, way in zip(speed, ways)]
         self.duration, self.end = takes, target
 
     def position(self, time: float) -> Point:
@@ -136,9 +118,9 @@ class Turn:
 
     def braked(self, time: float, acceleration: float) -> Brake:
         """Return the leg on which each axis brakes on its own."""
-        return Brake(self.position(time), self.speed(time), self.rest(self.end), acceleration)
+        return Brake(self.position(time), self.speed(time), self.rest(), acceleration)
 
-    def rest(self, end: Point) -> Plan:
+    def rest(self) -> Plan:
         """Return the target."""
         return Plan((self._target,), self._rate)
 
@@ -166,9 +148,12 @@ class Brake:
         """Return a leg that continues to brake."""
         return Brake(self.position(time), self.speed(time), self._plan, acceleration)
 
-    def rest(self, end: Point) -> Plan:
+    def rest(self) -> Plan:
         """Return what was left before."""
         return self._plan
+
+
+Leg = Route | Turn | Brake
 
 
 def _sharpest_bend(points: Sequence[Point], reached: Sequence[float]) -> float:

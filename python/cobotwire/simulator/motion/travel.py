@@ -3,28 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Protocol
+
+# These halve 300 degrees per second to less than the resolution of a double.
+BISECTIONS = 60
 
 
-class Travel(Protocol):
-    """How far a number has moved, over time."""
-
-    @property
-    def duration(self) -> float:
-        """After how many seconds it stops."""
-        ...
-
-    def at(self, time: float) -> float:
-        """Return how far it has moved, at 0..duration."""
-        ...
-
-    def speed(self, time: float) -> float:
-        """Return how fast it is, at 0..duration."""
-        ...
-
-
-class Ramped:
+class Travel:
     """From ``speed`` over a cruising speed to standstill, over ``way``, in ``duration`` seconds.
 
     It speeds up and slows down at ``acceleration``. :func:`quickest` and :func:`lasting` find the
@@ -58,7 +42,7 @@ class Ramped:
         return self._cruise if time < self._brakes else self._braking * (self.duration - time)
 
 
-def quickest(speed: float, way: float, fastest: float, acceleration: float) -> Ramped:
+def quickest(speed: float, way: float, fastest: float, acceleration: float) -> Travel:
     """Return the travel over ``way`` that takes the least time, at ``fastest`` at most."""
     # Where it would stop if it braked now decides in which direction it cruises.
     brake = speed * abs(speed) / (2 * acceleration)
@@ -72,10 +56,10 @@ def quickest(speed: float, way: float, fastest: float, acceleration: float) -> R
     # If it turns back very near to where it would stop, it cruises at speed 0.
     cruising = max((way - ramp_up - ramp_down) / cruise, 0.0) if cruise else 0.0
     ramps = (abs(cruise - speed) + abs(cruise)) / acceleration
-    return Ramped(speed, cruise, way, acceleration, ramps + cruising)
+    return Travel(speed, cruise, way, acceleration, ramps + cruising)
 
 
-def lasting(speed: float, way: float, acceleration: float, duration: float) -> Ramped:
+def lasting(speed: float, way: float, acceleration: float, duration: float) -> Travel:
     """Return the travel over ``way`` that takes ``duration``; the quickest takes no longer."""
     # The way grows with the cruising speed, so bisection finds the speed.
     slowest = (speed - acceleration * duration) / 2
@@ -86,41 +70,16 @@ def lasting(speed: float, way: float, acceleration: float, duration: float) -> R
             slowest = cruise
         else:
             fastest = cruise
-    return Ramped(speed, cruise, way, acceleration, duration)
+    return Travel(speed, cruise, way, acceleration, duration)
 
 
-# These halve 300 degrees per second to less than the resolution of a double.
-BISECTIONS = 60
-
-
-def braking(speed: float, acceleration: float) -> Ramped:
+def braking(speed: float, acceleration: float) -> Travel:
     """Return the travel that brakes from ``speed``."""
     way = speed * abs(speed) / (2 * acceleration)
-    return Ramped(speed, 0.0, way, acceleration, abs(speed) / acceleration)
+    return Travel(speed, 0.0, way, acceleration, abs(speed) / acceleration)
 
 
 def _way_of(speed: float, cruise: float, acceleration: float, duration: float) -> float:
     changing, braking = abs(cruise - speed) / acceleration, abs(cruise) / acceleration
     cruising = duration - changing - braking
     return (speed + cruise) / 2 * changing + cruise * cruising + cruise / 2 * braking
-
-
-@dataclass(frozen=True)
-class Further:
-    """A travel that does not begin at 0."""
-
-    start: float
-    travel: Travel
-
-    @property
-    def duration(self) -> float:
-        """After how many seconds it stops."""
-        return self.travel.duration
-
-    def at(self, time: float) -> float:
-        """Return how far it has moved."""
-        return self.start + self.travel.at(time)
-
-    def speed(self, time: float) -> float:
-        """Return how fast it is."""
-        return self.travel.speed(time)

@@ -24,7 +24,7 @@ class Late(Fault):
     jitter_seconds: float = ruled(SECONDS, 0.0)
 
     def change_reply(self, reply: Reply, moment: Moment) -> Reply:
-        """Delay the reply, and leave it as it is."""
+        """Delay the reply; its bytes stay the same."""
         seconds = self.seconds + moment.random.uniform(0, self.jitter_seconds)
         moment.report(f"{seconds:.3f} s late")
         moment.delay += seconds

@@ -1,0 +1,50 @@
+"""A simulated arm, the clock that a test steps, and requests by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import strategies
+from cobotwire import codec as codecs
+from cobotwire.protocol.messages import Reply
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+
+
+class Bench:
+    """An arm of an edition, and its clock."""
+
+    def __init__(self, table: Table, *, acks: bool = True, powered: bool = True) -> None:
+        self.clock = SteppedClock()
+        self.arm = SimulatedArm(table, clock=self.clock, acks=acks)
+        self._codec = codecs.load(table, "reference")
+        if powered:
+            self.send("power_on")
+
+    def send(self, name: str, *values: Any) -> bytes:
+        return self.arm.receive(self._codec.encode(name, "request", values))
+
+    def query(self, name: str, *values: Any) -> Any:
+        """Return what a client's method would return for the reply."""
+        reply = self._codec.decode("reply", self.send(name, *values), of=name).typed
+        assert isinstance(reply, Reply)
+        return reply.result
+
+
+def check_legal_replies(
+    table: Table, requests: list[tuple[strategies.CommandVariant, Any]]
+) -> None:
+    """Check that an arm without power sends exactly the legal reply to each legal request."""
+    bench = Bench(table, powered=False)
+    codec = codecs.load(table, "reference")
+    for variant, values in requests:
+        bench.clock.sleep(0.1)
+        reply = bench.send(variant.command.name, *values)
+        command = variant.command
+        if command.text is not None:
+            assert reply.startswith(b"ssid: ")
+        elif command.reply:
+            assert codec.decode("reply", reply, of=command.name).command is command
+        else:
+            assert reply == b""
