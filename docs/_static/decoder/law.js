@@ -4,7 +4,7 @@
   const DIRECTIONS = ["request", "reply"];
 
   class Rejection extends Error {
-    // Why bytes are not a legal message; `offset` is the first wrong byte.
+    // The reason why bytes are not a legal message; `offset` is that of the first wrong byte.
     constructor(reason, offset, text) {
       super(text);
       this.reason = reason;
@@ -70,7 +70,7 @@
           return new Rejection("no-header", index, `a frame starts with ${hex(header)}`);
       }
       if (addresses.length && bytes.length >= this.at && !addresses.includes(bytes[this.at - 1]))
-        return new Rejection("bad-address", this.at - 1, `no address ${hex([bytes[this.at - 1]])}`);
+        return new Rejection("bad-address", this.at - 1, `the edition has no address ${hex([bytes[this.at - 1]])}`);
       if (bytes.length <= this.at)
         return new Rejection("truncated", bytes.length, "the bytes end before LEN");
       const length = bytes[this.at];
@@ -86,10 +86,10 @@
       if (!known)
         return new Rejection("unknown-id", this.at + 1, `the edition has no id ${hex([id])}`);
       if (!known.some((each) => each.length === length))
-        return new Rejection("bad-length", this.at, `LEN ${hex([length])} is not ${known[0].command.name}'s`);
+        return new Rejection("bad-length", this.at, `LEN ${hex([length])} is not legal for ${known[0].command.name}`);
       const end = this.at + 1 + length;
       if (bytes.length < end)
-        return new Rejection("truncated", bytes.length, `${end - bytes.length} byte(s) are missing`);
+        return new Rejection("truncated", bytes.length, `bytes missing at the end: ${end - bytes.length}`);
       const check = end - this.checkSize;
       const right = this._check(bytes.subarray(0, check));
       const same = right.every((byte, index) => byte === bytes[check + index]);
@@ -188,7 +188,7 @@
     const allowed = field.choices.length
       ? `one of ${field.choices.join(", ")}`
       : `${physical(number, number.minimum)}..${physical(number, number.maximum)}`;
-    return `${command.name}: ${field.name} is ${physical(number, raw)}, allowed: ${allowed}`;
+    return `${command.name}: ${field.name} is ${physical(number, raw)}; allowed: ${allowed}`;
   }
 
   function fieldSize(field) {

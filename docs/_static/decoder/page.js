@@ -1,11 +1,11 @@
 "use strict";
-// The page: decode what is pasted at once, and keep it in the fragment of the address, so that the
-// decoded bytes can be sent as a link.
+// The page: decode the input whenever it changes, and keep it in the fragment of the address, so
+// that a user can send it as a link.
 (function () {
   const REASONS = {
     "no-header": "no frame starts here",
     "bad-address": "a header with an address that the edition lacks",
-    "bad-length": "a header with a LEN that no such message has",
+    "bad-length": "a header with a LEN that is not legal for its id",
     "unknown-id": "a header with an id that the edition lacks",
     "bad-check": "starts like a frame, but does not end like one",
     truncated: "starts like a frame; the bytes end before it does",
@@ -17,6 +17,10 @@
   };
   const UNITS = { degree: "°", degree_celsius: " °C", millimetre: " mm", percent: " %", volt: " V",
     milliampere: " mA", hertz: " Hz", step_per_second: " steps/s", tick: " ticks" };
+
+  function counted(number, noun) {
+    return `${number} ${noun}${number === 1 ? "" : "s"}`;
+  }
 
   function element(name, attributes, ...children) {
     const made = document.createElement(name);
@@ -33,7 +37,7 @@
       bytes = cobotwire.parse(text.value);
     } catch (error) {
       output.append(element("p", { class: "problem", role: "alert" },
-        `Not hex, after ${error.offset} byte(s): ${error.message}.`));
+        `Not hex, after ${counted(error.offset, "byte")}: ${error.message}.`));
       return;
     }
     const directions = direction.value === "both" ? ["request", "reply"] : [direction.value];
@@ -50,7 +54,7 @@
     const frames = events.filter((event) => !("noise" in event)).length;
     const lost = events.reduce((sum, event) => sum + ("noise" in event ? event.size : 0), 0);
     return element("p", { class: "summary" },
-      `${bytes.length} byte(s): ${frames} frame(s), ${lost} byte(s) of noise`);
+      `${counted(bytes.length, "byte")}: ${counted(frames, "frame")}, ${counted(lost, "byte")} of noise`);
   }
 
   function noise(event, data) {
@@ -85,7 +89,7 @@
     return card;
   }
 
-  // Return for each byte of a frame what it belongs to.
+  // Return, for each byte of a frame, the part of the frame that it belongs to.
   function roles(law, reading, data) {
     const end = data.length - law.checkSize;
     const found = Array.from(data, (byte, at) => {

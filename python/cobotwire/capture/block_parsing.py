@@ -61,7 +61,7 @@ def blocks_of(file: BinaryIO, name: str) -> Iterator[Block]:
 
 
 def _take(file: BinaryIO, size: int, offset: int, within: bool = False) -> bytes:
-    """Return exactly ``size`` bytes; return no bytes at the end of the file, between two blocks."""
+    """Return exactly ``size`` bytes; none if the file ends here, unless ``within`` a block."""
     data = b""
     while len(data) < size:
         more = file.read(size - len(data))

@@ -61,11 +61,11 @@ class Side:
         return self._packets(self._framer.feed(data))
 
     def wake(self, time_ns: int) -> list[Packet]:
-        """Return as packets the bytes that have waited for more bytes longer than ``IDLE_NS``."""
+        """Return the pending bytes as packets if none arrived for ``IDLE_NS``."""
         return self.flush() if self._waiting and time_ns >= self._idle_at else []
 
     def flush(self) -> list[Packet]:
-        """Return as packets all bytes that wait for more bytes."""
+        """Return the pending bytes as packets."""
         return [] if self._framer is None else self._packets(self._framer.flush())
 
     def _packets(self, events: Iterable[Event]) -> list[Packet]:
@@ -156,7 +156,7 @@ class Recorder:
             self._write(side.feed(data, time_ns))
 
     def close(self) -> None:
-        """Write the bytes that wait for more bytes. The writer stays open.
+        """Write the pending bytes. The writer stays open.
 
         Raises:
             CaptureError: a write failed, so the recording is incomplete.

@@ -48,7 +48,7 @@ class DirectionStream:
         self._waiting = False
 
     def is_idle(self, time_ns: int) -> bool:
-        """Return whether bytes wait for more bytes, although none arrived for ``IDLE_NS``."""
+        """Return whether bytes are pending although none arrived for ``IDLE_NS``."""
         return self._waiting and time_ns >= self._times[-1][1] + IDLE_NS
 
     def feed(self, packet: Packet) -> list[Event]:

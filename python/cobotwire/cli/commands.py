@@ -45,7 +45,7 @@ def _print_reference(frame: FrameFormat, command: Command) -> None:
     for direction, variants in (("request", command.request), ("reply", command.reply)):
         for variant in variants:
             console.print(f"\n{direction}", style="bold")
-            console.print(_byte_table(frame, command, variant))
+            console.print(byte_table(frame, command, variant))
     if command.text is not None:
         pairs = zip(command.text.prefixes, command.text.fields)
         console.print("\nreply, as text without a frame", style="bold")
@@ -54,13 +54,16 @@ def _print_reference(frame: FrameFormat, command: Command) -> None:
         console.print("\nreply: none")
 
 
-def _byte_table(frame: FrameFormat, command: Command, variant: Variant) -> Grid:
+def byte_table(frame: FrameFormat, command: Command, variant: Variant) -> Grid:
+    """Return a table of the bytes of one variant of a message."""
     grid = Grid("byte", "content", "value", "meaning", box=None, pad_edge=False)
     start = len(frame.header)
     grid.add_row(f"0-{start - 1}", "header", frame.header.hex(" ").upper(), "")
-    grid.add_row(str(start), "LEN", f"{frame.length(variant.size):02X}", "")
-    grid.add_row(str(start + 1), "CMD", f"{command.id:02X}", "")
-    offset = start + 2
+    if frame.addresses:
+        grid.add_row(str(start), "address", ", ".join(f"{a:02X}" for a in frame.addresses), "")
+    grid.add_row(str(frame.length_at), "LEN", f"{frame.length(variant.size):02X}", "")
+    grid.add_row(str(frame.length_at + 1), "CMD", f"{command.id:02X}", "")
+    offset = frame.length_at + 2
     for field in variant.fields:
         for index, number in enumerate(field.cases[0].numbers):
             last = offset + number.width - 1
@@ -69,7 +72,9 @@ def _byte_table(frame: FrameFormat, command: Command, variant: Variant) -> Grid:
             ranges = [_allowed(field, case.numbers[index]) for case in field.cases]
             grid.add_row(place, name, " or ".join(ranges), field.doc)
             offset = last + 1
-    grid.add_row(str(offset), "footer", frame.footer.hex().upper(), "")
+    last = offset + frame.check_size - 1
+    place = str(offset) if last == offset else f"{offset}-{last}"
+    grid.add_row(place, frame.check, frame.footer.hex(" ").upper(), "")
     return grid
 
 

@@ -75,8 +75,8 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a 
 
         Raises:
             ProtocolError: the frame does not belong to that direction or command; a field holds a
-                value that the edition does not allow; or the edition lacks the id, which the framer
-                was told to accept.
+                value that the edition does not allow; or the framer accepted an id that the edition
+                lacks.
             UsageError: ``of`` names no command, or no framer returned the frame.
         """
         if self._read is None:

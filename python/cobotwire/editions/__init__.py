@@ -58,6 +58,6 @@ def load(name: str = DEFAULT) -> Edition:
         message = f"there is no edition {name!r}; {hint}"
         raise UsageError("edition", name, message=message) from None
     if not hasattr(package, "TABLE") or not hasattr(package, "CLIENT"):
-        message = f"{name} is not an edition; `cobotwire-gen build` makes packages that are"
+        message = f"{name} is not the package of an edition; make one with cobotwire-gen build"
         raise UsageError("edition", name, message=message)
     return cast(Edition, package)

@@ -106,14 +106,14 @@ _ROWS: tuple[Role, ...] = ("joint targets", "coordinate targets")
 
 
 def _row(variant: Variant, rule: _Rule) -> Variant:
-    """Limit a variant whose first field holds the targets of all parts."""
+    """Limit a variant in which the first field holds the targets of all parts."""
     row, *rest = variant.fields
     numbers = (rule.number(part, number) for part, number in enumerate(row.cases[0].numbers))
     return Variant((replace(row, cases=(Case((), tuple(numbers)),)), *rest))
 
 
 def _single(variant: Variant, rule: _Rule) -> Variant:
-    """Limit a variant whose first field picks the part and whose second field is its target."""
+    """Limit a variant in which the first field picks the part and the second is its target."""
     picker, target, *rest = variant.fields
     cases = []
     for part, name in enumerate(rule.names):

@@ -238,4 +238,5 @@ class Table:
             if command.role == role:
                 return command
         roles = ", ".join(sorted({command.role for command in self.commands} - {""}))
-        raise UsageError("role", role, roles)
+        message = f"edition {self.edition} has no command with the role {role!r}; it has {roles}"
+        raise UsageError("role", role, roles, message=message)

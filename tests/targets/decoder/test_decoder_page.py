@@ -132,7 +132,7 @@ def test_decoder_page_shows_the_events_of_the_codec(typed: dict[str, str], editi
             kind = f"noise at {event.offset}" if isinstance(event, Noise) else f"at {event.offset}:"
             assert kind in shown
         frames = sum(not isinstance(event, Noise) for event in events)
-        assert f"{len(data)} byte(s): {frames} frame(s)" in shown
+        assert f"{len(data)} bytes: {frames} frame{'' if frames == 1 else 's'}, " in shown
 
 
 @pytest.mark.parametrize(("pasted", "shown_text"), NOTATIONS)
@@ -145,5 +145,5 @@ def test_hex_in_any_notation_is_read_or_its_error_is_shown(
 def test_rejected_value_is_shown_at_its_bytes(typed: dict[str, str]) -> None:
     shown = typed[WRONG]
     assert "rejected" in shown
-    assert "is 7, allowed: one of 0, 1 (byte 4)" in shown
+    assert "is 7; allowed: one of 0, 1 (byte 4)" in shown
     assert 'class="byte wrong">07' in shown

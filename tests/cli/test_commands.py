@@ -1,0 +1,42 @@
+"""Check the byte table of ``cobotwire commands NAME`` for every frame format."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from cobotwire.cli.commands import byte_table
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.protocol.frame_format import Check, FrameFormat
+
+
+def rows(frame: FrameFormat) -> list[tuple[object, ...]]:
+    command = TABLE.command("get_encoder")
+    grid = byte_table(frame, command, command.request[0])
+    return list(zip(*[list(column.cells) for column in grid.columns[:3]]))
+
+
+def test_byte_table_shows_the_footer() -> None:
+    assert rows(TABLE.frame) == [
+        ("0-1", "header", "FE FE"),
+        ("2", "LEN", "03"),
+        ("3", "CMD", "3B"),
+        ("4", "joint", "1..6"),
+        ("5", "footer", "FA"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("check", "place", "length"), [("crc16-modbus", "6-7", 4), ("sum", "6", 3)]
+)
+def test_byte_table_shows_address_and_check(check: Check, place: str, length: int) -> None:
+    frame = replace(TABLE.frame, check=check, footer=b"", addresses=(1, 2))
+    assert rows(frame) == [
+        ("0-1", "header", "FE FE"),
+        ("2", "address", "01, 02"),
+        ("3", "LEN", f"{length:02X}"),
+        ("4", "CMD", "3B"),
+        ("5", "joint", "1..6"),
+        (place, check, ""),
+    ]
