@@ -11,6 +11,7 @@ from typing import IO, Literal, NamedTuple
 
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.protocol.printable import printable
 
 ByteFormat = Literal["raw", "hex"]
 
@@ -98,7 +99,7 @@ def _read(
         if format is None:
             first, format = _detect(blocks, name)
             if format == "hex":
-                notify(f"reading {name} as hex text (--raw: read it as raw bytes)")
+                notify(f"reading {printable(name)} as hex text (--raw: read it as raw bytes)")
         yield from _raw(first, blocks) if format == "raw" else _hex(first, blocks, name)
 
 

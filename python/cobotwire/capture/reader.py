@@ -14,6 +14,7 @@ from cobotwire.capture.block_parsing import Block, Fields, Truncated, blocks_of
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.capture.packet import Direction, Interface, Packet, with_comment
 from cobotwire.protocol.errors import CaptureError
+from cobotwire.protocol.printable import printable
 
 DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent", "unknown")
 MICROSECONDS = 6
@@ -92,12 +93,13 @@ class CaptureReader:
     @property
     def incomplete(self) -> str:
         """What is missing at the end, in a sentence; empty if nothing is missing."""
+        name = printable(self.name)
         if self.truncated_at is not None:
             return (
-                f"{self.name} ends in the middle of a packet; "
+                f"{name} ends in the middle of a packet; "
                 f"everything before byte {self.truncated_at} is complete"
             )
-        return "" if self.finished else f"the recording {self.name} was not finished"
+        return "" if self.finished else f"the recording {name} was not finished"
 
     def __iter__(self) -> Iterator[Packet]:
         return self

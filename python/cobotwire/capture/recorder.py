@@ -13,6 +13,7 @@ from cobotwire.capture.packet import Interface, Packet, Piece
 from cobotwire.capture.writer import CaptureWriter
 from cobotwire.codec.interface import Codec, Event, Framer, Noise
 from cobotwire.protocol.errors import CaptureError
+from cobotwire.protocol.printable import printable
 
 # An incomplete frame is written after this pause. The longest pause seen within a reply is 0.1 s;
 # a cut that is too early splits a frame into two packets, but loses no byte.
@@ -177,4 +178,4 @@ class Recorder:
             # A closed file raises ValueError.
             except (OSError, ValueError) as error:
                 self._failure = error
-                _log.error("recording to %s stopped: %s", self._name, error)
+                _log.error("recording to %s stopped: %s", printable(self._name), error)

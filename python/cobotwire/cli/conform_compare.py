@@ -11,12 +11,14 @@ from pathlib import Path
 import click
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.cli.shared.conform_report import CONFORMS, DOES_NOT, exit_if_not_testable
 from cobotwire.conformance import Report
 from cobotwire.conformance.reports import Comparison, from_json
 from cobotwire.conformance.reports import compare as compared
+from cobotwire.protocol.printable import printable
 
 STYLES = {"worse": "red", "better": "green"}
 
@@ -54,14 +56,13 @@ def _show(found: Comparison) -> None:
     for change in found.changes:
         outcomes = (change.before or "not run", change.after or "not run")
         row = (change.kind, change.command or "the line", change.case, *outcomes, change.reason)
-        table.add_row(*row, style=STYLES.get(change.kind))
+        # As plain text, because what a report quotes may look like markup.
+        table.add_row(*(Text(printable(part)) for part in row), style=STYLES.get(change.kind))
     if found.changes:
         console.print(table)
     for slower in found.times:
-        console.print(
-            f"{slower.command}: median reply {1000 * slower.before:.1f} ms before,"
-            f" {1000 * slower.after:.1f} ms after"
-        )
+        times = f"{1000 * slower.before:.1f} ms before, {1000 * slower.after:.1f} ms after"
+        console.print(Text(f"{printable(slower.command)}: median reply {times}"))
     counts = Counter(change.kind for change in found.changes)
     summary = ", ".join(f"{count} {kind}" for kind, count in counts.items())
     console.print(summary or "No verdict differs.")

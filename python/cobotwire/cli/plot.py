@@ -22,6 +22,7 @@ from cobotwire.inspect.plot import (
     series_of_packets,
 )
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.printable import printable
 
 
 @click.command(short_help="Draw a recording.")
@@ -38,14 +39,14 @@ def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> No
     """
     check_output(output)
     capture = recording_named((file,))
-    title = Path(file).name
+    title = printable(Path(file).name)
     if capture is None:
         codec = codecs.load(editions.load(edition).TABLE)
         blocks = open_bytes((file,), None, lambda text: click.echo(f"cobotwire: {text}", err=True))
         series = series_of_bytes((block for block, _ in blocks.blocks), codec)
     else:
         series, codec = _read_recording(capture, interface, edition)
-        title = f"{title}   {capture.interfaces[interface].url}".strip()
+        title = f"{title}   {printable(capture.interfaces[interface].url)}".strip()
     if not pose:
         draw_charts(series, output, title)
     elif joints := series.tracks["joints"].rows:

@@ -7,6 +7,7 @@ import sys
 
 import click
 
+from cobotwire.protocol.printable import printable
 from cobotwire.transport.serial import ports as serial_ports
 from cobotwire.transport.serial.ports import Port
 
@@ -38,10 +39,10 @@ def ports(as_json: bool) -> None:
 def _lines(port: Port) -> list[str]:
     verdict = "likely  " if port.likely else "unlikely"
     usb = f" ({port.usb})" if port.usb else ""
-    lines = [f"{port.device:<16} {verdict}  {port.why}{usb}"]
-    number = f", serial number {port.serial_number}" if port.serial_number else ""
+    lines = [f"{printable(port.device):<16} {verdict}  {port.why}{usb}"]
+    number = f", serial number {printable(port.serial_number)}" if port.serial_number else ""
     if port.description or number:
-        lines.append(f"{'':<16} {'':8}  {port.description}{number}")
+        lines.append(f"{'':<16} {'':8}  {printable(port.description)}{number}")
     if not port.accessible:
         lines.append(f"{'':<16} {'':8}  {NOT_ALLOWED}")
     return lines

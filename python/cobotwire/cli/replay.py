@@ -15,6 +15,7 @@ from cobotwire.cli.shared.serving import serve
 from cobotwire.codec.interface import Codec
 from cobotwire.diagnose.explain import format_message
 from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.printable import printable
 from cobotwire.simulator import PtyServer, ReplayedArm, ReplayedRequest
 
 FASTEST = 1e6
@@ -85,7 +86,7 @@ def _print_timeline(capture: CaptureReader, edition: str, as_json: bool) -> None
 
 def _meaning(packet: Packet, codec: Codec) -> str:
     if packet.kind == "noise":
-        return f"noise ({packet.reason})"
+        return f"noise ({printable(packet.reason)})"
     if packet.kind == "bytes" or packet.direction == "unknown":
         return "bytes"
     try:

@@ -17,6 +17,7 @@ from cobotwire.conformance.device import (
 )
 from cobotwire.conformance.report import Cause, Result, Verdict
 from cobotwire.conformance.sources import spec_lines
+from cobotwire.protocol.printable import printable
 from cobotwire.transport import open_transport
 
 
@@ -113,4 +114,4 @@ class ConformItem(pytest.Item):
 def _in_full(result: Result) -> str:
     lines = [f"{result.case} ({result.source}): {result.reason}"]
     lines += [f"  {e.at:9.4f} {e.direction:8} {e.data.hex(' ').upper()}" for e in result.evidence]
-    return "\n".join(lines)
+    return "\n".join(map(printable, lines))

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 from cobotwire.diagnose.findings import CHECK_CONTROLLER, Finding
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
+from cobotwire.protocol.printable import printable
 
 # Bytes of text; ESC starts a colour of ESP-IDF's log.
 READABLE = rb"\t\n\r\x1b -~"
@@ -49,7 +50,7 @@ class Panic(Finding):
     @property
     def failure(self) -> str | None:
         """Return the panic with its cause."""
-        return f"panic {self.cause or 'of unknown cause'}"
+        return f"panic {printable(self.cause or 'of unknown cause')}"
 
     @property
     def reboots(self) -> bool:

@@ -9,12 +9,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from cobotwire.protocol.printable import printable
+
 
 class CobotwireError(Exception):
     """The base class of every error that cobotwire raises.
 
-    Errors keep their attributes when they are pickled, for example between processes.
+    Errors keep their attributes when they are pickled, for example between processes. The text of
+    an error is printable, whatever it quotes; the attributes are as they were given.
     """
+
+    def __init__(self, *lines: str) -> None:
+        super().__init__("\n".join(map(printable, lines)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (type(self), self.args), self.__dict__
@@ -157,7 +163,7 @@ class ScenarioError(CobotwireError, ValueError):
 
     def __init__(self, problems: Sequence[str]) -> None:
         self.problems = tuple(problems)
-        super().__init__("\n".join(self.problems))
+        super().__init__(*self.problems)
 
 
 def _short(value: Any, limit: int = 80) -> str:

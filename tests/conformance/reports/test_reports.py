@@ -13,6 +13,7 @@ from cobotwire.conformance import Cause, Exchange, Report, Result, Verdict
 from cobotwire.conformance.reports import compare, from_json, to_html, to_json, to_junit
 from cobotwire.conformance.reports.matrix import GRAVEST, matrix
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.printable import printable
 
 # The causes that go with each verdict.
 OUTCOMES = [
@@ -101,14 +102,9 @@ def test_page_shows_every_cell_and_result_and_loads_nothing(report: Report) -> N
     assert page.loads == []
     assert page.scripts == 1, "what a device sends is text, never a script"
     for result in report.results:
-        assert _shown(result.reason).strip() in page.text
+        assert printable(result.reason).strip() in page.text
         for exchange in result.evidence:
             assert report.kind == "codec" or exchange.data.hex(" ").upper() in page.text
-
-
-def _shown(text: str) -> str:
-    """Return a text as a page's parser reads it: with one kind of line end."""
-    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 @given(REPORTS)

@@ -13,12 +13,15 @@ from typing import Any
 import click
 
 from cobotwire.capture.file_errors import unusable_file
-from cobotwire.cli.shared.output import as_hex
 from cobotwire.conformance import Report
 from cobotwire.conformance.reports import to_html, to_json, to_junit
+from cobotwire.conformance.reports.evidence import shown
 from cobotwire.protocol.errors import CobotwireError
+from cobotwire.protocol.printable import printable
 
 CONFORMS, DOES_NOT, NOT_TESTABLE = 0, 1, 2
+# The first characters of an exchange that are printed: 67 bytes in hex.
+SHOWN = 200
 
 
 @contextmanager
@@ -95,13 +98,14 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
     echo = partial(click.echo, err=to_stderr)
     for result in report.failures:
         echo(f"{result.outcome.upper():8} {result.case:20} {result.command:24}")
-        echo(f"         {result.reason}")
+        echo(f"         {printable(result.reason)}")
         for exchange in result.evidence:
-            is_text = report.kind == "codec"
-            data = exchange.data[:200].decode() if is_text else as_hex(exchange.data[:64])
+            data = printable(shown(report, exchange)[:SHOWN])
             echo(f"         {exchange.at:9.4f} {exchange.direction} {data}")
     counts = Counter(result.outcome for result in report.results)
     summary = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
-    echo(f"{report.subject}, edition {report.edition}: {summary or 'nothing was tested'}")
+    echo(
+        f"{printable(report.subject)}, edition {report.edition}: {summary or 'nothing was tested'}"
+    )
     if not report.finished:
         echo("The run was interrupted before its end.")

@@ -10,6 +10,8 @@ from typing import Any
 import click
 from rich.console import Console
 
+from cobotwire.protocol.printable import printable
+
 WIDTH_OF_FILES = 200
 
 
@@ -54,5 +56,8 @@ def as_json_value(value: Any) -> Any:
 def format_result(value: Any) -> str:
     """Format a result on one line, for people."""
     if hasattr(value, "_asdict"):
-        return "  ".join(f"{name}={part}" for name, part in value._asdict().items())
-    return value.name if isinstance(value, IntEnum) else str(value)
+        text = "  ".join(f"{name}={part}" for name, part in value._asdict().items())
+    else:
+        text = value.name if isinstance(value, IntEnum) else str(value)
+    # A text reply holds whatever the arm sent.
+    return printable(text)

@@ -11,6 +11,7 @@ from typing import Any
 from cobotwire.cli.shared.output import as_hex, as_json_value
 from cobotwire.codec.interface import Noise
 from cobotwire.diagnose.explain import format_message
+from cobotwire.protocol.printable import printable
 from cobotwire.session.device import DeviceEvent, MalformedRequest, RequestReceived
 from cobotwire.simulator.arm import Note
 from cobotwire.simulator.faults import AppliedFault
@@ -38,7 +39,7 @@ class Lines:
 
     def fault(self, client: int | None, done: AppliedFault) -> str:
         """Format a fault that a scenario injected."""
-        return self._line(client, "fault", str(done))
+        return self._line(client, "fault", printable(str(done)))
 
     def note(self, note: Note) -> str:
         """Format why the arm ignored a request."""

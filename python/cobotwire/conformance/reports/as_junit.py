@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from xml.etree import ElementTree
 
 from cobotwire.conformance.report import Report, Result, Verdict
 from cobotwire.conformance.reports.evidence import evidence_lines
 from cobotwire.conformance.reports.matrix import Cell, case_ids, matrix
-
-# XML 1.0 cannot express these characters.
-NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+from cobotwire.protocol.printable import printable
 
 
 def to_junit(report: Report) -> str:
@@ -31,16 +28,16 @@ def _suite(report: Report, case: str, cells: list[Cell]) -> ElementTree.Element:
     verdicts = [cell.verdict for cell in cells]
     suite = ElementTree.Element(
         "testsuite",
-        name=f"{report.edition}.{case}",
+        name=printable(f"{report.edition}.{case}"),
         tests=str(len(cells)),
         failures=str(verdicts.count(Verdict.FAIL)),
         errors="0",
         skipped=str(verdicts.count(Verdict.INCONCLUSIVE)),
-        timestamp=report.started,
+        timestamp=printable(report.started),
     )
     properties = ElementTree.SubElement(suite, "properties")
     for name in ("kind", "subject", "edition", "firmware"):
-        value = _in_xml(getattr(report, name))
+        value = printable(getattr(report, name))
         ElementTree.SubElement(properties, "property", name=name, value=value)
     for cell in cells:
         suite.append(_entry(report, cell))
@@ -48,32 +45,32 @@ def _suite(report: Report, case: str, cells: list[Cell]) -> ElementTree.Element:
 
 
 def _entry(report: Report, cell: Cell) -> ElementTree.Element:
-    name = cell.command or "the line"
-    entry = ElementTree.Element("testcase", classname=f"{report.edition}.{cell.case}", name=name)
+    name = printable(cell.command or "the line")
+    place = printable(f"{report.edition}.{cell.case}")
+    entry = ElementTree.Element("testcase", classname=place, name=name)
     shown = cell.gravest
     if shown.verdict is Verdict.FAIL:
-        failure = ElementTree.SubElement(entry, "failure", message=_in_xml(shown.reason))
+        failure = ElementTree.SubElement(entry, "failure", message=printable(shown.reason))
         failure.set("type", shown.outcome)
-        failure.text = _in_xml(_in_full(report, shown))
+        failure.text = _in_full(report, shown)
     elif shown.verdict is Verdict.INCONCLUSIVE:
-        ElementTree.SubElement(entry, "skipped", message=_in_xml(shown.reason))
+        ElementTree.SubElement(entry, "skipped", message=printable(shown.reason))
     return entry
 
 
 def _in_full(report: Report, result: Result) -> str:
     source = [f"required by {result.source}"] if result.source else []
-    return "\n".join([result.reason, *source, *evidence_lines(report, result)])
+    lines = [result.reason, *source, *evidence_lines(report, result)]
+    # XML cannot express control characters at all.
+    return "\n".join(map(printable, lines))
 
 
 def _unfinished(report: Report) -> ElementTree.Element:
+    name = printable(f"{report.edition}.run")
     suite = ElementTree.Element(
-        "testsuite", name=f"{report.edition}.run", tests="1", failures="0", errors="1", skipped="0"
+        "testsuite", name=name, tests="1", failures="0", errors="1", skipped="0"
     )
-    entry = ElementTree.SubElement(suite, "testcase", classname=f"{report.edition}.run", name="run")
+    entry = ElementTree.SubElement(suite, "testcase", classname=name, name="run")
     message = "the run was interrupted"
     ElementTree.SubElement(entry, "error", message=message, type="interrupted")
     return suite
-
-
-def _in_xml(text: str) -> str:
-    return NOT_IN_XML.sub("\ufffd", text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cobotwire.conformance.report import Exchange, Report, Result
+from cobotwire.protocol.printable import printable
 
 
 def shown(report: Report, exchange: Exchange) -> str:
@@ -17,6 +18,6 @@ def shown(report: Report, exchange: Exchange) -> str:
 def evidence_lines(report: Report, result: Result) -> Iterator[str]:
     """Yield a line for each exchange: seconds, direction, bytes, note."""
     for exchange in result.evidence:
-        note = f"   {exchange.note}" if exchange.note else ""
-        text = shown(report, exchange)
+        note = f"   {printable(exchange.note)}" if exchange.note else ""
+        text = printable(shown(report, exchange))
         yield f"{exchange.at:10.4f} {exchange.direction:8} {text}{note}"

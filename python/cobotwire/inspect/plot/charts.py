@@ -80,7 +80,8 @@ def _figure(series: Series, title: str) -> Figure:
     timed = series.axis == "seconds"
     all_axes[-1].set_xlabel("time, s" if timed else "offset in the stream, bytes (no times)")
     figure.align_ylabels(all_axes)
-    figure.suptitle(title, fontsize=11)
+    # A file name or a port may hold what looks like a formula.
+    figure.suptitle(title, fontsize=11, parse_math=False)
     return figure
 
 
