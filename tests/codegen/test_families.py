@@ -23,7 +23,7 @@ from cobotwire_codegen.render.vectors_json import plain
 HERE = Path(__file__).parent / "families"
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 
-# Frames that pymycobot 4.0.7's MyBuddy writes: the limb, the call, its frame.
+# Frames that pymycobot 4.0.7's MyBuddy writes: limb, method, arguments, frame.
 BUDDY = [
     (0, "power_on", (), "FE FE 00 02 10 10"),
     (1, "power_on", (), "FE FE 01 02 10 10"),
@@ -88,8 +88,8 @@ def test_frame_with_an_address_is_encoded_and_decoded(
     message = used.decode("request", bytes.fromhex(frame))
     assert (message.address, message.command.name, message.values) == (limb, name, values)
     framer = used.framer("request")
-    heard = [e for e in framer.feed(b"\xfe" + bytes.fromhex(frame)) if isinstance(e, Frame)]
-    assert [event.offset for event in heard] == [1]
+    events = framer.feed(b"\xfe" + bytes.fromhex(frame))
+    assert [event.offset for event in events if isinstance(event, Frame)] == [1]
 
 
 @pytest.mark.parametrize("name", ["mercury", "mybuddy"])

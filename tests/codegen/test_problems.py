@@ -61,7 +61,7 @@ def test_every_code_is_shown_by_a_bad_spec() -> None:
         for case in (*BAD["one_file"], *BAD["delta"])
         for line in case["problems"]
     }
-    # Shown below, and among the waivers of diff: these are not about one spec's content.
+    # Other tests show these codes, because the content of a single spec cannot cause them.
     elsewhere = {"no-edition", "unreadable", "unknown-rule"}
     assert set(CODES) - elsewhere == shown
 

@@ -1,4 +1,4 @@
-"""The published edition: ``edition.json`` and ``cobotwire-gen model`` have one format."""
+"""``edition.json`` and ``cobotwire-gen model`` publish an edition in one format."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cobotwire_codegen.errors import Place
 from cobotwire_codegen.publish import edition_json
 
 EDITIONS = ("mycobot", "mycobot280")
-# The document has the places of commands and types, not those of fields, enum members and texts.
+# The document has the places of commands and types, but not those of fields, members and texts.
 WITHOUT_PLACE = ("Field", "Member", "Text", "ReadBack")
 
 

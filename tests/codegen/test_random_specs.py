@@ -60,7 +60,7 @@ def test_random_protocol_is_generated_and_agrees_in_all_codecs(
         assert vector.frame is not None
         values = _values(edition, vector)
         for codec in (reference, native):
-            # The generator's own, exact encoder computed the vector's frame.
+            # The generator's exact encoder computed the vector's frame.
             assert codec.encode(vector.command, vector.direction, values) == vector.frame
             message = codec.decode(vector.direction, vector.frame, of=vector.command)
             assert message.values == values
@@ -86,15 +86,15 @@ def test_simulated_arm_of_a_random_protocol_sends_legal_replies(
         if vector.direction != "request":
             continue
         assert vector.frame is not None
-        answer = arm.receive(vector.frame)
+        reply = arm.receive(vector.frame)
         if table.command(vector.command).answers:
-            message = codec.decode("reply", answer, of=vector.command)
+            message = codec.decode("reply", reply, of=vector.command)
             given_values = dict(zip((n for n, _ in vector.values), _values(edition, vector)))
             for field in message.variant.fields:
                 if field.echo:
                     assert message.fields[field.name] == given_values[field.name]
         else:
-            assert answer == b""
+            assert reply == b""
 
 
 def test_generated_code_passes_mypy_strict(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The spec beside what is known of the document."""
+"""The spec agrees with the protocol document: its examples, its lines, its mistakes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cobotwire_codegen.model import Quantity
 
 SHARED = vectors.ROOT.parent / "shared" / "protocol"
 needs_shared = pytest.mark.skipif(
-    not SHARED.is_dir(), reason="the protocol document lies beside the repository, not in it"
+    not SHARED.is_dir(), reason="the protocol document is not part of the repository"
 )
 
 

@@ -1,5 +1,5 @@
-"""From a protocol in YAML to a typed Python API, its reference and its tables.
+"""Generates a typed Python API, its reference and its tables from a protocol in YAML.
 
-The flow is one way: ``load`` (YAML to nodes that know their place), ``build`` (nodes to the model),
+Data flows one way: ``load`` (YAML to nodes that know their place), ``build`` (nodes to the model),
 ``check`` (the model against its rules), ``render`` (the model to text), ``emit`` (text to files).
 """

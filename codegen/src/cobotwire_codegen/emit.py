@@ -1,4 +1,4 @@
-"""Write generated text to files, or compare it with the files."""
+"""Writes generated text to files, or compares it with the files."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def compare(target: Target) -> Iterator[Stale]:
 
 
 def foreign(target: Target) -> list[Path]:
-    """Return the files that writing would delete although no generator made them."""
+    """Return the files that ``write`` would delete although they were not generated."""
     left_over = (stale.path for stale in compare(target) if stale.kind == "left over")
     return [path for path in left_over if MARK not in path.read_bytes()[:2000]]
 

@@ -163,7 +163,7 @@ def exact(text: str) -> Fraction:
 
 
 def _whole(text: str) -> int:
-    """Return a whole number as YAML 1.2 reads it: a leading 0 alone has no meaning."""
+    """Return a whole number as YAML 1.2 reads it: a leading 0 does not mean octal."""
     digits = text.replace("_", "")
     bases = {"0x": 16, "0o": 8, "0b": 2}
     return int(digits, bases.get(digits.lstrip("+-")[:2].lower(), 10))

@@ -1,4 +1,4 @@
-"""Lower the model to the table that codecs interpret: types resolved, scales as integer pairs."""
+"""Lowers the model to the table that codecs interpret: types resolved, scales as integer pairs."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def labels(type: Type) -> tuple[str, ...]:
 
 
 def cases(field: Field) -> Iterator[tuple[tuple[int, ...], Type]]:
-    """Yield the field's types with the selector values that pick them; neighbours are joined."""
+    """Yield the field's types, each with its selector values; adjacent equal types are joined."""
     if not field.selector:
         yield (), field.type
     for type, group in groupby(field.cases, key=lambda case: case[1]):
@@ -95,13 +95,15 @@ def message_class(command: str) -> str:
 
 
 def notes(command: Command) -> tuple[str, ...]:
-    """Return the notes of a command, its disputes among them."""
+    """Return the notes of a command, including its disputes."""
     return (*command.notes, *(dispute_note(dispute) for dispute in command.disputed))
 
 
 def dispute_note(dispute: Dispute) -> str:
-    """Return a dispute in one sentence."""
-    return f"Disputed: {dispute.claim} Read: {dispute.reading} (confidence {dispute.confidence})."
+    """Return a dispute as a note."""
+    return (
+        f"Disputed: {dispute.claim} Read as: {dispute.reading} (confidence {dispute.confidence})."
+    )
 
 
 def selector(field: Field, variant: tuple[Field, ...]) -> int:

@@ -1,4 +1,4 @@
-"""Find this project's spec, and list the files that are generated from it."""
+"""Finds this project's spec, and lists the files that are generated from it."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _every_vectors(found: Sequence[Edition]) -> Files:
     return {path: text for edition in found for path, text in render_vectors(edition).items()}
 
 
-# Build products by their folder: git ignores them, so each user generates those needed.
+# Build products by their folder. Git ignores them; users generate the ones that they need.
 PRODUCTS: dict[str, Callable[[Sequence[Edition]], Files]] = {
     "rust/core/tests/data": _every_vectors,
     "targets/c": _every_c,

@@ -1,8 +1,8 @@
-"""Write an edition as one versioned JSON document, for our package and tools in any language.
+"""Writes an edition as one versioned JSON document, for our package and tools in any language.
 
 ``edition.json`` in a generated package and the output of ``cobotwire-gen model`` have the same
-format; the latter has more sections. ``version`` counts up when a reader of the old format could
-misread the new one. Keys that a record leaves out have the default that ``docs/targets.md`` names.
+format; the latter has more sections. ``version`` increases when a reader of the old format could
+misread the new one. ``docs/targets.md`` lists the defaults of keys that a record leaves out.
 Exact numbers that are not integers are strings: ``"1/100"``.
 """
 
@@ -45,7 +45,7 @@ def edition_json(edition: Edition, *, complete: bool = False) -> str:
 
     Args:
         edition: the checked edition.
-        complete: with the sections that no codec needs: sources, errata, changes and vectors.
+        complete: add the sections that no codec needs: sources, errata, changes and vectors.
     """
     document = _document(edition)
     if complete:
@@ -210,7 +210,7 @@ def _quantity(type: Quantity) -> Record:
 
 
 def _given(**record: Any) -> Record:
-    """Return a record without empty and False values: readers take the default."""
+    """Return a record without empty and False values; readers use the defaults."""
     return {key: value for key, value in record.items() if value or type(value) is int}
 
 

@@ -1,7 +1,7 @@
-"""Reads one mapping of the spec by its description; whatever does not fit becomes a problem.
+"""Reads one mapping of the spec by its description, and reports what does not fit as problems.
 
-A reader never stops at the first problem: it notes the problem and returns a harmless stand-in, so
-that one run reports everything that is wrong.
+A reader does not stop at the first problem: it records the problem and returns a harmless stand-in,
+so that one run reports every problem.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 class Reader:
-    """One mapping of the spec. Its keys are compared at once, its values when they are read.
+    """Reads one mapping of the spec. Checks its keys at once, and its values when they are read.
 
     ``what`` names the mapping in messages: "the command send_angle".
     """
@@ -46,7 +46,7 @@ class Reader:
                 self.problem(key.absent, f"{self.what} lacks the key {name}")
 
     def problem(self, code: str, message: str, place: Place | None = None) -> None:
-        """Note a problem."""
+        """Record a problem."""
         self.problems.append(Problem(place or self.place, code, message))
 
     def get(self, key: Key[T]) -> T:
@@ -62,13 +62,13 @@ class Reader:
         return self._node.entries.get(key.name)
 
     def place_of(self, key: Key[Any]) -> Place:
-        """Return where the value of a key stands; the place of the mapping if it is left out."""
+        """Return the place of a key's value; that of the mapping if the key is left out."""
         node = self.node(key)
         return self.place if node is None else node.place
 
 
 def chosen(node: Node, choice: Choice, what: str, problems: list[Problem]) -> str | None:
-    """Return the one key that says which change a node is; note a problem if there is not one."""
+    """Return the key that decides the kind of a change; report a problem unless there is one."""
     if not isinstance(node, Mapping):
         Reader(node, choice, what, problems)
         return None

@@ -1,7 +1,7 @@
-"""Build frames from the model with exact arithmetic: the third, independent encoder.
+"""Builds frames from the model with exact arithmetic: the third, independent encoder.
 
-The codecs interpret the generated table; this one reads the spec's own model, so a mistake in
-lowering shows as a vector that fails.
+The codecs interpret the generated table, but this encoder reads the model. So a mistake in lowering
+makes a vector fail.
 """
 
 from __future__ import annotations
@@ -92,21 +92,21 @@ def encode_value(type: Type, name: str, value: object) -> bytes:
 def _quantity(type: Quantity, name: str, value: object) -> bytes:
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
         raise ValueError(f"{name} must be a number")
-    whole = Fraction(value) / type.scale
-    if type.choices and whole not in type.choices:
-        raise ValueError(f"{name} is {value}, none of {', '.join(map(str, type.choices))}")
+    raw = Fraction(value) / type.scale
+    if type.choices and raw not in type.choices:
+        raise ValueError(f"{name} is {value}; allowed: {', '.join(map(str, type.choices))}")
     lowest, highest = type.bounds
-    if not lowest <= whole <= highest:
+    if not lowest <= raw <= highest:
         raise ValueError(
-            f"{name} is {value}, outside {lowest * type.scale}..{highest * type.scale}"
+            f"{name} is {value}; allowed: {lowest * type.scale}..{highest * type.scale}"
         )
-    return _word(type.wire, whole, name)
+    return _word(type.wire, raw, name)
 
 
-def _word(wire: Wire, whole: Fraction, name: str) -> bytes:
-    if whole.denominator != 1:
-        raise ValueError(f"{name} falls between two steps of the wire")
-    return int(whole % 256**wire.width).to_bytes(wire.width, wire.order)
+def _word(wire: Wire, raw: Fraction, name: str) -> bytes:
+    if raw.denominator != 1:
+        raise ValueError(f"{name} is not a multiple of its scale")
+    return int(raw % 256**wire.width).to_bytes(wire.width, wire.order)
 
 
 def size(type: Type) -> int:

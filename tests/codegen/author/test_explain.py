@@ -46,7 +46,7 @@ def _described() -> Iterator[str]:
 
 
 def _emitted() -> set[str]:
-    """Return the codes in the sources and in the description, and those that ``find`` makes."""
+    """Return the codes in the sources and in the description, and those that ``find`` composes."""
     found = set(_described()) - {""}
     for name, call in _calls():
         code = CODE_ARGUMENT.get(name)

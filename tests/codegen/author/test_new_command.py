@@ -1,4 +1,4 @@
-"""A new command is checked, added to the right files, and changes nothing else."""
+"""``new-command`` checks a new command, adds it to the right files, and changes nothing else."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_new_command_is_inserted_into_the_middle_of_a_one_file_protocol(tmp_path
 
 def test_new_command_can_be_added_to_a_protocol_from_init(tmp_path: Path) -> None:
     samples.run(tmp_path, "init", "oven")
-    words = ["--request", "mode:mode", "--reply", "taken:flag"]
+    words = ["--request", "mode:mode", "--reply", "accepted:flag"]
     assert _new(tmp_path, "oven.yaml", *SETTING, *words)[0] == 0
     assert samples.run(tmp_path, "check", "oven.yaml").returncode == 0
 
@@ -83,13 +83,13 @@ WRONG = {
     "a name in use": (["--name", "move"], "duplicate-"),
     "no name": (["--name", "x # y"], "a method's name"),
     "a keyword": (["--name", "class"], "bad-name"),
-    "a query without a reply": (["--safety", "query"], "mute-query"),
+    "a query without a reply": (["--safety", "query"], "query-without-reply"),
     "an unknown type": (["--request", "joint:jiont"], "did you mean joint?"),
     "an unknown class": (["--safety", "seting"], "did you mean setting?"),
     "no field": (["--request", "joint"], "joint is not"),
     "another frame": (["--vector", "FE FE 02 71 FA"], "is not the described request"),
     "no hex": (["--vector", "FE F"], "vector"),
-    "a value outside": (["--request", "j:joint", "--values", "j: 9"], "outside 1..2"),
+    "a value outside": (["--request", "j:joint", "--values", "j: 9"], "allowed: 1..2"),
     "another field": (["--request", "j:joint", "--values", "k: 1"], "vector"),
     "no number": (["--id", "seven"], "0x7E"),
 }

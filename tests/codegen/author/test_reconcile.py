@@ -1,4 +1,4 @@
-"""``reconcile`` finds exactly the frames on a line that the edition lacks."""
+"""``reconcile`` finds exactly the frames of a capture that the edition lacks."""
 
 from __future__ import annotations
 

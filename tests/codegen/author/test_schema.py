@@ -30,11 +30,11 @@ class Corpus(NamedTuple):
     walk: Walk
 
     def files(self) -> list[Path]:
-        """Yield every file of the editions."""
+        """Return every file of the editions."""
         return sorted(path for path in self.root.rglob("*.yaml") if "tests" not in path.parts[-3:])
 
     def load(self, path: Path) -> Node:
-        """Load a file, named as the readers name it."""
+        """Return the root node of a file; messages name the file relative to the corpus."""
         return load(path, path.relative_to(self.root).as_posix())
 
 
@@ -97,11 +97,11 @@ def _mutated(tmp_path: Path, kind: str, change: str) -> tuple[list[str], list[st
         holder = holder[step]
     holder["zz_unknown" if isinstance(item, Closed) else item.path[-1]] = change
     messages = [error.message for error in corpus.walk.validator.iter_errors(data)]
-    copy = Path(shutil.copytree(corpus.root, tmp_path / "spoilt"))
+    copy = Path(shutil.copytree(corpus.root, tmp_path / "changed"))
     # JSON is YAML.
     (copy / path.relative_to(corpus.root)).write_text(json.dumps(data, indent=1))
     codes: set[str] = set()
-    # The file's own edition first: it reports most, and building takes time.
+    # Build the file's own edition first: it reports the most problems, and building takes time.
     for edition in sorted(
         corpus.editions, key=lambda e: not path.is_relative_to(e.with_suffix(""))
     ):

@@ -1,4 +1,4 @@
-"""``diff`` reports a change of any field of the model, single or at random."""
+"""``diff`` reports a change of any field of the model, alone or among random changes."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def test_diff_finds_a_change_of_any_field(record: type, field: str) -> None:
                 new = changed(small(file), path)
                 assert diff(small(file), new), path
                 assert diff(new, small(file)), path
-    assert met, "the small spec must have one of everything"
+    assert met, "the small spec must use every field of the model"
 
 
 @given(st.lists(st.integers(0, 10_000), min_size=1, max_size=4))

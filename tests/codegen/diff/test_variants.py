@@ -60,7 +60,7 @@ CASES = {
             "addition argument-added-optional request/more",
         ],
     ),
-    "renamed, the optional one went": (
+    "renamed, the optional one removed": (
         ["channel, level, more?"],
         ["channel, lvl"],
         ["wire argument-removed request/more", "api argument-renamed request/lvl"],
@@ -82,7 +82,7 @@ CASES = {
             "addition argument-added-optional request/more",
         ],
     ),
-    "a variant is longer, another goes without": (
+    "one variant is longer, another lacks the new argument": (
         ["channel", "pin pin, channel"],
         ["channel", "pin pin, channel, more"],
         [

@@ -47,7 +47,7 @@ class Judge:
         self._document = document
         self._peer = peer
         self._messages = messages(edition)
-        self._bits = Tables(edition).whole_bits
+        self._bits = Tables(edition).raw_bits
         self._index = {
             (message.command.name, message.direction, message.number): index
             for index, message in enumerate(self._messages)
@@ -57,9 +57,9 @@ class Judge:
         """Compare every message, rejected value, malformed frame and stream."""
         parts = {
             "messages": (self._message, self._document["messages"]),
-            "refused": (
-                self._refused,
-                [r for r in self._document["refused"] if self._fits_struct(r)],
+            "rejected": (
+                self._rejected,
+                [r for r in self._document["rejected"] if self._fits_struct(r)],
             ),
             "malformed": (self._malformed, self._document["malformed"]),
             "streams": (self._stream, self._document["streams"]),
@@ -70,7 +70,7 @@ class Judge:
             for record in records
             for difference in judge(record)
         ]
-        fields = sum(len(f["whole"]) for r in self._document["messages"] for f in r["fields"])
+        fields = sum(len(f["raw"]) for r in self._document["messages"] for f in r["fields"])
         count = sum(len(records) for _, records in parts.values())
         return Comparison(count, fields, differences)
 
@@ -81,21 +81,21 @@ class Judge:
         """Return whether the struct can hold the rejected value: no constant, and not too large."""
         found = self._messages[self._place(record)].members
         field = next(field for field in record["fields"] if field["name"] == record["field"])
-        fits = -(2 ** (self._bits - 1)) <= field["whole"][record["element"]] < 2 ** (self._bits - 1)
+        fits = -(2 ** (self._bits - 1)) <= field["raw"][record["element"]] < 2 ** (self._bits - 1)
         return fits and next(m for m in found if m.field.name == record["field"]).count > 0
 
     def _message(self, record: Record) -> Iterator[str]:
         index, data = self._place(record), bytes.fromhex(record["bytes"])
-        wholes, values = self._given(record, "whole"), self._given(record, "value")
-        yield from _unequal("built", self._peer.encode(index, wholes), data)
+        raw, values = self._given(record, "raw"), self._given(record, "value")
+        yield from _unequal("built", self._peer.encode(index, raw), data)
         yield from _unequal("built of values", self._peer.encode_values(index, values), data)
-        yield from _unequal("read", self._peer.decode(index, data), Read(index, wholes, values))
+        yield from _unequal("read", self._peer.decode(index, data), Read(index, raw, values))
         found = self._peer.read(record["direction"], data)
         name = self._messages[found.message].command.name if isinstance(found, Read) else found
         yield from _unequal("read as", name, record["read_as"])
 
-    def _refused(self, record: Record) -> Iterator[str]:
-        found = self._peer.encode(self._place(record), self._given(record, "whole"))
+    def _rejected(self, record: Record) -> Iterator[str]:
+        found = self._peer.encode(self._place(record), self._given(record, "raw"))
         yield from _unequal("built", self._where(found), (record["field"], record["element"]))
 
     def _where(self, found: bytes | Outcome) -> object:

@@ -77,7 +77,7 @@ def _from_physical(p: str, message: Message) -> Iterator[str]:
         helper = _helper(p, type, "from")
         # No field allows the largest number, so it marks a value that has no raw value.
         scaled = f"if (!{helper}(in[{index}], &{where})) {where} = INT32_MAX;"
-        plain = f"{where} = ({p}_whole_t)in[{index}];"
+        plain = f"{where} = ({p}_raw_t)in[{index}];"
         yield f"{_condition(message, member, when)}{{ {scaled if helper else plain} }}"
 
 

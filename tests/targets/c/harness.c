@@ -63,8 +63,8 @@ static void give_numbers(unsigned message, const P(any_t) *any)
     to_physical(message, any, physical);
     give_u16(COUNTS[message]);
     for (i = 0; i < COUNTS[message]; i++) {
-        const int64_t whole = any->numbers[i];
-        give(&whole, sizeof whole);
+        const int64_t raw = any->numbers[i];
+        give(&raw, sizeof raw);
         give(&physical[i], sizeof physical[i]);
     }
 }
@@ -83,10 +83,10 @@ static void encode(bool from_values)
         exit(3);
     }
     for (i = 0; i < COUNTS[message]; i++) {
-        int64_t whole;
-        take(from_values ? (void *)&physical[i] : (void *)&whole, 8);
+        int64_t raw;
+        take(from_values ? (void *)&physical[i] : (void *)&raw, 8);
         if (!from_values) {
-            any.numbers[i] = (P(whole_t))whole;
+            any.numbers[i] = (P(raw_t))raw;
         }
     }
     if (from_values) {

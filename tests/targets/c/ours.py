@@ -73,10 +73,10 @@ class CodecSide:
         variants = found.command.variants(found.direction)
         number = next(i for i, variant in enumerate(variants) if variant is found.variant)
         index = self.index[found.command.name, found.direction, number]
-        wholes = found.variant.unpack(self.codec.table.frame.data(data))
+        raw_values = found.variant.unpack(self.codec.table.frame.data(data))
         return peer.Read(
             index,
-            [int(whole) for whole in self.flat(index, wholes)],
+            [int(raw) for raw in self.flat(index, raw_values)],
             [float(value) for value in self.flat(index, found.values)],
         )
 

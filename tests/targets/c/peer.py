@@ -38,7 +38,7 @@ class Read(NamedTuple):
     """A decoded message: its index, its raw values, its physical values."""
 
     message: int
-    wholes: list[int]
+    raw_values: list[int]
     values: list[float]
 
 
@@ -75,10 +75,10 @@ class CPeer:
         assert self._process.returncode == 0, errors.decode()
 
     def encode(
-        self, message: int, wholes: Iterable[int], address: int = 0, room: int = 300
+        self, message: int, raw_values: Iterable[int], address: int = 0, room: int = 300
     ) -> bytes | Outcome:
         """Build a frame from raw values."""
-        return self._encode(b"w", message, list(wholes), address, room, "q")
+        return self._encode(b"w", message, list(raw_values), address, room, "q")
 
     def encode_values(
         self, message: int, values: Iterable[float], address: int = 0
@@ -115,7 +115,7 @@ class CPeer:
         if outcome.status != "ok":
             return outcome
         numbers = [struct.unpack("=qd", self._take(16)) for _ in range(self._u16())]
-        return Read(message, [whole for whole, _ in numbers], [value for _, value in numbers])
+        return Read(message, [raw for raw, _ in numbers], [value for _, value in numbers])
 
     def events(
         self,

@@ -235,9 +235,9 @@ def test_too_small_buffer_is_rejected_and_not_overrun(
 ) -> None:
     for number, message in enumerate(ours.messages):
         size = message.size + 5
-        wholes = [0] * message.count
-        short = peer.encode(number, wholes, room=size - 1)
+        raw_values = [0] * message.count
+        short = peer.encode(number, raw_values, room=size - 1)
         assert not isinstance(short, bytes)
         assert short.status == "no-room"
-        enough = peer.encode(number, wholes, room=size)
+        enough = peer.encode(number, raw_values, room=size)
         assert isinstance(enough, bytes) or enough.status == "bad-value"

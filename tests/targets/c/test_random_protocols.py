@@ -48,7 +48,7 @@ def test_random_protocol_runs_in_c(tmp_path: Path, data: st.DataObject) -> None:
             found = peer.decode(index, frame)
             assert isinstance(found, Read)
             assert found == ours.read(vector.direction, frame)
-            assert peer.encode(index, found.wholes, address) == frame
+            assert peer.encode(index, found.raw_values, address) == frame
             assert peer.encode_values(index, ours.flat(index, message.values), address) == frame
         for _ in range(8):
             _any_bytes(data, frames, ours, peer)

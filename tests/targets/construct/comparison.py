@@ -32,7 +32,7 @@ def compare(edition: str, declared: dict[Key, Any] | None = None) -> Comparison:
         differences += [f"{record['name']}: {text}" for text in _message(record, declaration)]
     for record in document["malformed"]:
         differences += [f"{record['name']}: {text}" for text in _malformed(record, declared)]
-    fields = sum(len(f["whole"]) for record in document["messages"] for f in record["fields"])
+    fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
     count = len(document["messages"]) + len(document["malformed"])
     return Comparison(count, fields, differences)
 

@@ -41,7 +41,7 @@ def judged(document: Record, table: str) -> Comparison:
     ]
     count = sum(len(found[part]) for part in judges)
     assert count == sum(len(document[part]) for part in judges)
-    fields = sum(len(f["whole"]) for record in document["messages"] for f in record["fields"])
+    fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
     return Comparison(count, fields, differences)
 
 
@@ -57,7 +57,7 @@ def _page(document: Record, table: str) -> str:
 
 
 def _message(record: Record, made: Any) -> Iterator[str]:
-    fields = [{key: f[key] for key in ("name", "whole", "value")} for f in record["fields"]]
+    fields = [{key: f[key] for key in ("name", "raw", "value")} for f in record["fields"]]
     # The bytes may decode as another command with the same id; then only that one is reported.
     if "error" in made or made["read_as"] != record["read_as"]:
         yield f"{made}, not read as {record['read_as']}"

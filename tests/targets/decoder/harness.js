@@ -9,7 +9,7 @@
         (each) => each.command.name === record.command && each.number === record.variant);
       const fields = mine && mine.fields.map(({ field, numbers }) => ({
         name: field.name,
-        whole: numbers.map((each) => each.raw),
+        raw: numbers.map((each) => each.raw),
         value: numbers.map((each) => each.value),
       }));
       return { read_as: readings[0].command.name, fields };

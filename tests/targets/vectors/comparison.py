@@ -43,7 +43,7 @@ def judged(document: Record, codec: Codec) -> Comparison:
     """Run the document on one codec."""
     parts = {
         "messages": _message,
-        "refused": _refused,
+        "rejected": _rejected,
         "malformed": _malformed,
         "streams": _stream,
         "texts": _text,
@@ -54,7 +54,7 @@ def judged(document: Record, codec: Codec) -> Comparison:
         for record in document[part]
         for difference in judge(record, codec)
     ]
-    fields = sum(len(f["whole"]) for record in document["messages"] for f in record["fields"])
+    fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
     return Comparison(sum(len(document[part]) for part in parts), fields, differences)
 
 
@@ -87,7 +87,7 @@ def _built(record: Record, codec: Codec) -> bytes:
     return codec.encode(record["command"], record["direction"], values, variant=record["variant"])
 
 
-def _refused(record: Record, codec: Codec) -> Iterator[str]:
+def _rejected(record: Record, codec: Codec) -> Iterator[str]:
     try:
         built = _built(record, codec)
     except UsageError as error:

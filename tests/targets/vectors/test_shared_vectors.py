@@ -76,7 +76,7 @@ def test_every_variant_choice_and_case_has_a_vector(name: str) -> None:
 
 def _has_all(field: Field, records: list[Record], key: Any) -> None:
     numbers = [part for r in records for part in r["fields"] if part["name"] == field.name]
-    used = {whole for part in numbers for whole in part["whole"]}
+    used = {raw for part in numbers for raw in part["raw"]}
     assert set(lower.field_choices(field)) <= used, (key, field.name)
     if isinstance(field.type, Enum) and field.const is None:
         labels = {part["label"] for part in numbers}

@@ -18,7 +18,7 @@ def describe_code(explanation: Explanation) -> str:
     parts = [
         f"{explanation.code}: {explanation.means}",
         f"Why: {explanation.why}",
-        f"Fix: {explanation.mend}",
+        f"Fix: {explanation.fix}",
     ]
     text = "\n".join(fill(part, _WIDTH, subsequent_indent="  ") for part in parts)
     wrong, right = indent(explanation.wrong, "  "), indent(explanation.right, "  ")
@@ -40,7 +40,7 @@ def _command(edition: Edition, command: Command) -> Iterator[str]:
         yield _paragraph(f"The same message as {command.alias}, under a second name.")
     for variant in command.requests:
         yield from _message(edition, command, "request", variant)
-    yield from _answer(edition, command)
+    yield from _reply(edition, command)
     yield from _fields(command)
     yield from _vectors(edition, command)
     yield from _disputes(edition, command)
@@ -58,7 +58,7 @@ def _message(edition: Edition, command: Command, direction: str, variant: Varian
         yield f"  {position:<6} {content.replace('`', ''):<24} {value}"
 
 
-def _answer(edition: Edition, command: Command) -> Iterator[str]:
+def _reply(edition: Edition, command: Command) -> Iterator[str]:
     if command.request_text is not None:
         yield f"\nFollowed by text outside any frame: {markdown.pattern(command.request_text)}"
     for variant in command.replies:

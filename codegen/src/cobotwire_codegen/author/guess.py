@@ -42,10 +42,10 @@ def _text(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
     end = first
     while end < length and all(32 <= payload[end] < 127 for payload in payloads):
         end += 1
-    said = payloads[0][first:end].decode("ascii", "replace")
-    if end - first < 4 or sum(map(str.isalpha, said)) < 3:
+    text = payloads[0][first:end].decode("ascii", "replace")
+    if end - first < 4 or sum(map(str.isalpha, text)) < 3:
         return None
-    return Guess(first, end - first, "text", f"ASCII, such as {said!r}")
+    return Guess(first, end - first, "text", f"ASCII, such as {text!r}")
 
 
 def _word(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
@@ -58,7 +58,7 @@ def _word(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
 
 
 def _smooth(payloads: Sequence[bytes], first: int, length: int) -> bool:
-    """Return whether two bytes change as one number, which only a carry can show."""
+    """Return whether two bytes change as one number; only a carry between them shows that."""
     if first + 2 > length:
         return False
     high = {payload[first] for payload in payloads}

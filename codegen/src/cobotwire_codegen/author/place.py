@@ -8,7 +8,7 @@ from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 
 
 def families(edition: Path) -> dict[str, Path]:
-    """Return the commands files by family; a one-file protocol has one without a name."""
+    """Return the commands files by family; the only family of a one-file protocol has no name."""
     commands = _under(edition, "commands")
     if isinstance(commands, Mapping):
         return {"": edition}
@@ -21,7 +21,7 @@ def families(edition: Path) -> dict[str, Path]:
 
 
 def vectors_file(edition: Path) -> Path:
-    """Return the file for new vectors: missing.yaml, else the last one, else the edition."""
+    """Return the file for new vectors: missing.yaml, the last vectors file or the edition file."""
     paths = _files(edition, _under(edition, "vectors"))
     named = [path for path in paths if path.name == "missing.yaml"]
     return [edition, *paths, *named][-1]

@@ -1,10 +1,10 @@
 """Finds frames in a capture by the framing law, knowing the frame format but no commands.
 
-As docs/framing.md has it for unknown firmware: any id, any LEN up to the frame's longest; a
-candidate is refuted by the first byte that refutes it and the scan goes on one byte behind its
-start; a valid frame is consumed whole. In two things it differs, for unknown lengths are what is
-looked for: an id that the edition knows is taken with other lengths too; and an unknown frame gives
-way to one that the edition knows inside it, or noise would pass for news.
+docs/framing.md states the law for unknown firmware: any id is legal, and any LEN up to the longest
+of the frame format. The first illegal byte refutes a candidate, and the scan continues one byte
+after the start of the candidate. A valid frame is consumed as a whole. This scan looks for unknown
+lengths, so it differs in two ways. A known id may have any length. An unknown frame is refuted if a
+known frame starts inside it; otherwise noise would be reported as an unknown message.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Seen:
 
 
 def known_variants(edition: Edition, direction: str) -> set[tuple[int, int]]:
-    """Return the ids with the data lengths that the edition has in one or both directions."""
+    """Return each id and data length that the edition has in one direction or both."""
     directions = ("request", "reply") if direction == "both" else (direction,)
     return {
         (command.id, sum(field.type.size for field in variant))

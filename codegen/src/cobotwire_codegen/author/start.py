@@ -19,8 +19,8 @@ def first_protocol(name: str, schema: str) -> tuple[str, str]:
     """
     text = (files("cobotwire_codegen.author") / "protocol.yaml").read_text(encoding="utf-8")
     class_name = "".join(map(str.capitalize, name.split("_")))
-    for word, said in (("SCHEMA", schema), ("CLASS", class_name), ("NAME", name)):
-        text = text.replace(word, said)
+    for placeholder, value in (("SCHEMA", schema), ("CLASS", class_name), ("NAME", name)):
+        text = text.replace(placeholder, value)
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.yaml"
         path.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The commands of a family."""
+"""Builds the commands of a family."""
 
 from __future__ import annotations
 

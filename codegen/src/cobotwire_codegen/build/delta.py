@@ -1,7 +1,8 @@
-"""Changes of a delta edition, applied to the nodes of its base.
+"""Applies the changes of a delta edition to the nodes of its base.
 
-What a change adds keeps its place in the changes file, so that a mistake in it is reported there.
-Each change gives its reason and its evidence. Changing what does not exist is a problem.
+A node that a change adds keeps its place in the changes file, so that a mistake in it is reported
+there. Each change gives its reason and its evidence. A change of something that does not exist is
+reported.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def _rename(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     for name in names:
         holder = _holder(parts, reader, name)
         if holder is not None:
-            # In its old place, so that the order of the family stays.
+            # Keep the place of the command, so that the order of the family stays the same.
             entries = [(new if key == name else key, value) for key, value in holder.items()]
             holder.clear()
             holder.update(entries)

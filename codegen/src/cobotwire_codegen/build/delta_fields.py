@@ -1,4 +1,4 @@
-"""Changes inside a command or type: keys set and unset; fields added, removed, renamed, changed."""
+"""Sets and unsets keys of a command or type; adds, removes, renames and changes its fields."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def set_keys(node: Mapping, reader: Reader, what: str) -> tuple[Mapping, list[st
         words.append(f"{key} set{_shown(value)}")
     for key in reader.get(spec.unset):
         if key not in changed.entries:
-            reader.problem("nothing-there", f"{what} has no {key} that could be unset")
+            reader.problem("nothing-to-unset", f"{what} has no key {key} to unset")
         changed.entries.pop(key, None)
         words.append(f"{key} unset")
     return changed, words

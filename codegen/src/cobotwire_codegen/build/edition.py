@@ -1,4 +1,4 @@
-"""Builds an edition from its file, and from every other file of it and of its base."""
+"""Builds an edition from its own files and from those of its base."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _collect(
         above = (*above, path.resolve())
         base_path = files.path(base)
         if base_path.resolve() in above:
-            problem = Problem(base.place, "base-circle", "an edition cannot be its own base")
+            problem = Problem(base.place, "circular-base", "an edition cannot be its own base")
             raise SpecError([*problems, problem])
         _, parts = _collect(base_path, root, problems, above)
         # The base's errata are about the base's document, its changes about its own base.

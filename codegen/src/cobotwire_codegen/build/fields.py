@@ -1,4 +1,4 @@
-"""The fields of a message, and the variants that it can have."""
+"""Builds the fields of a message, and its variants."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cobotwire_codegen.model import Field, Member, Type, Variant
 from cobotwire_codegen.reader import Reader, label
 
 Direction = Literal["request", "reply"]
-# A selector has so few values that a case for each can be listed.
+# The largest number of values of a selector, since its cases list each value.
 MOST_CASES = 64
 _KEYS = {
     "request": (language.Command.request, language.Command.request_variants),
@@ -27,7 +27,7 @@ def build_variants(reader: Reader, direction: Direction, types: Types) -> tuple[
     listed, fields = reader.get(several), reader.get(plain)
     if listed and reader.node(plain) is not None:
         message = f"{reader.what} gives both {plain.name} and {several.name}; keep one of them"
-        reader.problem("two-variants", message)
+        reader.problem("fields-and-variants", message)
     if listed:
         inner = [node.items for node in listed if isinstance(node, Sequence)]
         return tuple(_variant(nodes, direction, reader, types) for nodes in inner)
@@ -35,7 +35,7 @@ def build_variants(reader: Reader, direction: Direction, types: Types) -> tuple[
 
 
 def _shorter(full: Variant, reader: Reader) -> tuple[Variant, ...]:
-    """Return the full variant, and what remains when optional fields are left out."""
+    """Return the full variant, and the variants without optional fields."""
     variants = [full]
     while variants[-1] and variants[-1][-1].optional:
         variants.append(variants[-1][:-1])
@@ -111,7 +111,7 @@ def _const(reader: Reader, type: Type) -> int | None:
         return None
     value = reader.get(key)
     if not type.can_hold(value):
-        reader.problem("bad-const", f"{reader.what} cannot always be {value}")
+        reader.problem("bad-const", f"the const {value} of {reader.what} does not fit its type")
         return None
     return value
 
@@ -119,7 +119,7 @@ def _const(reader: Reader, type: Type) -> int | None:
 def _selected(
     field: Field, reader: Reader, plain: list[tuple[Field, Reader]], types: Types
 ) -> Field:
-    """Give a field whose type depends on another one its cases, one for each value of that one."""
+    """Return a field with its cases, one for each value of its selector, if it has a selector."""
     if not field.selector:
         return field
     selector = next((other for other, _ in plain if other.name == field.selector), None)

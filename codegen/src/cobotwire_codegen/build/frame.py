@@ -1,4 +1,4 @@
-"""The frame format and the transport."""
+"""Builds the frame format and the settings of the transport."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
     spec, port = language.Frame, language.Transport
     frame = Reader(parts.frame, spec, "the frame", problems)
     transport = Reader(parts.transport, port, "the transport", problems)
-    # For people who read the file: nothing is made of these.
+    # These keys inform readers of the file; nothing is generated from them.
     for key in (port.data_bits, port.stop_bits):
         transport.get(key)
     transport.get(port.parity)
@@ -43,7 +43,7 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
 
 
 def _compare(frame: Reader, built: Frame) -> None:
-    """Note what does not fit together."""
+    """Report keys of the frame that contradict each other."""
     wanted = _FOOTED if built.check == "footer" else _CHECKED
     if frame.get(language.Frame.length_counts) != wanted:
         frame.problem("bad-frame", f"length_counts must be [{', '.join(wanted)}]")

@@ -1,7 +1,7 @@
-"""The parts of an edition as nodes: its own files, added to those of its base.
+"""Collects the parts of an edition as nodes: its own files, added to those of its base.
 
-The content of every file that an edition names may also be part of it, so that a small protocol
-can be one file.
+An edition may contain the content of a file instead of naming the file, so that a small protocol
+fits into one file.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ def _add_frame(parts: Parts, reader: Reader, files: Files) -> None:
 
 
 def _add_types(parts: Parts, root: Node, problems: list[Problem]) -> None:
-    """Add a types file; a name that is used already is a problem."""
+    """Add a types file; report names that are already used."""
     spec = language.TypesFile
     reader = Reader(root, spec, "the types file", problems)
     taken = {name: place for named in parts.types.values() for name, (place, _) in named.items()}
@@ -194,7 +194,7 @@ def _listed(root: Node, key: Key[tuple[Node, ...]], problems: list[Problem]) -> 
 
 
 def find(known: Iterator[str], name: str, what: str, place: Place, problems: list[Problem]) -> bool:
-    """Return whether a name is known; note a problem if it is not."""
+    """Return whether a name is known; report a problem if it is not."""
     names = list(known)
     if name in names:
         return True

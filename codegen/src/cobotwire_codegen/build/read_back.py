@@ -1,4 +1,4 @@
-"""``read_by``, the query that reports what a command has set, and ``samples``, what may be set."""
+"""Builds ``read_by`` (the query that reports what a command has set) and ``samples``."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def build_read_back(reader: Reader) -> ReadBack | None:
 
 
 def _pairs(node: Node) -> tuple[tuple[str, str | int], ...]:
-    """Return the reply's fields with what they repeat; nothing if the node is something else."""
+    """Return each reply field with the argument or number that it repeats; empty if invalid."""
     entries = node.entries if isinstance(node, Mapping) else {}
     pairs: list[tuple[str, str | int]] = []
     for name, content in entries.items():
@@ -41,7 +41,7 @@ def _pairs(node: Node) -> tuple[tuple[str, str | int], ...]:
 
 
 def build_samples(reader: Reader) -> tuple[Samples, ...]:
-    """Return the raw values that a conformance run may send, entry by entry; none: all of them."""
+    """Return the raw values that a conformance run may send; without an entry it may send all."""
     key = language.Command.samples
     node = reader.get(key)
     subject = f"{key.name} of {reader.what}"

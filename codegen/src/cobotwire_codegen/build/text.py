@@ -1,4 +1,4 @@
-"""Text outside any frame: ``word {field} word {field}``."""
+"""Builds the messages that are text outside any frame: ``word {field} word {field}``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes of ``types.yaml`` to wire types, quantities, flags, enums and values."""
+"""Turns nodes of ``types.yaml`` into wire types, quantities, flags, enums and values."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def stand_in(place: Place) -> Quantity:
 
 
 class Types:
-    """Every type of an edition by name. Looking up a type that does not exist is a problem."""
+    """Every type of an edition by name. Looking up an unknown name reports a problem."""
 
     def __init__(self, sections: dict[str, Named], problems: list[Problem]) -> None:
         self._problems = problems

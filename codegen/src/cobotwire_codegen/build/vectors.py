@@ -1,4 +1,4 @@
-"""Nodes of the errata and vectors files."""
+"""Turns nodes of the errata and vectors files into errata and vectors."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def build_vector(node: Node, problems: list[Problem]) -> Vector:
     name = f"example-{number}" if number else label(node, spec.name)
     reader = Reader(node, language.VECTOR, f"the vector {name}".strip(), problems)
     example = reader.get(printed.example) if number else None
-    # For people who read the file: where a vector comes from that the document does not have.
+    # These keys inform readers of the file: they name the origin of a vector.
     reader.get(spec.source)
     reader.get(spec.why)
     return Vector(
@@ -77,5 +77,5 @@ def _plain(node: Node) -> object:
     if isinstance(node, Sequence):
         return tuple(_plain(item) for item in node.items)
     value = node.value if isinstance(node, Scalar) else None
-    # Exact where the file is exact; whole numbers stay whole.
+    # Integers become int; every other number stays an exact fraction.
     return int(value) if isinstance(value, Fraction) and value.denominator == 1 else value

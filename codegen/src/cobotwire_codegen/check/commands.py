@@ -1,4 +1,4 @@
-"""Rules for commands: their messages fit the frame and can be told apart."""
+"""Rules for commands: their messages fit the frame, and decoders can distinguish them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def ids_fit(edition: Edition) -> Iterator[Problem]:
     for command in edition.commands:
         if not 0 <= command.id <= 0xFF:
             yield Problem(
-                command.place, "bad-id", f"the id {command.id} ({command.id:#x}) is no byte"
+                command.place, "bad-id", f"the id {command.id} ({command.id:#x}) is not a byte"
             )
 
 
@@ -36,7 +36,7 @@ def payload_fits(edition: Edition) -> Iterator[Problem]:
 
 
 def variants_apart(edition: Edition) -> Iterator[Problem]:
-    """Report messages of one id, direction and length that a decoder cannot tell apart."""
+    """Report messages of one id, direction and length that a decoder cannot distinguish."""
     for direction in _DIRECTIONS:
         seen: dict[tuple[int, int], list[tuple[Command, Variant]]] = {}
         for command in edition.commands:
@@ -56,12 +56,12 @@ def variants_apart(edition: Edition) -> Iterator[Problem]:
 def _apart(
     command: Command, variant: Variant, other: Command, known: Variant, direction: str
 ) -> bool:
-    """Return whether a decoder can tell two messages apart, or need not."""
+    """Return whether a decoder can distinguish two messages, or need not distinguish them."""
     if command is other:
         return False
     if other.name == command.alias:
         return True
-    # The same numbers under the same rules: such a reply is read alike for both requests.
+    # Replies with the same numbers and the same rules decode to the same values for both requests.
     if direction == "reply":
         return [_rule(field) for field in variant] == [_rule(field) for field in known]
     constants = [(a.const, b) for a, b in zip(variant, known)] + [
@@ -87,8 +87,8 @@ def ids_apart(edition: Edition) -> Iterator[Problem]:
     seen: dict[int, Command] = {}
     for command in edition.commands:
         first = seen.setdefault(command.id, command)
-        said = {first.alias, command.alias, *first.shares_id, *command.shares_id}
-        if first is not command and not said & {first.name, command.name}:
+        declared = {first.alias, command.alias, *first.shares_id, *command.shares_id}
+        if first is not command and not declared & {first.name, command.name}:
             message = (
                 f"{command.name} has the id {command.id:#04x}, like {first.name} at "
                 f"{first.place}; if they share it, write shares_id: {first.name}"
@@ -96,7 +96,7 @@ def ids_apart(edition: Edition) -> Iterator[Problem]:
             yield Problem(command.place, "duplicate-id", message)
 
 
-def shared_ids_there(edition: Edition) -> Iterator[Problem]:
+def shared_ids_exist(edition: Edition) -> Iterator[Problem]:
     """Report `shares_id` entries that name an unknown command or one with another id."""
     commands = {command.name: command for command in edition.commands}
     for command in edition.commands:
@@ -110,7 +110,7 @@ def shared_ids_there(edition: Edition) -> Iterator[Problem]:
                 yield Problem(command.place, "bad-shared-id", message)
 
 
-def aliases_alike(edition: Edition) -> Iterator[Problem]:
+def aliases_match(edition: Edition) -> Iterator[Problem]:
     """Report aliases whose message differs from the other command's."""
     commands = {command.name: command for command in edition.commands}
     for command in edition.commands:
@@ -145,9 +145,9 @@ def cases_alike(edition: Edition) -> Iterator[Problem]:
 def echoes_match(edition: Edition) -> Iterator[Problem]:
     """Report echoes that are not in every variant of the request with the same type."""
     for command in edition.commands:
-        asked = [{field.name: field.type for field in variant} for variant in command.requests]
+        requests = [{field.name: field.type for field in variant} for variant in command.requests]
         for field in command.fields:
-            if field.echo and any(variant.get(field.name) != field.type for variant in asked):
+            if field.echo and any(variant.get(field.name) != field.type for variant in requests):
                 message = f"{field.name} does not echo a field of the request of {command.name}"
                 yield Problem(field.place, "bad-echo", message)
 
@@ -156,16 +156,18 @@ def replies_decided(edition: Edition) -> Iterator[Problem]:
     """Report queries without a reply, commands with two replies, and replies that only echo."""
     for command in edition.commands:
         if command.safety == "query" and not command.replies and command.text is None:
-            yield Problem(command.place, "mute-query", f"the query {command.name} has no reply")
+            yield Problem(
+                command.place, "query-without-reply", f"the query {command.name} has no reply"
+            )
         if command.replies and command.text is not None:
             message = f"{command.name} has both a reply and a reply_text"
             yield Problem(command.place, "two-replies", message)
         if command.reply and all(field.echo for field in command.reply):
-            message = f"the reply of {command.name} only echoes"
+            message = f"the reply of {command.name} only repeats its request"
             yield Problem(command.place, "empty-reply", message)
 
 
-def acks_not_asked(edition: Edition) -> Iterator[Problem]:
+def queries_not_acked(edition: Edition) -> Iterator[Problem]:
     """Report queries that are declared as acknowledged."""
     for command in edition.commands:
         if command.ack and command.safety == "query":
@@ -180,10 +182,10 @@ RULES = (
     payload_fits,
     variants_apart,
     ids_apart,
-    shared_ids_there,
-    aliases_alike,
+    shared_ids_exist,
+    aliases_match,
     cases_alike,
     echoes_match,
     replies_decided,
-    acks_not_asked,
+    queries_not_acked,
 )

@@ -22,7 +22,7 @@ def vectors_hold(edition: Edition) -> Iterator[Problem]:
             try:
                 built = build_frame(edition.frame, command, vector.direction, dict(vector.values))
             except ValueError as error:
-                yield Problem(vector.place, "vector-unsayable", f"{vector.name}: {error}")
+                yield Problem(vector.place, "unencodable-vector", f"{vector.name}: {error}")
                 continue
             if built != vector.frame:
                 message = f"{vector.name}: the values encode to {built.hex(' ').upper()}"
@@ -39,7 +39,7 @@ def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
         values = dict(vector.values)
         if text is None or list(values) != [name for name, _ in text.fields]:
             message = f"{vector.name}: {vector.command} has no text reply with these fields"
-            yield Problem(vector.place, "vector-unsayable", message)
+            yield Problem(vector.place, "unencodable-vector", message)
             continue
         built = "".join(
             f"{prefix}{values[name]}" for prefix, (name, _) in zip(text.prefixes, text.fields)
@@ -51,7 +51,7 @@ def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
 
 
 def every_variant_shown(edition: Edition) -> Iterator[Problem]:
-    """Report variants of messages without a vector."""
+    """Report variants that no vector shows."""
     directions: tuple[Literal["request", "reply"], ...] = ("request", "reply")
     shown = {
         (vector.command, vector.direction, tuple(name for name, _ in vector.values))
@@ -69,7 +69,7 @@ def every_variant_shown(edition: Edition) -> Iterator[Problem]:
 
 
 def printed_explained(edition: Edition) -> Iterator[Problem]:
-    """Report printed frames that are not read as printed and have no erratum."""
+    """Report printed examples that contradict their verdict or frame without an erratum."""
     if edition.base:
         return  # the document's examples and its errata belong to the base
     explained = {erratum.example for erratum in edition.errata}
@@ -77,10 +77,12 @@ def printed_explained(edition: Edition) -> Iterator[Problem]:
         if vector.example is None:
             continue
         if vector.verdict != "consistent" and vector.example not in explained:
-            message = f"{vector.name} is not consistent, but no erratum explains why"
+            message = f"{vector.name} has the verdict {vector.verdict}, but no erratum explains why"
             yield Problem(vector.place, "unexplained-example", message)
         if vector.verdict == "consistent" and not _same(vector):
-            message = f"{vector.name} is consistent, but its frame is not the printed one"
+            message = (
+                f"{vector.name} has the verdict consistent, but its frame is not the printed one"
+            )
             yield Problem(vector.place, "unexplained-example", message)
 
 

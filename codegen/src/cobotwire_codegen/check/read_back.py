@@ -18,35 +18,35 @@ def read_back_fits(edition: Edition) -> Iterator[Problem]:
         query = known.get(back.query)
         if query is None or query.safety != "query":
             hint = nearest(back.query, (c.name for c in edition.commands if c.safety == "query"))
-            message = f"{command.name} is read by {back.query}, which is not a query{hint}"
+            message = f"read_by of {command.name} names {back.query}, which is not a query{hint}"
             yield Problem(back.place, "bad-read-back", message)
         else:
             yield from _fields(command, back, query)
 
 
 def _fields(command: Command, back: ReadBack, query: Command) -> Iterator[Problem]:
-    told = {field.name for variant in query.replies for field in variant}
-    told |= {name for name, _ in query.text.fields} if query.text else set()
+    reported = {field.name for variant in query.replies for field in variant}
+    reported |= {name for name, _ in query.text.fields} if query.text else set()
     given = {field.name for variant in command.requests for field in variant}
     given |= {name for name, _ in command.request_text.fields} if command.request_text else set()
-    for name, said in back.fields or ((name, name) for name in sorted(told & given)):
-        if name not in told:
-            message = f"the reply of {query.name} has no field {name}{nearest(name, told)}"
+    for name, argument in back.fields or ((name, name) for name in sorted(reported & given)):
+        if name not in reported:
+            message = f"the reply of {query.name} has no field {name}{nearest(name, reported)}"
             yield Problem(back.place, "bad-read-back", message)
-        if isinstance(said, str) and said not in given:
-            message = f"{command.name} has no argument {said}{nearest(said, given)}"
+        if isinstance(argument, str) and argument not in given:
+            message = f"{command.name} has no argument {argument}{nearest(argument, given)}"
             yield Problem(back.place, "bad-read-back", message)
-    if not back.fields and not told & given:
+    if not back.fields and not reported & given:
         message = f"{command.name} and {query.name} have no field of the same name"
         yield Problem(back.place, "bad-read-back", message)
 
 
-def tries_fit(edition: Edition) -> Iterator[Problem]:
+def samples_fit(edition: Edition) -> Iterator[Problem]:
     """Report samples for arguments that no variant of the request has."""
     for command in edition.commands:
         variants = [{field.name for field in variant} for variant in command.requests]
-        for tried in command.samples:
-            names = {name for name, _ in tried}
+        for samples in command.samples:
+            names = {name for name, _ in samples}
             if not any(names <= variant for variant in variants):
                 message = (
                     f"no request of {command.name} has the arguments {', '.join(sorted(names))}"
@@ -66,4 +66,4 @@ def agreement_fits(edition: Edition) -> Iterator[Problem]:
                 yield Problem(command.place, "bad-agreement", message)
 
 
-RULES = (read_back_fits, tries_fit, agreement_fits)
+RULES = (read_back_fits, samples_fit, agreement_fits)

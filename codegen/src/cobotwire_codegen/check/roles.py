@@ -28,17 +28,17 @@ def _picked(command: Command) -> bool:
     )
 
 
-def _told_by_flag(variants: tuple[Variant, ...]) -> bool:
+def _replies_with_flag(variants: tuple[Variant, ...]) -> bool:
     return bool(variants) and all(
         len(variant) == 1 and variant[0].type.kind == "flag" for variant in variants
     )
 
 
-def _asks_a_flag(command: Command) -> bool:
-    return command.requests == ((),) and _told_by_flag(command.replies)
+def _reads_flag(command: Command) -> bool:
+    return command.requests == ((),) and _replies_with_flag(command.replies)
 
 
-def _asks_number(command: Command) -> bool:
+def _reads_number(command: Command) -> bool:
     return (
         command.requests == ((),)
         and bool(command.replies)
@@ -46,16 +46,16 @@ def _asks_number(command: Command) -> bool:
     )
 
 
-def _asks_row(parts: int) -> Callable[[Command], bool]:
-    def asks(command: Command) -> bool:
+def _reads_row(parts: int) -> Callable[[Command], bool]:
+    def reads(command: Command) -> bool:
         rows = all(len(variant) == 1 and _parts(variant[0]) == parts for variant in command.replies)
         return command.requests == ((),) and bool(command.replies) and rows
 
-    return asks
+    return reads
 
 
 def _reached(command: Command) -> bool:
-    if not _told_by_flag(command.replies) or len(command.requests[0]) != 2:
+    if not _replies_with_flag(command.replies) or len(command.requests[0]) != 2:
         return False
     kind = command.requests[0][1].type
     return {member.name for member in kind.members} >= KINDS
@@ -75,14 +75,14 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             "it must take a target and its kind, ANGLES or COORDS, and reply with a flag",
             _reached,
         ),
-        "moving": ("it must take no arguments and reply with a flag", _asks_a_flag),
-        "powered": ("it must take no arguments and reply with a flag", _asks_a_flag),
-        "version": ("it must take no arguments and reply with one number", _asks_number),
+        "moving": ("it must take no arguments and reply with a flag", _reads_flag),
+        "powered": ("it must take no arguments and reply with a flag", _reads_flag),
+        "version": ("it must take no arguments and reply with one number", _reads_number),
         "joints": (
             "it must take no arguments and reply with a number for each joint",
-            _asks_row(edition.joints),
+            _reads_row(edition.joints),
         ),
-        "coordinates": ("it must take no arguments and reply with six coordinates", _asks_row(6)),
+        "coordinates": ("it must take no arguments and reply with six coordinates", _reads_row(6)),
         "stop": ("it must take no arguments", lambda command: command.requests == ((),)),
     }
 

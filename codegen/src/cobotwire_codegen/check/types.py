@@ -14,13 +14,13 @@ def _quantities(edition: Edition) -> Iterator[Quantity]:
     yield from (type for type in types if isinstance(type, Quantity))
 
 
-def ranges_sayable(edition: Edition) -> Iterator[Problem]:
-    """Report ranges that are not multiples of the scale, or wider than the wire type."""
+def ranges_encodable(edition: Edition) -> Iterator[Problem]:
+    """Report ranges with an end that is not a multiple of the scale, or beyond the wire type."""
     for quantity in _quantities(edition):
         lowest, highest = quantity.bounds
         if lowest.denominator != 1 or highest.denominator != 1:
-            message = f"the range of {quantity.name} does not fall on multiples of {quantity.scale}"
-            yield Problem(quantity.place, "unsayable-range", message)
+            message = f"the range of {quantity.name} does not end at multiples of {quantity.scale}"
+            yield Problem(quantity.place, "unencodable-range", message)
         elif lowest < quantity.wire.minimum or highest > quantity.wire.maximum:
             low = float(quantity.wire.minimum * quantity.scale)
             high = float(quantity.wire.maximum * quantity.scale)
@@ -53,4 +53,4 @@ def exact_in_a_double(edition: Edition) -> Iterator[Problem]:
             yield Problem(quantity.place, "inexact-scale", message)
 
 
-RULES = (exact_in_a_double, ranges_sayable, members_fit)
+RULES = (exact_in_a_double, ranges_encodable, members_fit)

@@ -30,7 +30,7 @@ _EPILOG = (
 )
 @click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if files are stale.")
 @click.option(
-    "--products", "with_products", is_flag=True, help="Also files that are not committed."
+    "--products", "with_products", is_flag=True, help="Also generate files that are not committed."
 )
 @root_option
 @click.version_option(package_name="cobotwire-codegen")

@@ -16,9 +16,9 @@ from cobotwire_codegen.cli.shared import (
     check_names,
     edition_path,
     format_option,
-    problems_told,
-    template_errors_told,
-    unwritable_told,
+    report_problems,
+    report_template_errors,
+    report_write_errors,
 )
 from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.render import render_python, render_reference
@@ -76,12 +76,12 @@ def build(
     given = {"--out": out, "--docs": docs, "--c": c, "--wireshark": wireshark}
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
-    with problems_told(variant):
+    with report_problems(variant):
         edition = build_edition(path, Path.cwd())
         check_edition(edition)
     own = Path(templates) if templates else None
     check_names(own)
-    with template_errors_told(own):
+    with report_template_errors(own):
         wanted = [
             Target(folder, RENDERERS[option](edition, own), alone=option not in SHARED)
             for option, folder in folders.items()
@@ -94,7 +94,7 @@ def build(
         raise click.UsageError(
             f"the folder contains files that were not generated: {shown}; choose another folder"
         )
-    with unwritable_told():
+    with report_write_errors():
         written = write_all(wanted)
     click.echo(f"{edition.name} ({len(edition.commands)} commands): {written} file(s)")
 

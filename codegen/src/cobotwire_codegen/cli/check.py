@@ -8,7 +8,7 @@ import click
 
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check as check_edition
-from cobotwire_codegen.cli.shared import edition_path, format_option, problems_told, root_option
+from cobotwire_codegen.cli.shared import edition_path, format_option, report_problems, root_option
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.project import edition_files
 
@@ -24,7 +24,7 @@ def check(files: tuple[str, ...], root: str, variant: str) -> None:
     explains a code.
     """
     problems: list[Problem] = []
-    with problems_told(variant):
+    with report_problems(variant):
         paths = [edition_path(file) for file in files] or edition_files(Path(root))
         for path in paths:
             try:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from cobotwire_codegen.cli.shared import problems_told
+from cobotwire_codegen.cli.shared import report_problems
 from cobotwire_codegen.diff import LEVELS, RULES, Finding, breaking, diff_all
 from cobotwire_codegen.diff import diff as diff_two
 from cobotwire_codegen.diff import report as reports
@@ -65,25 +65,26 @@ def diff(old: str, new: str, waivers: str | None, variant: str) -> None:
     """Report what changed from OLD to NEW, how severe it is, and the version bump that follows.
 
     OLD and NEW are each an edition file, a folder that contains spec/, or a git revision of the
-    repository in the current folder (a path has precedence over a revision). Of two
-    folders or revisions, editions of the same name are compared; a single file is compared with
-    the edition of its name. The specs are not checked: `cobotwire-gen check` does that.
+    repository in the current folder (a path has precedence over a revision). If both are folders
+    or revisions, editions of the same name are compared. A single file is compared with the edition
+    of the same name. The specs are not checked: `cobotwire-gen check` does that.
 
-    Wire- and API-breaking findings require a major version, behaviour and additions a minor
-    one, docs for a patch. Before 1.0, where SemVer promises nothing, breaking and behaviour
-    findings raise the minor number, and all others the patch number.
+    Findings that break the wire or the API require a major version; changes of behaviour and
+    additions require a minor version; changes of docs require a patch. Before 1.0, where SemVer
+    promises nothing, breaking and behaviour findings raise the minor number, and all others the
+    patch number.
 
-    Exit codes: 0 nothing breaks; 1 something breaks the wire or the API, and no waiver says why;
-    2 the command line, the spec or the waivers are wrong.
+    Exit codes: 0 nothing breaks; 1 a finding breaks the wire or the API and is not waived; 2 the
+    command line, the spec or the waivers are wrong.
     """
-    with problems_told("json" if variant == "json" else "text"):
+    with report_problems("json" if variant == "json" else "text"):
         accepted = read_waivers(Path(waivers)) if waivers else ()
         try:
             findings = _compare(read(old), read(new))
         except SourceError as error:
             raise click.UsageError(str(error)) from error
     judged = judge(findings, accepted)
-    _tell(judged, old, new, variant)
+    _print(judged, old, new, variant)
     sys.exit(1 if breaking(judged.findings) else 0)
 
 
@@ -95,7 +96,7 @@ def _compare(old: Source, new: Source) -> tuple[Finding, ...]:
     return diff_all(*paired(old, new))
 
 
-def _tell(judged: Judged, old: str, new: str, variant: str) -> None:
+def _print(judged: Judged, old: str, new: str, variant: str) -> None:
     if variant == "json":
         click.echo(reports.as_json(judged, old, new))
     elif variant == "markdown":

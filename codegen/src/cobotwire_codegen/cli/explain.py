@@ -9,7 +9,7 @@ import click
 from cobotwire_codegen.author.codes import CODES
 from cobotwire_codegen.author.describe import describe_code, describe_command
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.cli.shared import edition_path, problems_told
+from cobotwire_codegen.cli.shared import edition_path, report_problems
 from cobotwire_codegen.errors import nearest
 
 DEFAULT_EDITION = "spec/editions/mycobot.yaml"
@@ -33,7 +33,7 @@ def explain(word: str | None, file: str) -> None:
     if word in CODES:
         click.echo(describe_code(CODES[word]))
         return
-    with problems_told():
+    with report_problems():
         # The edition is not checked, so that a command can be explained while it is being changed.
         edition = build_edition(edition_path(file), Path.cwd())
     commands = {command.name: command for command in edition.commands}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from cobotwire_codegen.cli.shared import problems_told, root_option
+from cobotwire_codegen.cli.shared import report_problems, root_option
 from cobotwire_codegen.emit import Target, compare, write
 from cobotwire_codegen.project import committed, editions, products
 
@@ -19,9 +19,9 @@ from cobotwire_codegen.project import committed, editions, products
 def generate(check_only: bool, with_products: bool, root: str) -> None:
     """Generate what is committed: editions, reference, the decoder's tables, the spec's schema.
 
-    With products, also what is not: output targets, and data of the Rust tests.
+    With --products, also generate what is not committed: output targets, data of the Rust tests.
     """
-    with problems_told():
+    with report_problems():
         found = editions(Path(root))
     wanted = committed(Path(root), found)
     if with_products:

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from cobotwire_codegen.author.start import first_protocol
-from cobotwire_codegen.cli.shared import problems_told
+from cobotwire_codegen.cli.shared import report_problems
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*\Z")
 
@@ -30,7 +30,7 @@ def init(name: str, out: str | None) -> None:
         raise click.UsageError(f"{' and '.join(there)} already exists; choose another --out")
     if not path.parent.is_dir():
         raise click.UsageError(f"there is no folder {path.parent}")
-    with problems_told():
+    with report_problems():
         texts = first_protocol(name, schema.name)
     for file, text in zip((path, schema), texts):
         file.write_text(text, encoding="utf-8")

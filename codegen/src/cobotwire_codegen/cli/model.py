@@ -11,8 +11,8 @@ from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.shared import (
     edition_path,
     format_option,
-    problems_told,
-    unwritable_told,
+    report_problems,
+    report_write_errors,
 )
 from cobotwire_codegen.publish import edition_json
 
@@ -28,12 +28,12 @@ def model(file: str, out: str | None, variant: str) -> None:
 
     References are resolved, defaults filled in and deltas applied.
     """
-    with problems_told(variant):
+    with report_problems(variant):
         edition = build_edition(edition_path(file), Path.cwd())
         check_edition(edition)
     text = edition_json(edition, complete=True)
     if out is None:
         click.echo(text, nl=False)
     else:
-        with unwritable_told():
+        with report_write_errors():
             Path(out).write_text(text, encoding="utf-8")

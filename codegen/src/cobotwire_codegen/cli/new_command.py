@@ -20,7 +20,7 @@ from cobotwire_codegen.author.draft import (
 from cobotwire_codegen.author.place import families, vectors_file
 from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.explain import DEFAULT_EDITION
-from cobotwire_codegen.cli.shared import edition_path, problems_told
+from cobotwire_codegen.cli.shared import edition_path, report_problems
 from cobotwire_codegen.errors import nearest
 from cobotwire_codegen.language.words import SAFETY
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, parse
@@ -44,9 +44,10 @@ _NEEDED = {
 @click.option("--title", help="A heading.")
 @click.option("--doc", help="What it does, in a sentence.")
 @click.option("--safety", help=f"One of: {', '.join(SAFETY)}.")
-@click.option("--request", help="Its fields, as NAME:TYPE,NAME:TYPE.")
+@click.option("--request", help="The request's fields, as NAME:TYPE,NAME:TYPE.")
 @click.option(
-    "--reply", help="The reply's fields, likewise; NAME:TYPE:echo repeats the request's field."
+    "--reply",
+    help="The reply's fields, in the same form; NAME:TYPE:echo repeats a field of the request.",
 )
 @click.option("--vector", help="A captured request, in hex.")
 @click.option("--reply-vector", help="A captured reply, in hex.")
@@ -62,7 +63,7 @@ def new_command(file: str, dry_run: bool, **given: str | None) -> None:
     anything is written; if it has problems, the files stay unchanged.
     """
     path = edition_path(file)
-    with problems_told():
+    with report_problems():
         homes = families(path)
         _complete(given, homes)
         draft = _draft(given)
@@ -151,12 +152,12 @@ def _vectors(edition: Edition, draft: Draft, given: dict[str, str | None]) -> It
         ("request", "vector", "values"),
         ("reply", "reply_vector", "reply_values"),
     )
-    for direction, seen, said in flags:
+    for direction, captured, listed in flags:
         for which, variant in enumerate(command.variants(direction)):
             try:
                 # A given frame is the full variant.
-                frame = bytes.fromhex(given[seen] or "") if not which else b""
-                values = _values_of(edition, command, direction, variant, frame, given[said])
+                frame = bytes.fromhex(given[captured] or "") if not which else b""
+                values = _values_of(edition, command, direction, variant, frame, given[listed])
                 built = build_frame(edition.frame, command, direction, values)
             except ValueError as error:
                 raise click.UsageError(f"the {direction}'s vector: {error}") from None
@@ -169,13 +170,13 @@ def _values_of(
     direction: Direction,
     variant: Variant,
     frame: bytes,
-    said: str | None,
+    listed: str | None,
 ) -> dict[str, object]:
-    """Return a vector's values: of the captured frame, else the given ones, else the smallest."""
+    """Return a vector's values: of the captured frame, else the listed ones, else the smallest."""
     if frame:
         return read(edition, command, direction, frame)
     values = {field.name: field.type.smallest for field in variant}
-    values.update(_values(said) if said and variant == command.variants(direction)[0] else {})
+    values.update(_values(listed) if listed and variant == command.variants(direction)[0] else {})
     return values
 
 

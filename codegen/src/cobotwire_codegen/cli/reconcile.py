@@ -13,7 +13,7 @@ from cobotwire_codegen.author.reconcile import capture_bytes, draft_lines, plain
 from cobotwire_codegen.author.reconcile import reconcile as reconciled
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.cli.explain import DEFAULT_EDITION
-from cobotwire_codegen.cli.shared import edition_path, problems_told
+from cobotwire_codegen.cli.shared import edition_path, report_problems
 
 
 @click.command()
@@ -39,7 +39,7 @@ def reconcile(capture: BinaryIO, file: str, direction: str, as_json: bool) -> No
         raise click.UsageError(
             f"the capture is hex text, but not pairs of digits: {error}"
         ) from None
-    with problems_told():
+    with report_problems():
         edition = build_edition(edition_path(file), Path.cwd())
     count, found = reconciled(edition, line, direction)
     drafts = [list(draft_lines(edition, news, direction)) for news in found]

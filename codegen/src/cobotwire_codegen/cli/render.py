@@ -11,9 +11,9 @@ from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.shared import (
     edition_path,
     format_option,
-    problems_told,
-    template_errors_told,
-    unwritable_told,
+    report_problems,
+    report_template_errors,
+    report_write_errors,
 )
 from cobotwire_codegen.render import environment
 
@@ -28,17 +28,17 @@ from cobotwire_codegen.render import environment
 def render(template: str, file: str, out: str | None, variant: str) -> None:
     """Fill the Jinja TEMPLATE from the edition FILE: a target of your own.
 
-    The template has the checked model as `edition`, and what the built-in templates have. It may
-    include templates in its folder. docs/targets.md shows an example.
+    The template can use the checked model as `edition`, and all names of the built-in templates. It
+    may include templates in its folder. docs/targets.md shows an example.
     """
     path = Path(template)
-    with problems_told(variant):
+    with report_problems(variant):
         edition = build_edition(edition_path(file), Path.cwd())
         check_edition(edition)
-    with template_errors_told(path.parent):
+    with report_template_errors(path.parent):
         text = environment(path.parent).get_template(path.name).render(edition=edition)
     if out is None:
         click.echo(text, nl=False)
         return
-    with unwritable_told():
+    with report_write_errors():
         Path(out).write_text(text, encoding="utf-8")

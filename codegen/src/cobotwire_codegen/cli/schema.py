@@ -10,7 +10,7 @@ import click
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.generate import show_stale, write_all
-from cobotwire_codegen.cli.shared import edition_path, problems_told, root_option
+from cobotwire_codegen.cli.shared import edition_path, report_problems, root_option
 from cobotwire_codegen.emit import Target
 from cobotwire_codegen.language.schema import schema_json
 from cobotwire_codegen.project import editions, schema_target
@@ -31,9 +31,9 @@ def schema(files: tuple[str, ...], out: str | None, check_only: bool, root: str)
     """
     if bool(files) != bool(out):
         raise click.UsageError(
-            "FILES and --out need each other; without both, the schema of spec/ is written"
+            "give both FILES and --out; give neither to write the schema of spec/"
         )
-    with problems_told():
+    with report_problems():
         target = _own(files, Path(out)) if out else schema_target(Path(root), editions(Path(root)))
     if check_only:
         sys.exit(show_stale([target]))

@@ -34,19 +34,19 @@ format_option = click.option(
 
 
 @contextmanager
-def problems_told(variant: str = "text") -> Iterator[None]:
+def report_problems(variant: str = "text") -> Iterator[None]:
     """Print a spec's problems and exit with code 2."""
     try:
         yield
     except SpecError as error:
-        tell(error.problems, variant)
+        print_problems(error.problems, variant)
         if variant == "text":
             click.echo(f"{len(error.problems)} problem(s) in the spec", err=True)
         sys.exit(2)
 
 
 @contextmanager
-def template_errors_told(folder: Path | None) -> Iterator[None]:
+def report_template_errors(folder: Path | None) -> Iterator[None]:
     """Report a mistake in a user's template in one line and exit with code 2.
 
     Without a ``folder``, all templates are built in, and a mistake in them is a bug.
@@ -77,7 +77,7 @@ def check_names(folder: Path | None) -> None:
 
 
 @contextmanager
-def unwritable_told() -> Iterator[None]:
+def report_write_errors() -> Iterator[None]:
     """Report a file that cannot be written in one line and exit with code 2."""
     try:
         yield
@@ -85,7 +85,7 @@ def unwritable_told() -> Iterator[None]:
         raise click.UsageError(f"cannot write {error.filename}: {error.strerror}") from error
 
 
-def tell(problems: Sequence[Problem], variant: str) -> None:
+def print_problems(problems: Sequence[Problem], variant: str) -> None:
     """Print problems as lines, as JSON, or as GitHub annotations."""
     if variant == "json":
         click.echo(json.dumps([_plain(problem) for problem in problems], indent=1))

@@ -1,6 +1,6 @@
-"""Compares editions: models, not text.
+"""Compares the models of editions, not their text.
 
-Every difference is a finding of one rule; a rule has a level, and from the levels follows the
+Every difference is a finding of one rule. Each rule has a level, and the levels determine the
 version bump.
 """
 

@@ -39,8 +39,8 @@ def _argument(where: str, old: Parameter, new: Parameter, known: Known) -> Itera
     before, after = ({*type.split(" | ")} - {"None"} for type in types)
     if before != after:
         # An int is accepted wherever a float is expected.
-        taken = after | ({"int"} if "float" in after else set())
-        widened = before <= taken
+        accepted = after | ({"int"} if "float" in after else set())
+        widened = before <= accepted
         yield finding(f"argument-type-{'widened' if widened else 'changed'}", where, *types)
 
 

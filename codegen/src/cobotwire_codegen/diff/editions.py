@@ -18,7 +18,7 @@ _SEVERITY = {level: index for index, level in enumerate(LEVELS)}
 
 
 def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
-    """Return what changed from one edition to another, the most severe first, each once.
+    """Return the findings from one edition to another, each once, the most severe first.
 
     Places in files are not compared. The result is empty exactly if the editions are equal.
     """

@@ -1,4 +1,4 @@
-"""Format findings as text for people, as JSON for machines, as Markdown for the changelog."""
+"""Formats findings as text for people, as JSON for machines, as Markdown for the changelog."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ _WIRE = {
     "argument-removed": "the request no longer carries {old}: callers cannot pass it",
     "baudrate-changed": "the port ran at {old} baud, runs at {new}: peers receive noise",
     "byte-order-changed": "the byte order was {old}, is {new}: numbers are misread",
-    "check-changed": "frames were checked by {old}, are by {new}: each side rejects the other's",
+    "check-changed": "the check was {old}, is {new}: each side rejects the other's frames",
     "command-removed": "the command {old} was removed, with its frames and its method",
     "constant-changed": "the constant was {old}, is {new}: the other side's frame is rejected",
     "echo-changed": "the echo was {old}, is {new}: replies are matched to requests differently",
@@ -79,8 +79,8 @@ _API = {
     "type-kind-changed": "the kind was {old}, is {new}: callers pass or get another type",
 }
 _BEHAVIOUR = {
-    "agreement-changed": "agreed at rest with {old}, agrees with {new}: runs compare other queries",
-    "read-back-changed": "was read back by {old}, is by {new}: conformance runs send other queries",
+    "agreement-changed": "agreed with {old}, agrees with {new}: runs compare other queries",
+    "read-back-changed": "read_by was {old}, is {new}: conformance runs send other queries",
     "samples-changed": "a conformance run sent {old}, sends {new}",
     "ack-changed": "whether it has an acknowledgement: was {old}, is {new}",
     "choices-narrowed": "legal raw values were {old}, are {new}: some are now rejected",
@@ -96,7 +96,7 @@ _BEHAVIOUR = {
     "scale-changed": "the scale was {old}, is {new}: the same bytes are another value",
     "selector-added": "its type now depends on {new}; the effects are listed separately",
     "selector-removed": "its type depended on {old}; the effects are listed separately",
-    "shared-id-order-changed": "frames of this id took the first name of {old}; now of {new}",
+    "shared-id-order-changed": "frames of this id had the first name of {old}; now that of {new}",
     "silence-changed": "the text ended after {old} ms of silence, ends after {new} ms",
     "unit-changed": "the unit was {old}, is {new}: the same number means something else",
 }

@@ -43,7 +43,7 @@ class Known:
         if not same:
             yield finding("type-replaced", where, old.name, new.name)
         for general, here in zip(compare(f"{section}/{new.name}"), compare(where)):
-            # The description of another type is not a changed description.
+            # If the type was replaced, a different description is not a change of its own.
             if general not in self.reported if same else here.level != "docs":
                 yield here
 

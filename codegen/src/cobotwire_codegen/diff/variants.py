@@ -27,8 +27,8 @@ def message_changes(
         return
     names = renames(before, after)
     matched = _match(before, after, names)
-    # The remaining variants match by length first, then the shortest ones: longer variants may only
-    # add optional fields.
+    # Match the remaining variants by length, then from the shortest: a longer variant may only add
+    # optional fields.
     rest = Matched(sorted(matched.removed, key=len), sorted(matched.added, key=len))
     rest = rest.further(len).further(lambda variant: None)
     for gone, came in rest.pairs:

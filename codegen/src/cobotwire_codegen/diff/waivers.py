@@ -1,4 +1,4 @@
-"""Waivers: accepted findings, as a list of rule, place and reason."""
+"""Reads waivers (accepted findings, each with rule, place and reason) and applies them."""
 
 from __future__ import annotations
 

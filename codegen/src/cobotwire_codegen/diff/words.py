@@ -27,7 +27,7 @@ __all__ = [
 
 
 def short(text: str) -> str:
-    """Return a sentence, shortened; the spec has it in full."""
+    """Return a text, cut to its first characters if it is long; the spec has the full text."""
     return text if len(text) <= LONGEST else text[: LONGEST - 3].rstrip() + "..."
 
 
@@ -63,7 +63,7 @@ def choices(quantity: Quantity) -> str:
 
 
 def sign(wire: Wire) -> str:
-    """Return the range that follows from the rule of the sign."""
+    """Return the range that follows from the sign rule."""
     return f"{wire.minimum}..{wire.maximum}"
 
 

@@ -1,7 +1,7 @@
 """The language of the spec, described once.
 
-The reader, the JSON schema for editors and the reference page are made from these records. A record
-is a class, its keys are the attributes: ``reader.get(language.Quantity.scale)``.
+The reader, the JSON schema for editors and the reference page are derived from these records. A
+record is a class, and its attributes are the keys: ``reader.get(language.Quantity.scale)``.
 """
 
 from cobotwire_codegen.language.changes import (

@@ -32,7 +32,7 @@ _UNSET = "Keys that are left out in this edition."
 class _AddField(Record):
     """Add a field."""
 
-    after = optional(Text(), "The field before it. Left out: it becomes the last.")
+    after = optional(Text(), "The field that it follows. Left out: it becomes the last.")
 
 
 class AddRequestField(_AddField):
@@ -169,6 +169,6 @@ CHANGE = Choice(
 
 
 class ChangesFile(Record):
-    """What a delta changes in its base, in order. Changing what is not there is an error."""
+    """The changes of a delta to its base, in order. Changing what the base lacks is an error."""
 
     changes = required(Listed(CHANGE), "The changes.")

@@ -28,7 +28,7 @@ _FRAME = "The frame format and the transport."
 
 
 class Acks(Record):
-    """The acknowledgement that every command gets which has no other reply."""
+    """The acknowledgement of every command that has no other reply."""
 
     field = required(Part(ReplyField), "The field of the reply; a bare frame is legal as well.")
     why = required(Text(), "The reason.")
@@ -50,12 +50,12 @@ class _Edition(Record):
     class_ = required(Name(CLASS), "The client's class in the generated Python.")
     title = required(Text(), "A heading.")
     doc = required(Text(), "What the edition is, in a sentence or two.")
-    document = optional(Text(), "The document that the edition was taken from.")
-    firmware = optional(Text(), "The firmware that speaks it.")
-    types = optional(InFile(TypesFile), "What a field can be.")
+    document = optional(Text(), "The document that describes the edition.")
+    firmware = optional(Text(), "The firmware that uses the edition.")
+    types = optional(InFile(TypesFile), "The types of fields.")
     commands = optional(
         InFiles(CommandsFile, Named(Command, METHOD)),
-        "The commands: a file for each family, or all of them right here as one family.",
+        "The commands: a file for each family, or a mapping of all commands as one family.",
     )
     vectors = optional(
         InFiles(_VECTORS, or_file(ref(VectorsFile.definition()))),
@@ -79,8 +79,8 @@ class WholeEdition(_Edition):
 class DeltaEdition(_Edition):
     """An edition that is stated as the difference from another one, its base.
 
-    It starts with the base's frame, types, commands and vectors. Its own types, commands and
-    vectors are added; its changes change what is there.
+    It inherits the frame, types, commands and vectors of its base, changes them as `changes` lists,
+    and adds types, commands and vectors of its own.
     """
 
     base = required(Name(r"\.yaml$", "a file name"), "The file of the base.")
@@ -91,8 +91,8 @@ class DeltaEdition(_Edition):
 
 EDITION = Choice("edition", {"base": DeltaEdition}, WholeEdition)
 
-# Which kind a file is: the first of these keys that it has decides. An edition may have many of the
-# other keys, so it is first.
+# The first of these keys that a file has decides its kind. An edition may have other keys of this
+# list, so `edition` is first.
 FILES: dict[str, Described] = {
     "edition": EDITION,
     "family": CommandsFile,

@@ -30,7 +30,7 @@ class Dispute(Record):
 
     claim = required(Text(), "The fact, as this edition reads it.")
     reading = required(Text(), "The same as a formula or in a few words.")
-    confidence = required(Word(CONFIDENCE), "How sure the reading is.")
+    confidence = required(Word(CONFIDENCE), "How certain the reading is.")
     evidence = required(Listed(Evidence, NO_EVIDENCE), "What each source states.", NO_EVIDENCE[0])
     EXAMPLE = """\
 claim: The reply carries tenths of a degree.

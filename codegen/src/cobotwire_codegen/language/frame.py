@@ -41,7 +41,7 @@ header: FE FE
 footer: FA
 length_counts: [command, data, footer]
 maximum_data: 16
-doc: LEN counts everything behind itself.
+doc: LEN counts every byte after itself.
 """
 
 

@@ -1,4 +1,4 @@
-"""The few forms of JSON Schema that describe the spec."""
+"""Builds the forms of JSON Schema that describe the spec."""
 
 from __future__ import annotations
 

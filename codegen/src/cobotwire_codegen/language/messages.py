@@ -1,4 +1,4 @@
-"""The commands file: commands, their messages, and the fields of these."""
+"""The commands file: commands, their messages, and the fields of the messages."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ class _Field(Record):
     doc = optional(Text(), "What it is. Left out: the description of its type.")
     range = optional(Range(), "A range inside that of the type, in the type's unit.")
     optional_ = optional(YesNo(), "It may be left out. Only the last fields can be optional.")
-    const = optional(Whole(), "Its raw value is always this one; callers do not give it.")
+    const = optional(Whole(), "The only raw value of the field; callers do not pass it.")
 
 
 class _ReplyField(_Field):
     echo = optional(
         Word(("required", "optional")),
-        "It repeats the request's field of the same name, and the reply is matched by it. With "
-        "`optional`, older firmware leaves it out, and both variants are legal.",
+        "The field repeats the request's field of the same name, and clients match the reply by "
+        "it. `optional`: older firmware leaves it out, so both variants are legal.",
         "",
     )
 
@@ -132,7 +132,7 @@ class ReplyText(RequestText):
     """A reply that is text outside any frame. It ends when no byte follows for a while."""
 
     class_ = required(Name(CLASS), "The class of the result in the generated Python.")
-    silence_ms = required(Whole(1), "How long the line is silent after it, in milliseconds.")
+    silence_ms = required(Whole(1), "The silence that ends the text, in milliseconds.")
     EXAMPLE = """\
 text: "ssid: {ssid} password: {password}"
 silence_ms: 50
@@ -169,7 +169,8 @@ class Command(Record):
     request_variants = optional(
         ListedTwice(ANY_REQUEST_FIELD),
         "The variants of the request, the full one first, if they differ in more than optional "
-        "fields at the end. They are told apart by length, then by the values that each allows.",
+        "fields at the end. Decoders distinguish them by length, then by the values that each "
+        "allows.",
     )
     reply = optional(
         Listed(ANY_REPLY_FIELD, _NO_FIELDS), "The data of the reply. Left out: no reply."
@@ -185,7 +186,7 @@ class Command(Record):
         "for it.",
     )
     alias = optional(
-        Name(METHOD), "Another command: this one is the same message under a second name."
+        Name(METHOD), "The command that has the same message; this name is its second one."
     )
     role = optional(
         Word(ROLES, ROLES.values()), "How hand-written code finds the command in every edition.", ""
@@ -195,8 +196,8 @@ class Command(Record):
             "a query's name, or {QUERY: {reply field: request field or whole number}}", _read_by()
         ),
         "The query that reports what the command has set, so that a conformance run can set, read "
-        "and compare. Fields are paired by name; where names differ, or the result is a fixed "
-        "state, the reply's fields state it.",
+        "and compare. Fields of the same name are compared. If the names differ, or the reply then "
+        "has a fixed value, map each field of the reply to an argument or to that value.",
     )
     agrees_with = optional(Names(), "Queries that report the same values while the arm rests.")
     samples = optional(
@@ -205,7 +206,7 @@ class Command(Record):
             {"type": "array", "items": Named(Numbers(), LOWER).schema()},
         ),
         "The raw values that a conformance run may send if not every legal one is harmless. An "
-        "entry is for the first variant of the request that has its arguments.",
+        "entry applies to the first variant of the request that has its arguments.",
     )
     shares_id = optional(Names(), "Commands that have the same id with other data.")
     deadline_ms = optional(
@@ -229,7 +230,7 @@ request:
 
 
 class CommandsFile(Record):
-    """A family of commands. In a delta, the family of the base with that name grows."""
+    """A family of commands. A delta adds its commands to the base's family of the same name."""
 
     family = required(Name(LOWER), "The family's name; a module of the generated Python.")
     title = required(Text(), "A heading.")

@@ -28,8 +28,8 @@ class _Vector(Record):
     text = optional(Text(), "The text of a reply outside any frame, instead of `frame`.")
     values = optional(
         Anything("a mapping from fields to values", {"type": "object"}),
-        "The values of the fields, in order: an enum by its member, a flag as true or false, a row "
-        "as a list.",
+        "The values of the fields, in order: an enum by its member, a flag as true or false, a "
+        "value type as a list.",
     )
     says = optional(Text(), "What it shows.")
     rejected = optional(Part(Rejection), "Why the printed bytes are not a legal frame.")

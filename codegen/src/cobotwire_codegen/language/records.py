@@ -1,7 +1,6 @@
-"""Records: the mappings of the spec, each a class with its keys.
+"""Defines records: each mapping of the spec is a class, and its keys are the attributes.
 
-A record is described once, here and in the modules beside. The reader, the JSON schema and the
-reference page are all derived from that description.
+The reader, the JSON schema and the reference page are all derived from these classes.
 """
 
 from __future__ import annotations
@@ -16,14 +15,14 @@ from cobotwire_codegen.load import Mapping, Node, Sequence
 
 T = TypeVar("T")
 Entry = tuple[str, Place, Node]
-# The code of the problem that an empty value is, and what to do about it.
+# The problem code of an empty value, and how to correct it.
 Empty = tuple[str, str]
 
 
 class Key(Generic[T]):
     """One key of a record: its shape, its meaning, and its default.
 
-    ``absent`` is the code of the problem that a missing key is; empty if the key is optional.
+    ``absent`` is the problem code of a missing key; it is empty if the key is optional.
     """
 
     name: str
@@ -43,7 +42,7 @@ class Key(Generic[T]):
     def schema(self) -> Schema:
         """Return the schema of the key's value, with the description."""
         shape = self.shape.schema()
-        # Beside a reference, other words are ignored.
+        # JSON Schema ignores other keywords beside a reference.
         return shape if "$ref" in shape else {**shape, "description": self.doc}
 
 
@@ -67,14 +66,14 @@ class Record:
 
     @classmethod
     def keys(cls) -> dict[str, Key[Any]]:
-        """Return the keys by name, those that must be there first."""
+        """Return the keys by name, the required ones first."""
         found = [
             key
             for owner in reversed(cls.__mro__)
             for key in vars(owner).values()
             if isinstance(key, Key)
         ]
-        # A key that a subclass describes anew counts once.
+        # A key that a subclass describes again counts once.
         named = {key.name: key for key in found}
         return dict(sorted(named.items(), key=lambda item: not item[1].required))
 
@@ -121,7 +120,7 @@ class Choice:
         return self.name
 
     def options(self) -> tuple[Described, ...]:
-        """Return everything that can be meant."""
+        """Return every record and choice that can be meant."""
         return (*((self.otherwise,) if self.otherwise else ()), *self.chosen.values())
 
     def present(self, node: Node) -> list[str]:
@@ -157,7 +156,7 @@ class Part(Shape[Node | None]):
         self.words = f"a mapping ({link(record)})"
 
     def read(self, node: Node, subject: str, note: Note) -> Node | None:
-        """Return the node; it becomes a reader of its own."""
+        """Return the node; a reader of its own reads it."""
         return node
 
     def schema(self) -> Schema:
@@ -243,7 +242,7 @@ class Named(Shape[tuple[Entry, ...]]):
 
 
 class InFile(Shape[Node | None]):
-    """What a file of its own may hold: the file's name, or the content itself."""
+    """The name of a file, or the content of the file itself."""
 
     blank = None
 
@@ -261,7 +260,7 @@ class InFile(Shape[Node | None]):
 
 
 class InFiles(Shape[Node | None]):
-    """What several files may hold: a list of file names and contents, or ``alone`` by itself."""
+    """A list of file names and contents, or instead of a list what ``alone`` describes."""
 
     blank = None
 
@@ -275,7 +274,7 @@ class InFiles(Shape[Node | None]):
         return node
 
     def schema(self) -> Schema:
-        """Return an array of file names and contents, or the schema of what stands alone."""
+        """Return an array of file names and contents, or the schema of ``alone``."""
         listed: Schema = {"type": "array", "items": or_file(ref(self.records[0].definition()))}
         return listed if self._alone is None else either("array", listed, self._alone)
 
@@ -308,7 +307,7 @@ class Changed(Shape[tuple[Entry, ...]]):
         return {name: key for record in self.changed for name, key in record.keys().items()}
 
     def read(self, node: Node, subject: str, note: Note) -> tuple[Entry, ...]:
-        """Return the entries; they are checked where they are read, in the changed mapping."""
+        """Return the entries; the reader of the changed mapping checks them."""
         return entries_of(node, subject, note)
 
     def schema(self) -> Schema:

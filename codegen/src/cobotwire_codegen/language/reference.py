@@ -1,4 +1,4 @@
-"""The reference page of the language, made from its records."""
+"""Generates the reference page of the language from its records."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ An edition of a protocol is a set of YAML files. This page lists every mapping t
 every key of each mapping. `spec/README.md` explains where the project keeps its files, and
 [the guide](../guide/add-command.md) adds a command step by step.
 
-The content of a file can also be written where the edition names the file, so a small protocol is
-one file; `cobotwire-gen init NAME` writes one to start with. `cobotwire-gen check` reports every
+An edition can contain the content of a file instead of its name, so a small protocol fits into one
+file; `cobotwire-gen init NAME` writes one to start with. `cobotwire-gen check` reports every
 problem as `file:line:column: code: message`, and `cobotwire-gen explain CODE` explains a code.
 Editors that use the YAML language server complete and check a file whose first line is
 `# yaml-language-server: $schema=PATH/schema.json`; `cobotwire-gen schema` writes the schema.

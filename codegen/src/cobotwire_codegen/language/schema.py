@@ -1,4 +1,4 @@
-"""The JSON Schema of the spec's files, for editors: completion, descriptions, and errors at once.
+"""The JSON Schema of the spec's files, with which editors complete, describe and check keys.
 
 The schema covers what can be judged from one file alone; the checker covers the rest.
 """

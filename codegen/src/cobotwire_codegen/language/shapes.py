@@ -46,7 +46,7 @@ class Shape(Generic[T]):
 
 
 class Text(Shape[str]):
-    """A word or sentence; a number is taken as its digits."""
+    """A word or sentence; a number is read as its digits."""
 
     blank = ""
     words = "text"
@@ -113,7 +113,7 @@ class Whole(Shape[int]):
     def read(self, node: Node, subject: str, note: Note) -> int:
         """Return the number."""
         value = node.value if isinstance(node, Scalar) else None
-        # bool is an int to Python, not to a reader of the spec.
+        # In Python, True is an int; in the spec, it is not a number.
         if type(value) is not int:
             return self._wrong(node, subject, note)
         low = self.lowest is not None and value < self.lowest
@@ -220,7 +220,7 @@ class Hex(Shape[bytes | None]):
             return self._wrong(node, subject, note, "bad-hex")
 
     def schema(self) -> Schema:
-        """Return a string; pairs without a letter are a number in YAML."""
+        """Return a string or integer: YAML reads pairs without a letter as a number."""
         return {"type": ["string", "integer"], "pattern": r"^\s*([0-9A-Fa-f]{2}\s*)*$"}
 
 

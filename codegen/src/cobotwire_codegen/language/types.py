@@ -1,4 +1,4 @@
-"""The types file: what a field can be."""
+"""The types file: the types of fields."""
 
 from __future__ import annotations
 
@@ -52,10 +52,10 @@ class Quantity(Record):
         Range(), "The lowest and highest physical value. Left out: every raw value is legal."
     )
     choices = optional(
-        Numbers(), "All legal raw values, if only a few are. Excludes `range` and `scale`."
+        Numbers(), "All legal raw values, if there are only a few. Excludes `range` and `scale`."
     )
     shown_in = optional(
-        Word(("radian",)), "The generated methods take radians where the wire has degrees.", ""
+        Word(("radian",)), "The generated methods use radians; the wire carries degrees.", ""
     )
     source = facts.source()
     disputed = facts.disputed()
@@ -113,7 +113,7 @@ class Value(Record):
 
 
 class TypesFile(Record):
-    """What a field can be. A field names a quantity, a flag, an enum or a value type."""
+    """The types of fields. A field names a quantity, a flag, an enum or a value type."""
 
     wire = optional(Named(Wire, LOWER), "How raw values are encoded.")
     quantities = optional(Named(Quantity, LOWER), "Numbers with a scale, a unit and a range.")

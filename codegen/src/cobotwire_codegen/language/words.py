@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 SAFETY = {
-    "query": "Reads and changes nothing. Only queries are ever repeated automatically.",
+    "query": "Reads a value and changes nothing. Clients repeat only queries automatically.",
     "setting": "Changes a setting until the power is switched off.",
     "motion": "Moves the arm, or allows it to move.",
     "power": "Switches power.",
-    "persistent write": "Changes something that outlives a power cycle.",
+    "persistent write": "Changes something that survives a power cycle.",
 }
 CHECKS = {
     "footer": "Every frame ends with the same byte.",

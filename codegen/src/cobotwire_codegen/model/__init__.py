@@ -1,4 +1,4 @@
-"""The protocol as frozen records, with only the behaviour that follows from their fields.
+"""The protocol as frozen records; their methods only derive facts from their fields.
 
 Every record knows its place in the spec, so that problems can name it.
 """

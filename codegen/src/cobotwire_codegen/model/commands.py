@@ -37,7 +37,7 @@ Samples = tuple[tuple[str, tuple[int, ...]], ...]
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """Text outside any frame: a reply that ends by silence, or what follows a request."""
+    """Text outside any frame: a reply that ends with silence, or text that follows a request."""
 
     place: Place
     class_name: str

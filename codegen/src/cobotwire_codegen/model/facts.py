@@ -1,4 +1,4 @@
-"""Sources of a fact, what contradicts it, and what a delta changed."""
+"""Evidence for a fact, disputes about it, and the changes of a delta."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What a field can be: a quantity, an enum, a flag, or a value type of several quantities.
+"""Defines the types of fields: quantity, enum, flag, and a value type of several quantities.
 
-All four offer the same attributes, so that the rest of the generator rarely asks which one it has:
+All four have the same attributes, so that the rest of the generator rarely distinguishes them:
 ``kind``, ``name``, ``doc``, ``class_name``, ``members``, ``parts``, ``size``, ``choices``, and the
 conversions ``smallest`` and ``read``.
 """
@@ -84,7 +84,7 @@ class _Scalar:
         return False
 
     def narrowed(self, ends: tuple[Fraction, Fraction]) -> Type | None:
-        """Return the type with a narrower range; None if it has no range, or one inside this."""
+        """Return the type with a narrower range; None if the type cannot have that range."""
         return None
 
     def values(self, most: int) -> tuple[Member, ...]:
@@ -96,8 +96,8 @@ class _Scalar:
 class Quantity(_Scalar):
     """A wire type with a scale, a unit and a range (in that unit; None: every raw value).
 
-    ``choices`` closes the list of legal raw values. With ``radians`` the API takes radians where
-    the wire has degrees.
+    ``choices``, if there are any, are the only legal raw values. With ``radians`` the API uses
+    radians, and the wire carries degrees.
     """
 
     kind: ClassVar[str] = "quantity"
@@ -255,7 +255,7 @@ class Value:
         return tuple(values)
 
     def can_hold(self, raw: int) -> bool:
-        """Return False: several raw values are not one."""
+        """Return False: a value type has several raw values."""
         return False
 
     def can_hold_any(self, width: int) -> bool:

@@ -1,4 +1,4 @@
-"""Render the model as text: every generated file of an edition."""
+"""Renders the model as text: every generated file of an edition."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
 
 
 def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
-    """Return the client for one way of calling: the same templates make all of them."""
+    """Return the client for one way of calling; the same templates generate every client."""
     sharing: Sharing = common["sharing"]
     imports = ["from cobotwire.protocol.table import Table"]
     if python_api.moves(sharing.edition):
@@ -136,7 +136,7 @@ def with_used_types(edition: Edition) -> Edition:
 
 
 def environment(templates: Path | None = None) -> Environment:
-    """Return the environment of all templates; those in ``templates`` replace ours."""
+    """Return the environment of all templates; those in ``templates`` replace the shipped ones."""
     shipped = PackageLoader("cobotwire_codegen")
     own = [FileSystemLoader(templates)] if templates is not None else []
     jinja = Environment(

@@ -1,4 +1,4 @@
-"""Draw a message as a row of boxes with the numbers of their bytes above."""
+"""Draws a message as a row of boxes with the numbers of their bytes above."""
 
 from __future__ import annotations
 

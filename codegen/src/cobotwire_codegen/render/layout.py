@@ -1,4 +1,4 @@
-"""Lay out Python text as ruff does, so that generated files need no formatter."""
+"""Lays out Python text as ruff does, so that generated files need no formatter."""
 
 from __future__ import annotations
 

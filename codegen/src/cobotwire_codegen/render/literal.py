@@ -1,4 +1,4 @@
-"""Lay out Python expressions as ruff does, so that generated code is formatted."""
+"""Lays out Python expressions as ruff does, so that generated code is formatted."""
 
 from __future__ import annotations
 

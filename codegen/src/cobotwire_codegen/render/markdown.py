@@ -1,4 +1,4 @@
-"""Prepare the Markdown reference: byte tables, worked frames, errors of the document."""
+"""Prepares the Markdown reference: byte tables, example frames, errata."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def wire_variant(type: Type) -> str:
 
 
 def worked(edition: Edition, command: Command, direction: Direction) -> Vector | None:
-    """Return the best example of a message: the document's own if it has one."""
+    """Return the best example of a message: preferably one that the document prints."""
     fitting = [
         vector
         for vector in edition.vectors
@@ -121,17 +121,17 @@ def hexed(data: bytes) -> str:
 
 
 def errata(edition: Edition, command: Command) -> list[Erratum]:
-    """Return the document's errors about a command."""
+    """Return the errata of a command."""
     return [erratum for erratum in edition.errata if command.name in erratum.commands]
 
 
 def general_errata(edition: Edition) -> list[Erratum]:
-    """Return the document's errors about the transport and the frame."""
+    """Return the errata of the transport and the frame."""
     return [erratum for erratum in edition.errata if not erratum.commands]
 
 
 def cell(text: str) -> str:
-    """Return text with the character escaped that would end a table cell."""
+    """Return text for a table cell: ``|`` is escaped, since it would end the cell."""
     return text.replace("|", "\\|")
 
 
@@ -158,11 +158,11 @@ def field_rows(command: Command) -> list[tuple[str, Field]]:
 
 
 def field_doc(field: Field) -> str:
-    """Return what a field is, and whether it can be left out."""
+    """Return the description of a field, with echo, optional and constant."""
     words = [field.doc]
     if field.echo:
         older = "; older firmware leaves it out" if field.echo == "optional" else ""
-        words.append(f"Echoes the request{older}.")
+        words.append(f"Repeats the request's value{older}.")
     if field.optional:
         words.append("May be left out.")
     if field.const is not None:

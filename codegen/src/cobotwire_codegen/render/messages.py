@@ -1,4 +1,4 @@
-"""Describe the message classes of a command: the template writes them, editions share them."""
+"""Describes the message classes of a command; the template writes them, editions share them."""
 
 from __future__ import annotations
 

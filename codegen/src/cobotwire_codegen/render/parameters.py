@@ -1,4 +1,4 @@
-"""Arguments and results of a method: the fields of all variants of a message, by name."""
+"""Derives the arguments and results of a method from the fields of all variants of a message."""
 
 from __future__ import annotations
 

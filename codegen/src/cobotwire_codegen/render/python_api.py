@@ -1,4 +1,4 @@
-"""Prepare the Python package's templates: signatures, calls, docstrings, imports."""
+"""Prepares the text of the Python package: signatures, calls, docstrings, imports."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def item_doc(item: Quantity) -> str:
 
 
 def imports(family: Family) -> tuple[set[str], bool]:
-    """Return the enums and named tuples that a family's methods name, and whether Sequence is."""
+    """Return the enums and named tuples of a family's methods, and whether these use Sequence."""
     used = set().union(*(classes_in_method(command) for command in family.commands))
     rows = [p for c in family.commands for p in parameters(c) if isinstance(p.types[0], Value)]
     return used, bool(rows)

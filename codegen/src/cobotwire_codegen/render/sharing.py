@@ -1,4 +1,4 @@
-"""Find what a delta edition's package can import unchanged from the package of its base."""
+"""Finds what a delta edition's package can import unchanged from the package of its base."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PACKAGE = "cobotwire.editions"
 
 
 class Sharing:
-    """An edition beside its base: which classes, messages and methods are the same in both.
+    """Compares an edition with its base: which classes, messages and methods are equal in both.
 
     Without a base (``base`` is None) nothing is shared, and the package imports no other.
     """

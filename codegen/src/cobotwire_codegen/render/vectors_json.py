@@ -1,4 +1,4 @@
-"""Write the table and its vectors as JSON, for tests in other languages than Python."""
+"""Writes the table and its vectors as JSON, for tests in other languages than Python."""
 
 from __future__ import annotations
 
@@ -29,12 +29,13 @@ def _vector(edition: Edition, vector: Vector) -> dict[str, Any]:
         "frame": _hex(vector.frame),
         "text": vector.text is not None,
         "values": [plain(edition, vector, name, value) for name, value in vector.values],
-        "refused": vector.rejected and {"reason": vector.rejected[0], "offset": vector.rejected[1]},
+        "rejected": vector.rejected
+        and {"reason": vector.rejected[0], "offset": vector.rejected[1]},
     }
 
 
 def plain(edition: Edition, vector: Vector, name: str, value: object) -> Any:
-    """Return a vector's value as the codecs take it: members as integers, fractions as floats."""
+    """Return a vector's value as the codecs expect it: members as integers, fractions as floats."""
     if isinstance(value, tuple):
         return [plain(edition, vector, name, item) for item in value]
     if isinstance(value, Fraction):

@@ -1,4 +1,4 @@
-"""The two kinds of clients, blocking and asyncio, which the same templates write."""
+"""Defines the two kinds of clients, blocking and asyncio; the same templates generate both."""
 
 from __future__ import annotations
 

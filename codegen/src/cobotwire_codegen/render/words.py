@@ -1,4 +1,4 @@
-"""Describe types and sources in words, for docstrings and the reference."""
+"""Describes types and sources in words, for docstrings and the reference."""
 
 from __future__ import annotations
 

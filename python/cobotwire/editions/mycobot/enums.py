@@ -10,7 +10,7 @@ class FreshMode(IntEnum):
     INTERPOLATION = 0
     """Targets are queued, and the arm passes through them in turn."""
     REFRESH = 1
-    """The newest target wins."""
+    """The arm goes to the newest target at once."""
 
 
 class Axis(IntEnum):
@@ -78,8 +78,8 @@ class ServoRegister(IntEnum):
     POSITION_I = 23
     """Position loop, integral coefficient."""
     MINIMUM_STARTING_FORCE = 24
-    """Minimum starting force, 1000 is full; two bytes wide, so this one-byte variant reaches its
-    low byte only.
+    """Minimum starting force; 1000 is the maximum. It has two bytes, but the command carries only
+    the low byte.
     """
 
 

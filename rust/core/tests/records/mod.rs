@@ -51,7 +51,7 @@ impl Edition {
 }
 
 fn vector(json: &Value) -> Vector {
-    let rejected = &json["refused"];
+    let rejected = &json["rejected"];
     Vector {
         name: string(&json["name"]),
         command: json["command"].as_str().unwrap_or_default().to_owned(),

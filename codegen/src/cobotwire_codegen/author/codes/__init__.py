@@ -1,7 +1,7 @@
 """What every problem code means: the registry behind ``cobotwire-gen explain CODE``.
 
-A code that the sources emit and that is not explained here, or the other way round, fails a test;
-so does an example whose wrong lines do not give the code, or whose right lines do.
+A test fails if the sources emit a code that is not explained here, or if an explained code is never
+emitted. It also fails if the wrong lines of an example do not cause the code, or the right ones do.
 """
 
 from __future__ import annotations

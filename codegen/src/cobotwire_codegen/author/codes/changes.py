@@ -14,7 +14,7 @@ EXPLANATIONS = (
         "- remove: [read_angle]\n  why: It is gone.",
     ),
     Explanation(
-        "nothing-there",
+        "nothing-to-unset",
         "A change unsets a key that does not exist.",
         "The base is not as the change expects; it may have been corrected there.",
         "Correct the key, or remove the change.",

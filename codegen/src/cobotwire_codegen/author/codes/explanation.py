@@ -15,6 +15,6 @@ class Explanation:
     code: str
     means: str
     why: str
-    mend: str
+    fix: str
     wrong: str
     right: str

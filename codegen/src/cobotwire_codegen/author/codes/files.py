@@ -16,7 +16,7 @@ EXPLANATIONS = (
     Explanation(
         "no-file",
         "The edition names a file that does not exist.",
-        "File names are relative to the edition's own file; without the file a part is missing.",
+        "File names are relative to the edition's own file; the edition lacks the file's content.",
         "Correct the name, or write the content of the file in its place.",
         "types: bus_typs.yaml",
         "types: bus_types.yaml",
@@ -30,7 +30,7 @@ EXPLANATIONS = (
         "spec/editions/mycobot.yaml",
     ),
     Explanation(
-        "base-circle",
+        "circular-base",
         "An edition is its own base, directly or through other editions.",
         "A delta changes its base, so the base must be complete without it.",
         "Name the earlier edition as `base`.",
@@ -81,7 +81,7 @@ EXPLANATIONS = (
     Explanation(
         "wrong-kind",
         "A key has a value of the wrong kind: a text, number, list or mapping.",
-        "The value cannot be read as what the key means.",
+        "The value has no meaning for this key.",
         "The message says what the value must be; put a text that looks like a number in quotes.",
         "id: twenty",
         "id: 0x20",

@@ -58,7 +58,7 @@ EXPLANATIONS = (
     Explanation(
         "duplicate-id",
         "Two commands have the same id, and neither says that they share it.",
-        "An id that is used twice by mistake would go unnoticed if the lengths differ.",
+        "If the lengths differ, no other rule would find an id that is used twice by mistake.",
         "Correct the id, or write `shares_id: OTHER` if the commands share it.",
         "id: 0x21\ntitle: Set a pin",
         "id: 0x23\ntitle: Set a pin",
@@ -90,14 +90,14 @@ EXPLANATIONS = (
     Explanation(
         "bad-samples",
         "A command's `samples` name arguments that no variant of its request has.",
-        "The samples protect the device; for a misspelt argument they would protect nothing.",
+        "The samples protect the device; samples for a misspelt argument would have no effect.",
         "Name arguments that one variant of the request has.",
         "samples: [{parts: [1]}]\nsafety: motion",
         "safety: motion",
     ),
     Explanation(
         "bad-agreement",
-        "`agrees_with` names a command that is not a query, or stands on one that is not.",
+        "`agrees_with` names a command that is not a query, or belongs to one that is not.",
         "A conformance run sends both queries while the arm rests, and compares the replies.",
         "Name a query of the edition, or remove the key.",
         "agrees_with: move\nsafety: query",
@@ -112,7 +112,7 @@ EXPLANATIONS = (
         "id: 0x20\nalias: get_angle",
     ),
     Explanation(
-        "two-variants",
+        "fields-and-variants",
         "A command gives both `request` and `request_variants` (or `reply` and `reply_variants`).",
         "The list of variants is complete, so further fields have no place in it.",
         "Put the fields into the list of variants, with the full variant first.",
@@ -188,12 +188,13 @@ EXPLANATIONS = (
         "bad-text",
         "A text is not `word {field}` in turn, with the fields as listed.",
         "The words show where one field ends and the next starts.",
-        "Name all fields in the order of the list, with words between them; a reply ends with one.",
+        "Name all fields in the order of the list, with words between them; end a reply with a "
+        "field.",
         'text: "ssid: {ssid} password: {word}"',
         'text: "ssid: {ssid} password: {password}"',
     ),
     Explanation(
-        "mute-query",
+        "query-without-reply",
         "A query has neither a reply nor a reply_text.",
         "A query waits for its reply.",
         "Add the reply, or correct the safety class.",

@@ -22,7 +22,7 @@ EXPLANATIONS = (
         "values: {brightness: 50, colour: RED}",
     ),
     Explanation(
-        "vector-unsayable",
+        "unencodable-vector",
         "The values of a vector cannot be encoded: wrong fields, or an illegal value.",
         "A vector must show a legal message.",
         "Give the fields of one variant, in order, with values inside their types.",
@@ -40,8 +40,8 @@ EXPLANATIONS = (
     ),
     Explanation(
         "unexplained-example",
-        "A printed example is not read as printed, and no erratum explains why.",
-        "Every place where the document is wrong is recorded with its reason.",
+        "A printed example differs from its verdict or frame, and no erratum explains why.",
+        "Every mistake of the document is recorded with its reason.",
         "Add an erratum with the example's number, or correct the verdict or the frame.",
         "verdict: erratum",
         "verdict: consistent",

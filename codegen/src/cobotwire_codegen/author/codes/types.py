@@ -40,7 +40,7 @@ EXPLANATIONS = (
     Explanation(
         "bad-sign",
         "`signed_at` is larger than any number of that many bytes.",
-        "Larger unsigned numbers are negative, so it must be one of them.",
+        "Unsigned numbers above `signed_at` are negative, so `signed_at` must be such a number.",
         "Write 127 or 32767 for two's complement; remove it if no raw value is negative.",
         "signed_at: 70000",
         "signed_at: 32767",
@@ -48,7 +48,7 @@ EXPLANATIONS = (
     Explanation(
         "bad-choices",
         "A quantity with `choices` has a range or a scale as well.",
-        "The choices are all legal raw values; a range would state them a second time.",
+        "The choices list every legal raw value, so a range or scale could contradict them.",
         "Remove the range and the scale, or the choices.",
         "pin: {wire: byte, choices: [2, 5, 35], scale: 2, doc: A pin of the board.}",
         "pin: {wire: byte, choices: [2, 5, 35], doc: A pin of the board.}",
@@ -86,7 +86,7 @@ EXPLANATIONS = (
         "items: {x: length, turn: angle}",
     ),
     Explanation(
-        "unsayable-range",
+        "unencodable-range",
         "An end of a range is not a multiple of the scale.",
         "That value cannot be encoded, so it cannot be the limit.",
         "Move the end to a multiple of the scale.",

@@ -1,4 +1,4 @@
-"""Write C99 for firmware and hosts: a header and a source for each edition."""
+"""Writes C99 for firmware and hosts: a header and a source for each edition."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def render_c(edition: Edition, templates: Path | None = None) -> Files:
     """Return the edition's header and source; ``templates`` replace the shipped ones."""
     jinja = environment(templates)
     jinja.filters.update(comment=names.comment, c_string=names.string, rows=names.rows)
-    jinja.filters.update(whole=names.whole)
+    jinja.filters.update(integer=names.integer)
     tables = Tables(edition)
     common = {
         "edition": edition,
@@ -47,7 +47,7 @@ def _enums(found: list[Message]) -> Iterator[Enum]:
 
 
 def _scaled(found: list[Message]) -> Iterator[Quantity]:
-    """Return the scaled quantities, each name once: only their ranges can differ."""
+    """Return the scaled quantities, each name once; quantities of one name differ only in range."""
     seen: set[str] = set()
     for message in found:
         for member in message.members:

@@ -1,4 +1,4 @@
-"""Describe an edition's variants for C: a struct each, numbered by command id."""
+"""Describes an edition's variants for C: one struct for each, numbered by command id."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Member:
 
     @property
     def text(self) -> str:
-        """The comment: meaning, allowed values, size of a step."""
+        """The comment: meaning, allowed values, size of a raw step."""
         doc = self.field.doc.rstrip(".")
         return f"{doc}: {allowed(self.field)}{''.join(steps(self.field))}."
 
@@ -95,7 +95,7 @@ def _members(variant: Variant) -> tuple[Member, ...]:
 
 
 def steps(field: Field) -> Iterator[str]:
-    """Return the size of a step of the raw value, unless it is one."""
+    """Return the physical size of one raw step, unless it is 1."""
     found: dict[str, list[str]] = {}
     for name, quantity in quantities(field):
         if quantity.scale != 1:

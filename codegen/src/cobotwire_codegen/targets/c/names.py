@@ -1,11 +1,11 @@
-"""Write names, numbers and comments in C."""
+"""Writes names, numbers and comments in C."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
 
-# Also those of C++, since a C++ program may include the header.
+# The keywords of C++ are included, since a C++ program may include the header.
 _WORDS = """
     alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const
     const_cast constexpr continue decltype default delete do double dynamic_cast else enum explicit
@@ -24,14 +24,14 @@ def member(name: str) -> str:
     return f"{name}_" if name in KEYWORDS else name
 
 
-def whole(value: int) -> str:
+def integer(value: int) -> str:
     """Return an integer as a constant of a type that is wide enough."""
     # The lowest number of a type has no constant: its minus sign is an operator.
     return f"({value + 1} - 1)" if value <= -(2**31) else str(value)
 
 
 def string(text: str) -> str:
-    """Return text as a string constant; what is not printable ASCII is escaped in octal."""
+    """Return text as a string constant; bytes that are not printable ASCII are escaped in octal."""
     plain = {'"': '\\"', "\\": "\\\\", "?": "\\?"}
     return '"' + "".join(_character(byte, plain) for byte in text.encode()) + '"'
 

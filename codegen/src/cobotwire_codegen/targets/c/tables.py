@@ -1,4 +1,4 @@
-"""Build the tables that the C codec interprets; equal runs are stored once."""
+"""Builds the tables that the C codec interprets; equal runs are stored once."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Edition, Field
 from cobotwire_codegen.targets.c.messages import DIRECTIONS, Member, Message, messages
-from cobotwire_codegen.targets.c.names import bits, string, whole
+from cobotwire_codegen.targets.c.names import bits, integer, string
 
 CONSTANT = 0xFF
 NO_SELECTOR = 0xFF
@@ -35,8 +35,8 @@ class Tables:
 
     def __init__(self, edition: Edition) -> None:
         self.messages = messages(edition)
-        self.whole_bits = 64 if any(map(_wide, _numbers(self.messages))) else 32
-        self.numbers, self.wholes, self.cases, self.fields = Pool(), Pool(), Pool(), Pool()
+        self.raw_bits = 64 if any(map(_wide, _numbers(self.messages))) else 32
+        self.numbers, self.raw_values, self.cases, self.fields = Pool(), Pool(), Pool(), Pool()
         self.rows = [self._message(message) for message in self.messages]
         self.lengths = {way: self._lengths(edition, way) for way in DIRECTIONS}
         self.most = max((message.count for message in self.messages), default=0)
@@ -65,7 +65,7 @@ class Tables:
         choices = _choices(field)
         parts = [
             self.cases.place(cases),
-            self.wholes.place([whole(choice) for choice in choices]),
+            self.raw_values.place([integer(choice) for choice in choices]),
             len(cases),
             len(choices),
             NO_SELECTOR if selector < 0 else selector,
@@ -74,7 +74,7 @@ class Tables:
         return "{" + ", ".join(map(str, parts)) + "}"
 
     def _case(self, when: tuple[int, ...], numbers: tuple[dict[str, Any], ...]) -> str:
-        picked = self.wholes.place([whole(value) for value in when])
+        picked = self.raw_values.place([integer(value) for value in when])
         return (
             f"{{{picked}, {self.numbers.place([_number(number) for number in numbers])}, "
             f"{len(when)}, {len(numbers)}}}"
@@ -102,7 +102,7 @@ def _choices(field: Field) -> tuple[int, ...]:
 
 def _number(number: dict[str, Any]) -> str:
     little = "1" if number["order"] == "little" else "0"
-    low, high = whole(number["minimum"]), whole(number["maximum"])
+    low, high = integer(number["minimum"]), integer(number["maximum"])
     return f"{{{number['signed_at']}, {low}, {high}, {number['width']}, {little}}}"
 
 

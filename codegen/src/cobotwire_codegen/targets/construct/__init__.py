@@ -1,4 +1,4 @@
-"""Write declarations for construct, an independent parsing library."""
+"""Writes declarations for construct, an independent parsing library."""
 
 from __future__ import annotations
 

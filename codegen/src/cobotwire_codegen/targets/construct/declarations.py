@@ -1,4 +1,4 @@
-"""Express the model as calls of construct's classes."""
+"""Expresses the model as calls of construct's classes."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Declarations:
 
     def _frame(self, command: Command, variant: Variant) -> Call:
         frame = self._edition.frame
-        # The prefix keeps these names apart from fields; some messages have a field named end.
+        # The prefix distinguishes these names from fields; some messages have a field named end.
         data = sum(size(field.type) for field in variant)
         parts = {
             "frame_header": Name("HEADER"),

@@ -1,4 +1,4 @@
-"""Write the tables of the docs site's decoder page, as scripts because there is no server."""
+"""Writes the tables of the docs site's decoder page; they are scripts, since there is no server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write vectors as JSON, for tests of implementations in any language."""
+"""Writes vectors as JSON, for tests of implementations in any language."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write the vectors of an edition as one JSON document, one line each."""
+"""Writes the vectors of an edition as one JSON document, one line each."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def document(edition: Edition) -> str:
     }
     parts = {
         "messages": [_message(example, laws) for example in found],
-        "refused": [_refused(case) for each in ordinary for case in beyond(edition, each)],
+        "rejected": [_rejected(case) for each in ordinary for case in beyond(edition, each)],
         "malformed": [
             {
                 "name": case.what,
@@ -88,12 +88,12 @@ def _message(example: Example, laws: dict[Direction, Law]) -> dict[str, Any]:
 def _fields(example: Example) -> list[dict[str, Any]]:
     found = []
     for field in example.variant:
-        numbers = example.wholes[field.name]
-        parts = slots(field, example.variant, example.wholes) or ()
+        numbers = example.raw_values[field.name]
+        parts = slots(field, example.variant, example.raw_values) or ()
         record = {
             "name": field.name,
-            "whole": list(numbers),
-            "value": [slot.value(whole) for slot, whole in zip(parts, numbers)],
+            "raw": list(numbers),
+            "value": [slot.value(raw) for slot, raw in zip(parts, numbers)],
         }
         if isinstance(field.type, Enum) and field.const is None:
             record["label"] = next(m.name for m in field.type.members if m.value == numbers[0])
@@ -105,17 +105,17 @@ def _variant_number(example: Example) -> int:
     return example.command.variants(example.direction).index(example.variant)
 
 
-def _refused(case: Beyond) -> dict[str, Any]:
+def _rejected(case: Beyond) -> dict[str, Any]:
     """Return a message that encoders must reject: one of its numbers is out of range."""
     example = case.example
     fields = _fields(example)
     record = next(record for record in fields if record["name"] == case.field.name)
-    slot = (slots(case.field, example.variant, example.wholes) or ())[case.element]
-    record["whole"][case.element] = case.whole
-    record["value"][case.element] = slot.value(case.whole)
+    slot = (slots(case.field, example.variant, example.raw_values) or ())[case.element]
+    record["raw"][case.element] = case.raw
+    record["value"][case.element] = slot.value(case.raw)
     record.pop("label", None)
     return {
-        "name": f"{example.command.name} {example.direction}, {case.field.name} {case.whole}",
+        "name": f"{example.command.name} {example.direction}, {case.field.name} {case.raw}",
         "command": example.command.name,
         "direction": example.direction,
         "variant": _variant_number(example),

@@ -1,4 +1,4 @@
-"""Implement framing and decoding once more, straight from the model and without optimization.
+"""Implements framing and decoding again, directly from the model and without optimization.
 
 Vectors take their expected results from here, not from a codec, so they can prove a codec wrong.
 """
@@ -9,14 +9,14 @@ from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 from cobotwire_codegen.model import Command, Edition, Variant
-from cobotwire_codegen.targets.vectors.slots import Wholes, slots
+from cobotwire_codegen.targets.vectors.slots import RawValues, slots
 from cobotwire_codegen.wire import check_of, size
 
 Direction = Literal["request", "reply"]
 
 
 class Fault(NamedTuple):
-    """Why bytes are not a message, and at which byte this shows."""
+    """Why bytes are not a message, and the index of the first byte that is not legal."""
 
     reason: str
     offset: int
@@ -27,7 +27,7 @@ class Reading(NamedTuple):
 
     command: Command
     variant: Variant
-    wholes: Wholes
+    raw_values: RawValues
 
 
 class Span(NamedTuple):
@@ -86,7 +86,7 @@ class Law:
         return None if data[check:end] == right else Fault("bad-check", check)
 
     def read(self, data: bytes) -> Reading | Fault:
-        """Return one whole frame decoded as the first message that allows its values."""
+        """Return one complete frame decoded as the first message that allows its values."""
         fault = self.frame_fault(data)
         if fault is not None:
             return fault
@@ -100,16 +100,16 @@ class Law:
         for command, variant in self._variants[id]:
             if _size(variant) != len(data):
                 continue
-            found = self._wholes(variant, data)
+            found = self._raw_values(variant, data)
             if not isinstance(found, Fault):
                 return Reading(command, variant, found)
             first = first or found
         assert first is not None, "LEN was legal for the id"
         return first
 
-    def _wholes(self, variant: Variant, data: bytes) -> Wholes | Fault:
+    def _raw_values(self, variant: Variant, data: bytes) -> RawValues | Fault:
         starts = dict(zip((field.name for field in variant), _starts(variant)))
-        found: Wholes = {}
+        found: RawValues = {}
         picked = _unchecked(variant, data)
         for field in variant:
             parts = slots(field, variant, picked)
@@ -118,18 +118,18 @@ class Law:
             at = starts[field.name]
             numbers = []
             for slot in parts:
-                whole = slot.read(data[at : at + slot.wire.width])
-                if not slot.allows(whole):
+                raw = slot.read(data[at : at + slot.wire.width])
+                if not slot.allows(raw):
                     return Fault("bad-value", self._at + 2 + at)
-                numbers.append(whole)
+                numbers.append(raw)
                 at += slot.wire.width
             found[field.name] = tuple(numbers)
         return found
 
     def cut(self, stream: bytes) -> Iterator[Span]:
-        """Return a finished stream as frames and noise; each byte is judged on its own.
+        """Return the frames and noise of a complete stream; each byte of noise has a reason.
 
-        Adjacent noise of one reason is one span.
+        Adjacent bytes of noise with the same reason are one span.
         """
         noise: Span | None = None
         at = 0
@@ -163,8 +163,8 @@ def _starts(variant: Variant) -> list[int]:
     return [sum(sizes[:index]) for index in range(len(variant))]
 
 
-def _unchecked(variant: Variant, data: bytes) -> Wholes:
-    """Return the raw values of fields without a selector, legal or not, to pick cases by."""
+def _unchecked(variant: Variant, data: bytes) -> RawValues:
+    """Return the raw values, legal or not, of the fields that can be selectors."""
     return {
         field.name: tuple(slot.read(data[at : at + slot.wire.width]) for slot in parts[:1])
         for field, at in zip(variant, _starts(variant))

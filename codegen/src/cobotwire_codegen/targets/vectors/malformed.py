@@ -1,4 +1,4 @@
-"""Damage messages: a few for each variant, each wrong in one place."""
+"""Damages messages: a few for each variant, each in one place."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def malformed(edition: Edition, laws: dict[Direction, Law]) -> Iterator[Malforme
     """Yield every kind of damage for every variant, and every number that can be out of range."""
     for direction, what, data in _broken(edition):
         fault = laws[direction].read(data)
-        # Damage can make another legal message: then there is nothing to reject.
+        # Damage can produce another legal message; then there is nothing to reject.
         if isinstance(fault, Fault):
             yield Malformed(what, direction, data, fault)
 
@@ -41,7 +41,7 @@ def _broken(edition: Edition) -> Iterator[tuple[Direction, str, bytes]]:
                 yield example.direction, f"{name}, {what}", data
             for case in beyond(edition, example):
                 if case.data is not None:
-                    what = f"{name}, {case.field.name} {case.whole}"
+                    what = f"{name}, {case.field.name} {case.raw}"
                     yield example.direction, what, case.data
 
 

@@ -1,4 +1,4 @@
-"""Make vectors of every variant of every message: usual values, bounds, choices, rejections."""
+"""Makes vectors of every variant of every message: ordinary values, bounds, choices, rejections."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from cobotwire_codegen.model import Command, Edition, Field, Variant
 from cobotwire_codegen.targets.vectors.law import Direction
-from cobotwire_codegen.targets.vectors.slots import Slot, Wholes, case_choices, slots
+from cobotwire_codegen.targets.vectors.slots import RawValues, Slot, case_choices, slots
 from cobotwire_codegen.wire import enclose
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
-# Ordinary numbers lie off the middle, each at another share of its range, so that a wrong order of
-# fields, bytes or cases shows.
+# Each ordinary number lies at a different share of its range, and none in the middle, so that a
+# wrong order of fields, bytes or cases is detected.
 SHARES = (0.61, 0.23, 0.83, 0.37, 0.71, 0.13, 0.53)
 
 
@@ -23,7 +23,7 @@ class Example(NamedTuple):
     command: Command
     direction: Direction
     variant: Variant
-    wholes: Wholes
+    raw_values: RawValues
     data: bytes
 
 
@@ -36,7 +36,7 @@ class Beyond(NamedTuple):
     example: Example
     field: Field
     element: int
-    whole: int
+    raw: int
     data: bytes | None
 
 
@@ -44,12 +44,12 @@ def examples(edition: Edition) -> Iterator[Example]:
     """Yield every variant and case, with the bounds and choices of every number."""
     for command, direction, variant in variants(edition):
         seen: set[bytes] = set()
-        for what, wholes in _wholes(variant):
-            data = encode(edition, command, variant, wholes)
-            # Where a variant has few numbers, its bounds and its choices are the same messages.
+        for what, raw_values in _raw_values(variant):
+            data = encode(edition, command, variant, raw_values)
+            # If a variant has few legal values, its bounds and its choices give the same messages.
             if data not in seen:
                 seen.add(data)
-                yield Example(what, command, direction, variant, wholes, data)
+                yield Example(what, command, direction, variant, raw_values, data)
 
 
 def variants(edition: Edition) -> Iterator[tuple[Command, Direction, Variant]]:
@@ -61,33 +61,35 @@ def variants(edition: Edition) -> Iterator[tuple[Command, Direction, Variant]]:
 
 
 def beyond(edition: Edition, example: Example) -> Iterator[Beyond]:
-    """Yield for each number of a message the nearest illegal ones."""
+    """Yield the nearest illegal values of each number of a message."""
     for field in example.variant:
-        parts = slots(field, example.variant, example.wholes)
+        parts = slots(field, example.variant, example.raw_values)
         assert parts is not None, "an example has a case for every field"
         for element, slot in enumerate(parts):
-            for whole in _outside(slot):
-                numbers = list(example.wholes[field.name])
-                numbers[element] = whole
-                wholes = example.wholes | {field.name: tuple(numbers)}
-                encodable = slot.encodable(whole) and not _picks(field, example.variant)
+            for raw in _outside(slot):
+                numbers = list(example.raw_values[field.name])
+                numbers[element] = raw
+                raw_values = example.raw_values | {field.name: tuple(numbers)}
+                encodable = slot.encodable(raw) and not _picks(field, example.variant)
                 data = (
-                    encode(edition, example.command, example.variant, wholes) if encodable else None
+                    encode(edition, example.command, example.variant, raw_values)
+                    if encodable
+                    else None
                 )
-                yield Beyond(example, field, element, whole, data)
+                yield Beyond(example, field, element, raw, data)
 
 
-def encode(edition: Edition, command: Command, variant: Variant, wholes: Wholes) -> bytes:
+def encode(edition: Edition, command: Command, variant: Variant, raw_values: RawValues) -> bytes:
     """Return the frame with these raw values, legal or not."""
     data = b""
     for field in variant:
-        for slot, whole in zip(slots(field, variant, wholes) or (), wholes[field.name]):
-            data += slot.word(whole)
+        for slot, raw in zip(slots(field, variant, raw_values) or (), raw_values[field.name]):
+            data += slot.encode(raw)
     return enclose(edition.frame, command.id, data)
 
 
 def _picks(field: Field, variant: Variant) -> bool:
-    """Return whether another field's case depends on this one: then its size is not known."""
+    """Return whether another field's case depends on this field; then its size is unknown."""
     return any(other.selector == field.name for other in variant)
 
 
@@ -96,11 +98,11 @@ def _outside(slot: Slot) -> Iterator[int]:
         yield slot.lowest - 1
         yield slot.highest + 1
         return
-    yield from sorted({whole + 1 for whole in slot.choices} - set(slot.choices))[:2]
+    yield from sorted({raw + 1 for raw in slot.choices} - set(slot.choices))[:2]
     yield min(slot.choices) - 1
 
 
-def _wholes(variant: Variant) -> Iterator[tuple[str, Wholes]]:
+def _raw_values(variant: Variant) -> Iterator[tuple[str, RawValues]]:
     for picked in case_choices(variant):
         case = "".join(f", {name} {value}" for name, value in picked.items())
         for what, choose in _CHOOSERS:
@@ -109,7 +111,7 @@ def _wholes(variant: Variant) -> Iterator[tuple[str, Wholes]]:
         yield from _choices(variant, field)
 
 
-def _choices(variant: Variant, field: Field) -> Iterator[tuple[str, Wholes]]:
+def _choices(variant: Variant, field: Field) -> Iterator[tuple[str, RawValues]]:
     """Yield a message for each member of a closed list."""
     ordinary = _message(variant, {}, _ordinary)
     for element, slot in enumerate(slots(field, variant, ordinary) or ()):
@@ -125,19 +127,19 @@ def _choices(variant: Variant, field: Field) -> Iterator[tuple[str, Wholes]]:
 Choose = Callable[[Slot, int], int]
 
 
-def _message(variant: Variant, picked: dict[str, int], choose: Choose) -> Wholes:
-    wholes: Wholes = {}
+def _message(variant: Variant, picked: dict[str, int], choose: Choose) -> RawValues:
+    raw_values: RawValues = {}
     count = 0
     # Selectors come first: they decide which values the other fields may have.
     for field in sorted(variant, key=lambda field: bool(field.selector)):
-        parts = slots(field, variant, wholes)
-        assert parts is not None, "what is chosen for a selector has a case"
+        parts = slots(field, variant, raw_values)
+        assert parts is not None, "every value that is chosen for a selector has a case"
         numbers = []
         for slot in parts:
             numbers.append(picked.get(field.name, choose(slot, count)))
             count += 1
-        wholes[field.name] = tuple(numbers)
-    return {field.name: wholes[field.name] for field in variant}
+        raw_values[field.name] = tuple(numbers)
+    return {field.name: raw_values[field.name] for field in variant}
 
 
 def _ordinary(slot: Slot, count: int) -> int:
@@ -150,7 +152,7 @@ def _ordinary(slot: Slot, count: int) -> int:
 def _nearest(wanted: int) -> Choose:
     def choose(slot: Slot, count: int) -> int:
         allowed = slot.choices or (min(max(wanted, slot.lowest), slot.highest),)
-        return min(allowed, key=lambda whole: abs(whole - wanted))
+        return min(allowed, key=lambda raw: abs(raw - wanted))
 
     return choose
 

@@ -1,4 +1,4 @@
-"""Split messages into single numbers, with their places and legal values."""
+"""Splits messages into single numbers, with their places and legal values."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from fractions import Fraction
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Enum, Field, Flag, Quantity, Type, Value, Variant, Wire
 
-Wholes = dict[str, tuple[int, ...]]
+RawValues = dict[str, tuple[int, ...]]
 """A message: its raw values by field."""
 
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """One number of a field. ``choices``, if there are any, are its only legal values."""
+    """One number of a field. ``choices``, if there are any, are its only legal raw values."""
 
     wire: Wire
     scale: Fraction
@@ -23,23 +23,23 @@ class Slot:
     highest: int
     choices: tuple[int, ...]
 
-    def allows(self, whole: int) -> bool:
-        """Return whether the edition allows this number."""
-        return whole in self.choices if self.choices else self.lowest <= whole <= self.highest
+    def allows(self, raw: int) -> bool:
+        """Return whether the edition allows a raw value."""
+        return raw in self.choices if self.choices else self.lowest <= raw <= self.highest
 
-    def value(self, whole: int) -> int | float:
+    def value(self, raw: int) -> int | float:
         """Return the physical value of a raw value."""
-        exact = whole * self.scale
-        return whole if self.scale == 1 else float(exact)
+        exact = raw * self.scale
+        return raw if self.scale == 1 else float(exact)
 
-    def word(self, whole: int) -> bytes:
+    def encode(self, raw: int) -> bytes:
         """Return the bytes of a raw value."""
-        word = whole % int(256**self.wire.width)
+        word = raw % int(256**self.wire.width)
         return word.to_bytes(self.wire.width, self.wire.order)
 
-    def encodable(self, whole: int) -> bool:
-        """Return whether some bytes decode to this number, legal or not."""
-        return self.wire.minimum <= whole <= self.wire.maximum
+    def encodable(self, raw: int) -> bool:
+        """Return whether some bytes decode to a raw value, legal or not."""
+        return self.wire.minimum <= raw <= self.wire.maximum
 
     def read(self, data: bytes) -> int:
         """Return the raw value of bytes."""
@@ -47,11 +47,11 @@ class Slot:
         return word if word <= self.wire.signed_at else word - 256**self.wire.width
 
 
-def slots(field: Field, variant: Variant, wholes: Wholes) -> tuple[Slot, ...] | None:
+def slots(field: Field, variant: Variant, raw_values: RawValues) -> tuple[Slot, ...] | None:
     """Return a field's numbers in a message; None if its selector picks no case."""
     if not field.selector:
         return _slots(field, field.type)
-    picked = wholes[field.selector][0]
+    picked = raw_values[field.selector][0]
     for when, type in lower.cases(field):
         if picked in when:
             return _slots(field, type)

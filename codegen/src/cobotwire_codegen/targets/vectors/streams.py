@@ -1,4 +1,4 @@
-"""Build streams of frames and noise, with the events that a framer must find."""
+"""Builds streams of frames and noise, with the events that a framer must find."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write a Wireshark dissector in Lua for each edition: one file for the plugin folder."""
+"""Writes a Wireshark dissector in Lua for each edition: one file for the plugin folder."""
 
 from __future__ import annotations
 

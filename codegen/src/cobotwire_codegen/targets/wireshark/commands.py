@@ -1,4 +1,4 @@
-"""Turn commands into the dissector's tables: how to read each message, which fields show it."""
+"""Turns commands into the dissector's tables: how to read each message, which fields show it."""
 
 from __future__ import annotations
 

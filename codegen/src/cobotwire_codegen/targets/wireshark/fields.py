@@ -1,4 +1,4 @@
-"""Declare the dissector's fields: their names in filters, and their types.
+"""Declares the dissector's fields: their names in filters, and their types.
 
 A filter name means one thing. ``mycobot.angle`` is the field ``angle`` of every command that has
 one. If commands use a name for different units or labels, the command's name comes in between:
@@ -15,7 +15,7 @@ from cobotwire_codegen import lower
 from cobotwire_codegen.model import Command, Edition, Enum, Field, Type, Value
 from cobotwire_codegen.render.words import units
 
-# What the dissector declares for every edition; no field of a message may take these names.
+# The dissector declares these names for every edition; no field of a message may have them.
 OWN = frozenset(
     {
         *(f"frame.{name}" for name in ("bytes", "header", "address", "length", "id", "check")),

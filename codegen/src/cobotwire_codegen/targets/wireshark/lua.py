@@ -1,4 +1,4 @@
-"""Write Lua expressions as text."""
+"""Writes Lua expressions as text."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _flat(value: Any) -> str:
 
 
 def quoted(text: str | bytes) -> str:
-    """Return a string literal; what is not printable ASCII is escaped byte by byte."""
+    """Return a string literal; bytes that are not printable ASCII are escaped."""
     data = text.encode() if isinstance(text, str) else text
     return '"' + "".join(map(_character, data)) + '"'
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class AsyncFramesCommands(AsyncClient):
-    """In which frame, and for which point, coordinates are given."""
+    """The frame and the point to which coordinates refer."""
 
     async def set_tool_reference(self, coords: Sequence[float]) -> None:
         """Set the tool reference."""

@@ -20,7 +20,7 @@ class AsyncMotionCommands(AsyncClient):
     """The joints' positions and targets, and whether the targets are reached."""
 
     async def set_fresh_mode(self, mode: FreshMode | int) -> None:
-        """Set what happens to a running motion at a new target."""
+        """Set how a new target changes a running motion."""
         await self._send(messages.motion.SetFreshMode(mode))
 
     async def get_angles(self) -> Angles:

@@ -57,9 +57,9 @@ class GripperCommands(Client):
     def set_gripper_calibration(self) -> None:
         """Set the gripper's zero to its position.
 
-        Makes the gripper's present position its zero. The document does not say whether the zero
-        outlives a power cycle; cobotwire treats it as if it did. All openings are measured from
-        this zero; a wrong zero makes the gripper squeeze too much or too little.
+        Makes the gripper's current position its zero. The document does not say whether the zero
+        survives a power cycle; cobotwire assumes that it does. All openings are measured from this
+        zero; a wrong zero makes the gripper squeeze too much or too little.
 
         Safety: persistent write. Command id 0x68.
         """

@@ -20,7 +20,7 @@ class MotionCommands(Client):
     """The joints' positions and targets, and whether the targets are reached."""
 
     def set_fresh_mode(self, mode: FreshMode | int) -> None:
-        """Set what happens to a running motion at a new target.
+        """Set how a new target changes a running motion.
 
         Sets whether the arm passes through all targets in turn, or goes to the newest one at once.
 
@@ -106,8 +106,7 @@ class MotionCommands(Client):
         """Stop.
 
         Stops the motion. There is no reply; check with is_moving before relying on it. It is not an
-        emergency stop, since a frame can be lost in transit; keep a switch at hand that cuts the
-        power.
+        emergency stop, since a frame can be lost in transit; keep a power switch within reach.
 
         Safety: motion. Command id 0x29.
         """

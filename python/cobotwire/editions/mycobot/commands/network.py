@@ -30,9 +30,9 @@ class NetworkCommands(Client):
         """Set the TCP port.
 
         Sets the TCP port that the arm listens on. The document does not say whether the port
-        outlives a power cycle; cobotwire treats it as if it did. Clients that are connected over
-        TCP must then connect to the new port. The transponder has been observed to echo this
-        request; such a frame is not an acknowledgement.
+        survives a power cycle; cobotwire assumes that it does. Clients that are connected over TCP
+        must then connect to the new port. The transponder has been observed to echo this request;
+        such a frame is not an acknowledgement.
 
         Args:
             port: TCP port (1..65535).

@@ -102,7 +102,7 @@ class ServoCommands(Client):
         """Set the smallest angle of a joint.
 
         Sets the smallest allowed angle of a joint, in degrees. The document does not say whether
-        the limit outlives a power cycle; cobotwire treats it as if it did. The limit keeps the arm
+        the limit survives a power cycle; cobotwire assumes that it does. The limit keeps the arm
         from damaging itself, and its scale is disputed; read it back with get_joint_min_angle
         before relying on it.
 
@@ -118,7 +118,7 @@ class ServoCommands(Client):
         """Set the largest angle of a joint.
 
         Sets the largest allowed angle of a joint, in degrees. The document does not say whether the
-        limit outlives a power cycle; cobotwire treats it as if it did. The limit keeps the arm from
+        limit survives a power cycle; cobotwire assumes that it does. The limit keeps the arm from
         damaging itself, and its scale is disputed; read it back with get_joint_max_angle before
         relying on it.
 
@@ -157,10 +157,10 @@ class ServoCommands(Client):
         """Write a servo register.
 
         Writes one byte into a register of a joint's servo. The document does not say whether the
-        register outlives a power cycle; cobotwire treats it as if it did, because servos of this
-        kind store these registers in EEPROM. Wrong coefficients can make a joint swing or lose its
-        hold. MINIMUM_STARTING_FORCE is two bytes wide (0 to 1000), and this variant carries one; it
-        cannot be fully set.
+        register survives a power cycle; cobotwire assumes that it does, because servos of this kind
+        store these registers in EEPROM. Wrong coefficients can make a joint oscillate or fail to
+        hold its position. MINIMUM_STARTING_FORCE has two bytes (0 to 1000), but this request
+        carries one; only a part of its range can be set.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
@@ -190,9 +190,9 @@ class ServoCommands(Client):
     def set_servo_calibration(self, joint: int) -> None:
         """Set a joint's zero to its position.
 
-        Makes the present position of a joint its zero. The document does not say whether the zero
-        outlives a power cycle; cobotwire treats it as if it did. All angles of the joint are
-        measured from this zero; a wrong zero sends the arm to wrong positions.
+        Makes the current position of a joint its zero. The document does not say whether the zero
+        survives a power cycle; cobotwire assumes that it does. All angles of the joint are measured
+        from this zero; a wrong zero sends the arm to wrong positions.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).

@@ -12,7 +12,7 @@ from ..values import Angles
 
 
 class SetFreshMode(Request[None], command="set_fresh_mode"):
-    """Set what happens to a running motion at a new target."""
+    """Set how a new target changes a running motion."""
 
     mode: FreshMode | int
 

@@ -22,7 +22,7 @@ class AsyncMotionCommands(AsyncClient):
     async def set_fresh_mode(
         self, mode: FreshMode | int, *, ack_within: float | None = None
     ) -> None:
-        """Set what happens to a running motion at a new target."""
+        """Set how a new target changes a running motion."""
         await self._send(messages.motion.SetFreshMode(mode), ack_within)
 
     async def get_angles(self) -> Angles:
@@ -74,7 +74,7 @@ class AsyncMotionCommands(AsyncClient):
         return await self._call(messages.motion.CheckAsyncOrSync())
 
     async def get_fresh_mode(self) -> FreshMode:
-        """Read what happens to a running motion at a new target."""
+        """Read how a new target changes a running motion."""
         return await self._call(messages.motion.GetFreshMode())
 
     async def set_vision_mode(self, vision: bool, *, ack_within: float | None = None) -> None:

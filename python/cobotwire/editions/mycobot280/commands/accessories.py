@@ -34,9 +34,9 @@ class AccessoriesCommands(Client):
     def set_four_pieces_zero(self) -> bool:
         """Set the four-piece motor's zero to its position.
 
-        Takes the present position of the four-piece motor as its zero, and reports whether that
-        worked. No source says whether the zero outlives a power cycle; cobotwire treats it as if it
-        did.
+        Makes the current position of the four-piece motor its zero, and reports whether it
+        succeeded. No source says whether the zero survives a power cycle; cobotwire assumes that it
+        does.
 
         Returns: True if the zero is set.
         Safety: persistent write. Command id 0xD7.

@@ -58,8 +58,8 @@ class CoordsCommands(Client):
     ) -> None:
         """Send all coordinates.
 
-        Moves the end to a position and orientation. That a request without a mode takes the path of
-        set_movement_type is read from the names; no source says it.
+        Moves the end to a position and orientation. A request without a mode is assumed to use the
+        path of set_movement_type. The names suggest this; no source states it.
 
         Args:
             coords: Position and orientation of the end (6 numbers (x, y -281.4..281.4 millimetre; z

@@ -68,8 +68,8 @@ class DragCommands(Client):
         """Delete the recording.
 
         Deletes the recording, and reports how many points are left, which is 0. The recording is
-        lost. No source says whether it would have outlived a power cycle; cobotwire treats it as if
-        it did. The maker's library marks this command as not yet tested.
+        lost. No source says whether a recording survives a power cycle; cobotwire assumes that it
+        does. The maker's library marks this command as not yet tested.
 
         Returns: Number of points in the recording (-32768..32767).
         Safety: persistent write. Command id 0xF5.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class FramesCommands(Client):
-    """In which frame, and for which point, coordinates are given."""
+    """The frame and the point to which coordinates refer."""
 
     def set_tool_reference(
         self, coords: Sequence[float], *, ack_within: float | None = None

@@ -43,7 +43,7 @@ class GripperCommands(Client):
 
         Opens, closes or releases the gripper, at a speed in percent of the maximum. An opening or
         released gripper drops what it holds; a closing one can pinch. The torque can only be given
-        together with the kind of gripper. The maker's library also sends it alone; the firmware
+        together with the kind of gripper. The maker's library can also send it alone; the firmware
         must then read it as the kind.
 
         Args:
@@ -70,9 +70,9 @@ class GripperCommands(Client):
 
         Moves the gripper to an opening in percent, at a speed in percent of the maximum. An opening
         gripper drops what it holds; a closing one can pinch. The torque can only be given together
-        with the kind of gripper. The maker's library also sends it alone; the firmware must then
-        read it as the kind. With value 0, speed 0, kind 1 and torque, it stops a gripper with force
-        control; the maker's library uses it that way.
+        with the kind of gripper. The maker's library can also send it alone; the firmware must then
+        read it as the kind. With value 0, speed 0, kind 1 and torque, the request stops a gripper
+        with force control; the maker's library uses it for that.
 
         Args:
             value: How far the gripper is open; 0 is closed, 100 fully open (0..100 percent).
@@ -88,9 +88,9 @@ class GripperCommands(Client):
     def set_gripper_calibration(self, *, ack_within: float | None = None) -> None:
         """Set the gripper's zero to its position.
 
-        Makes the gripper's present position its zero. The document does not say whether the zero
-        outlives a power cycle; cobotwire treats it as if it did. All openings are measured from
-        this zero; a wrong zero makes the gripper squeeze too much or too little.
+        Makes the gripper's current position its zero. The document does not say whether the zero
+        survives a power cycle; cobotwire assumes that it does. All openings are measured from this
+        zero; a wrong zero makes the gripper squeeze too much or too little.
 
         Safety: persistent write. Command id 0x68.
         """
@@ -109,8 +109,8 @@ class GripperCommands(Client):
     def set_HTS_gripper_torque(self, torque: int) -> bool:
         """Set the gripper's torque.
 
-        Sets the torque of the newer adaptive gripper, and reports whether that worked. No source
-        says whether the torque outlives a power cycle; cobotwire treats it as if it did. A gripper
+        Sets the torque of the newer adaptive gripper, and reports whether it succeeded. No source
+        says whether the torque survives a power cycle; cobotwire assumes that it does. A gripper
         with more torque can crush what it holds, or a finger.
 
         Args:
@@ -145,7 +145,7 @@ class GripperCommands(Client):
     def init_gripper(self) -> bool:
         """Initialize the gripper.
 
-        Initializes the gripper, and reports whether that worked. No source says what the gripper
+        Initializes the gripper, and reports whether it succeeded. No source says what the gripper
         does meanwhile; it may open and close. Keep your fingers away, and remove what it holds.
 
         Returns: True if the gripper is initialized.
@@ -157,7 +157,7 @@ class GripperCommands(Client):
         """Set the gripper's protective current.
 
         Sets the current at which the gripper protects itself. No source says whether the current
-        outlives a power cycle; cobotwire treats it as if it did. If the current is too high, a
+        survives a power cycle; cobotwire assumes that it does. If the current is too high, a
         blocked gripper can burn its servo.
 
         Args:

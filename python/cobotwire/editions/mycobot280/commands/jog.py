@@ -28,8 +28,8 @@ class JogCommands(Client):
 
         Turns one joint in one direction, at a speed in percent of the maximum, until stop ends it.
         The motion continues by itself; if stop is lost in transit, the arm keeps moving. Check with
-        is_moving afterwards. The maker's library says that the angle falls with 0 and grows with 1;
-        the document speaks of the clock, and does not say from which side.
+        is_moving afterwards. According to the maker's library, 0 decreases the angle and 1
+        increases it. The document says "clockwise", but not from which side of the joint.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).

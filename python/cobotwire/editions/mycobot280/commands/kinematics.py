@@ -21,7 +21,7 @@ class KinematicsCommands(Client):
     def angles_to_coords(self, angles: Sequence[float]) -> Coords:
         """Calculate the coordinates of joint angles.
 
-        Calculates where the end would be if the joints stood at the angles.
+        Calculates the coordinates of the end for the given joint angles.
 
         Args:
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
@@ -42,7 +42,7 @@ class KinematicsCommands(Client):
         Args:
             coords: The desired position and orientation of the end (6 numbers (x, y, z
                 -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
-            angles: The angles to start from, usually the present ones (6 numbers (j1, j2, j3, j4,
+            angles: The angles to start from, usually the current ones (6 numbers (j1, j2, j3, j4,
                 j5, j6 -327.68..327.67 degree)).
 
         Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree).

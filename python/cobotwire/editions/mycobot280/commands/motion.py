@@ -20,7 +20,7 @@ class MotionCommands(Client):
     """The joints' positions and targets, and whether the targets are reached."""
 
     def set_fresh_mode(self, mode: FreshMode | int, *, ack_within: float | None = None) -> None:
-        """Set what happens to a running motion at a new target.
+        """Set how a new target changes a running motion.
 
         Sets whether the arm passes through all targets in turn, or goes to the newest one at once.
 
@@ -113,7 +113,7 @@ class MotionCommands(Client):
 
         Stops the motion. The acknowledgement may be late or never come; check with is_moving before
         relying on it. It is not an emergency stop, since a frame can be lost in transit; keep a
-        switch at hand that cuts the power. It ends jogging too; this edition has no jog_stop.
+        power switch within reach. It ends jogging too; this edition has no jog_stop.
 
         Safety: motion. Command id 0x29.
         """
@@ -168,7 +168,7 @@ class MotionCommands(Client):
         return self._call(messages.motion.CheckAsyncOrSync())
 
     def get_fresh_mode(self) -> FreshMode:
-        """Read what happens to a running motion at a new target.
+        """Read how a new target changes a running motion.
 
         Reports whether the arm passes through all targets in turn, or goes to the newest one at
         once.
@@ -207,8 +207,8 @@ class MotionCommands(Client):
 
         Moves all six joints to angles in radians, at a speed in percent of the maximum. The
         protocol has no checksum. If a request is damaged in transit, the arm moves to the wrong
-        angle. The limits are those of send_angles, and as uncertain; the maker's library does not
-        check the angles of this command at all.
+        angle. The limits are those of send_angles, which are disputed. The maker's library does not
+        check the angles of this command.
 
         Args:
             radians: The six joint angles in radians, base first (in radians; on the wire 6 numbers

@@ -29,11 +29,10 @@ class NetworkCommands(Client):
     def set_server_port(self, port: int, *, ack_within: float | None = None) -> None:
         """Set the TCP port.
 
-        Sets the TCP port that the arm listens on. No source says whether the port outlives a power
-        cycle; cobotwire treats it as if it did. Clients that are connected over TCP must then
-        connect to the new port. The transponder has been observed to echo this request; such a
-        frame is not an acknowledgement. The maker's library cannot send a port above 32767; the
-        protocol can.
+        Sets the TCP port that the arm listens on. No source says whether the port survives a power
+        cycle; cobotwire assumes that it does. Clients that are connected over TCP must then connect
+        to the new port. The transponder has been observed to echo this request; such a frame is not
+        an acknowledgement. The maker's library cannot send a port above 32767; the protocol can.
 
         Args:
             port: TCP port (1..65535).

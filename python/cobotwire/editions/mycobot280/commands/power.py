@@ -73,9 +73,9 @@ class PowerCommands(Client):
 
         In free mode the servos give no torque, and the arm can be moved by hand. Without torque the
         arm falls; support it before free mode begins. No source says how the servos take the load
-        again when free mode ends; keep clear of the arm. The maker's library lets 254 pass too, by
-        a check that it shares with the gripper's state; no source gives it a meaning, and it is
-        refused here.
+        again when free mode ends; keep clear of the arm. The maker's library also accepts 254,
+        because it uses the check of the gripper's state. No source gives 254 a meaning, so this
+        edition rejects it.
 
         Args:
             free: True switches the torque off, false ends free mode (True or False).

@@ -108,7 +108,7 @@ class ServoCommands(Client):
         """Set the smallest angle of a joint.
 
         Sets the smallest allowed angle of a joint, in degrees. No source says whether the limit
-        outlives a power cycle; cobotwire treats it as if it did. The limit keeps the arm from
+        survives a power cycle; cobotwire assumes that it does. The limit keeps the arm from
         damaging itself, and its scale is disputed; read it back with get_joint_min_angle before
         relying on it.
 
@@ -126,7 +126,7 @@ class ServoCommands(Client):
         """Set the largest angle of a joint.
 
         Sets the largest allowed angle of a joint, in degrees. No source says whether the limit
-        outlives a power cycle; cobotwire treats it as if it did. The limit keeps the arm from
+        survives a power cycle; cobotwire assumes that it does. The limit keeps the arm from
         damaging itself, and its scale is disputed; read it back with get_joint_max_angle before
         relying on it.
 
@@ -174,12 +174,13 @@ class ServoCommands(Client):
     ) -> None:
         """Write a servo register.
 
-        Writes one byte, or a word of two, into a register of a servo. No source says whether the
-        register outlives a power cycle; cobotwire treats it as if it did, because servos of this
-        kind store these registers in EEPROM. Wrong coefficients can make a joint swing or lose its
-        hold. Without a mode, the value has one byte; with a mode, it has two. Registers (decimal):
-        20 LED alarm, 21 P, 22 D, 23 I, 24 minimum starting force, which is two bytes wide. No
-        source says which byte of a word is written if the mode is BYTE; leave the mode out instead.
+        Writes one or two bytes into a register of a servo. No source says whether the register
+        survives a power cycle; cobotwire assumes that it does, because servos of this kind store
+        these registers in EEPROM. Wrong coefficients can make a joint oscillate or fail to hold its
+        position. Without a mode, the value has one byte; with a mode, it has two. Registers
+        (decimal): 20 LED alarm, 21 P, 22 D, 23 I, 24 minimum starting force, which is two bytes
+        wide. No source says which byte of a word is written if the mode is BYTE; leave the mode out
+        instead.
 
         Args:
             joint: Servo number; 1 to 6 are the joints, 7 is the gripper (1..7).
@@ -196,7 +197,7 @@ class ServoCommands(Client):
     ) -> int:
         """Read a servo register.
 
-        Reads one byte, or a word of two, from a register of a servo.
+        Reads one or two bytes from a register of a servo.
 
         Args:
             joint: Servo number; 1 to 6 are the joints, 7 is the gripper (1..7).
@@ -212,9 +213,9 @@ class ServoCommands(Client):
     def set_servo_calibration(self, joint: int, *, ack_within: float | None = None) -> None:
         """Set a joint's zero to its position.
 
-        Makes the present position of a joint its zero. The document does not say whether the zero
-        outlives a power cycle; cobotwire treats it as if it did. All angles of the joint are
-        measured from this zero; a wrong zero sends the arm to wrong positions.
+        Makes the current position of a joint its zero. The document does not say whether the zero
+        survives a power cycle; cobotwire assumes that it does. All angles of the joint are measured
+        from this zero; a wrong zero sends the arm to wrong positions.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
@@ -272,7 +273,7 @@ class ServoCommands(Client):
         """Send all joints to encoder positions at individual speeds.
 
         Moves all six joints to encoder positions in ticks, each at a speed of its own. It plays
-        back what was recorded by hand; no path is planned between the present position and the
+        back what was recorded by hand; no path is planned between the current position and the
         target. Start near the first point. The maker's library also accepts seven speeds, a request
         of 26 data bytes; this edition sends six.
 
@@ -344,7 +345,7 @@ class ServoCommands(Client):
 
         Saves the parameters of one servo, or of all (254), so that they can be restored. The saved
         parameters replace those that were saved before, even if the servo is misconfigured. Make
-        sure that the present parameters work. The maker says that the firmware must be newer than
+        sure that the current parameters work. The maker says that the firmware must be newer than
         7.4.0.
 
         Args:
@@ -358,7 +359,7 @@ class ServoCommands(Client):
         """Restore a servo's parameters.
 
         Restores the saved parameters of one servo, or of all (254). It overwrites the servo's
-        present parameters. No source says what it writes if nothing was saved, nor whether the zero
+        current parameters. No source says what it writes if nothing was saved, nor whether the zero
         position is among them; support the arm first. The maker says that the firmware must be
         newer than 7.4.0.
 

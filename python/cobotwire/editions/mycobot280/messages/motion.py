@@ -20,7 +20,7 @@ from ..values import Angles, Radians
 
 
 class SetFreshMode(Request[None], command="set_fresh_mode"):
-    """Set what happens to a running motion at a new target."""
+    """Set how a new target changes a running motion."""
 
     mode: FreshMode | int
 
@@ -109,7 +109,7 @@ class CheckAsyncOrSyncReply(Reply[bool], to=CheckAsyncOrSync):
 
 
 class GetFreshMode(Request[FreshMode], command="get_fresh_mode"):
-    """Read what happens to a running motion at a new target."""
+    """Read how a new target changes a running motion."""
 
 
 class GetFreshModeReply(Reply[FreshMode], to=GetFreshMode):
