@@ -1,0 +1,179 @@
+"""Half a request on the line: what must be sent before the next one.
+
+A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
+next request for it: both together can be a legal frame that nobody sent. So fill bytes go out
+first. They end the frame that was begun, and make its check wrong, whatever LEN the parser
+believes.
+
+Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
+refutes the outer frame finds the inner one. Then the rest of the frame is sent instead, so that the
+arm executes what the caller requested, and never something else. A caller who got a LinkError does
+not know whether a motion began; ``stop()`` follows in the same write.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import cycle, islice, product
+from typing import NamedTuple
+
+from cobotwire.codec.interface import Codec, Frame
+from cobotwire.protocol.frame_format import FrameFormat
+from cobotwire.protocol.frame_index import FrameIndex
+
+
+class Part(NamedTuple):
+    """The first ``written`` bytes of a request, which is all that the peer has of it."""
+
+    request: bytes
+    written: int
+
+    @property
+    def data(self) -> bytes:
+        """The bytes that the peer has."""
+        return self.request[: self.written]
+
+    @property
+    def rest(self) -> bytes:
+        """The bytes that the peer does not have."""
+        return self.request[self.written :]
+
+
+class Write(NamedTuple):
+    """One write to a transport: bytes that align the line, then a request.
+
+    Attributes:
+        align: bytes that end an earlier request that was begun; empty on an aligned line.
+        request: the request.
+    """
+
+    align: bytes
+    request: bytes
+
+    @property
+    def data(self) -> bytes:
+        """All bytes of the write."""
+        return self.align + self.request
+
+
+class Alignment:
+    """Knows which parts of a request the peer may hold, and what ends them."""
+
+    def __init__(self, codec: Codec) -> None:
+        self._codec = codec
+        self._format = codec.table.frame
+        # Every part that the peer may hold: one, or several if it is not known what was written.
+        self._held: tuple[Part, ...] = ()
+        self._align = b""
+        self._last = b""
+
+    @property
+    def held(self) -> tuple[Part, ...]:
+        """Every part that the peer may hold; empty on an aligned line."""
+        return self._held
+
+    def begin(self, request: bytes) -> Write:
+        """Return what to write, so that the peer receives ``request``."""
+        self._last = request
+        return Write(self._align, request)
+
+    def end(self) -> None:
+        """Note that a write was taken whole: the line is aligned."""
+        if self._align:
+            self.hold(())
+
+    def cut(self, write: Write, written: int | None) -> int | None:
+        """Note that only ``written`` bytes of a write were taken; None: an unknown number.
+
+        Returns:
+            How many of these bytes belong to its request.
+        """
+        align, request = write
+        if written is None:
+            self.hold(self._held + _all_parts(self._format, request))
+            return None
+        if written > len(align):
+            begun = written - len(align)
+            # Text may follow a frame. It is not the beginning of a frame.
+            whole = _frame_size(self._format, request)
+            self.hold((Part(request, begun),) if begun < whole else ())
+            return begun
+        if written and self._completes():
+            [part] = self._held
+            self.hold((Part(part.request, part.written + written),))
+        return 0
+
+    def lose(self) -> None:
+        """Note that the transport is gone: requests that were on their way may be cut anywhere."""
+        if self._last:
+            longest = max(FrameIndex(self._codec.table, "request").lengths)
+            begun = self._last[: self._format.length_at] + bytes([longest])
+            parts = Part(begun, len(begun)), *_all_parts(self._format, self._last)
+            self.hold(self._held + parts)
+
+    def hold(self, parts: tuple[Part, ...]) -> None:
+        """Note every part that the peer may hold."""
+        self._align = self._ending(parts) if parts else b""
+        self._held = parts
+
+    def _ending(self, parts: tuple[Part, ...]) -> bytes:
+        """Return what ends the part that the peer holds, whichever it is."""
+        fill = fill_bytes(self._format, [part.data for part in parts])
+        [first, *others] = parts
+        return first.rest if not others and self._exposes(first, fill) else fill
+
+    def _exposes(self, part: Part, fill: bytes) -> bool:
+        """Return whether a parser finds another frame once the fill bytes refute this one."""
+        framer = self._codec.framer("request")
+        events = [*framer.feed(part.data + fill), *framer.flush()]
+        return any(isinstance(event, Frame) for event in events)
+
+    def _completes(self) -> bool:
+        return len(self._held) == 1 and self._align == self._held[0].rest
+
+
+def fill_bytes(format: FrameFormat, parts: Sequence[bytes]) -> bytes:
+    """Return bytes that end any frame that begins in a part, and complete none of them.
+
+    They do so for every LEN, not only for those of the table: a parser may know other commands, or
+    believe any LEN. They repeat a pair of values that no header or footer has. Equal values would
+    not do: two of them are command and check of a frame that ends with a sum.
+    """
+    reserved = format.header + format.footer
+    values = [value for value in range(256) if value not in reserved]
+    for pair in product(values, values):
+        ends = (end - len(part) for part in parts for _, end in _frames(format, part, pair))
+        fill = bytes(islice(cycle(pair), max(1, *ends, 1)))
+        if not any(_completes_one(format, part, fill) for part in parts):
+            return fill
+    raise AssertionError("a frame has one right check, so most pairs do not complete it")
+
+
+def _frames(format: FrameFormat, part: bytes, pair: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Yield start and end of each frame that begins in a part, if the pair follows repeatedly."""
+    size = len(format.header)
+    for start in range(len(part)):
+        if format.header.startswith(part[start : start + size]):
+            at = start + format.length_at
+            length = part[at] if at < len(part) else pair[(at - len(part)) % 2]
+            yield start, start + format.overhead + length
+
+
+def _completes_one(format: FrameFormat, part: bytes, fill: bytes) -> bool:
+    """Return whether fill bytes complete a frame that begins in the part."""
+    data = part + fill
+    for start, end in _frames(format, part, (fill * 2)[:2]):
+        check_at = end - format.check_size
+        if end > len(part) and check_at > start + format.overhead:
+            if format.end(data[start:check_at]) == data[check_at:end]:
+                return True
+    return False
+
+
+def _all_parts(format: FrameFormat, request: bytes) -> tuple[Part, ...]:
+    return tuple(Part(request, size) for size in range(1, _frame_size(format, request)))
+
+
+def _frame_size(format: FrameFormat, request: bytes) -> int:
+    """Return the size of the frame at the start of a request."""
+    return format.overhead + request[format.length_at]

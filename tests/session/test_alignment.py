@@ -1,0 +1,193 @@
+"""After a part of a request, no bytes of ours complete a legal frame but a request of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+import json_tables
+import strategies
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec, Frame
+from cobotwire.editions import mycobot, mycobot280
+from cobotwire.protocol.frame_format import FrameFormat
+from cobotwire.session.alignment import Alignment, Part, Write
+
+TABLES = {
+    "mycobot": mycobot.TABLE,
+    "mycobot280": mycobot280.TABLE,
+    "CRC": json_tables.sample("crc"),
+    "sum and address": json_tables.sample("sum"),
+}
+Parser = Callable[[Codec, bytes], list[bytes]]
+
+
+def by_the_law(codec: Codec, data: bytes) -> list[bytes]:
+    """Parse as our own codec does."""
+    framer = codec.framer("request")
+    return [event.data for event in framer.feed(data) if isinstance(event, Frame)]
+
+
+def _check_is_right(format: FrameFormat, frame: bytes) -> bool:
+    end = len(frame) - format.check_size
+    return end > format.overhead and format.end(frame[:end]) == frame[end:]
+
+
+def _by_len(format: FrameFormat, data: bytes, cost: Callable[[int], int]) -> Iterator[bytes]:
+    """Believe each LEN; a frame with a wrong check costs ``cost(its size)`` bytes."""
+    at = 0
+    while (at := data.find(format.header, at)) >= 0 and at + format.overhead <= len(data):
+        size = format.overhead + data[at + format.length_at]
+        if at + size > len(data):
+            return
+        frame = data[at : at + size]
+        if _check_is_right(format, frame):
+            yield frame
+            at += size
+        else:
+            at += cost(size)
+
+
+def by_any_len(codec: Codec, data: bytes) -> list[bytes]:
+    """Parse with any LEN; continue after the first header byte of a wrong frame."""
+    return list(_by_len(codec.table.frame, data, lambda size: 1))
+
+
+def by_any_len_skipping(codec: Codec, data: bytes) -> list[bytes]:
+    """Parse with any LEN; discard a wrong frame whole, as textbook parsers do."""
+    return list(_by_len(codec.table.frame, data, lambda size: size))
+
+
+PARSERS = (by_the_law, by_any_len, by_any_len_skipping)
+
+
+def holds_a_frame(parser: Parser, codec: Codec, part: bytes) -> bool:
+    """Return whether a whole frame stands within the part of a frame."""
+    return any(parser(codec, part[start:]) for start in range(1, len(part)))
+
+
+def _codec(table: str, data: st.DataObject) -> Codec:
+    return codecs.load(TABLES[table], data.draw(st.sampled_from(["native", "reference"])))
+
+
+def _request(codec: Codec, data: st.DataObject) -> bytes:
+    variants = [v for v in strategies.variants_of(codec.table) if v.direction == "request"]
+    variant = data.draw(st.sampled_from(variants))
+    values = data.draw(strategies.legal_values(variant.variant))
+    return strategies.frame_of(codec, variant, values)
+
+
+def _cut(alignment: Alignment, request: bytes, written: int) -> None:
+    alignment.cut(alignment.begin(request), written)
+
+
+@pytest.mark.parametrize("table", TABLES)
+@given(data=st.data())
+def test_next_request_is_the_only_frame_after_a_cut_at_any_position(
+    table: str, data: st.DataObject
+) -> None:
+    codec = _codec(table, data)
+    cut, following = _request(codec, data), _request(codec, data)
+    for written in range(1, len(cut)):
+        alignment = Alignment(codec)
+        _cut(alignment, cut, written)
+        write = alignment.begin(following)
+        [part] = alignment.held
+        if write.align == part.rest:
+            # Fill bytes would expose a frame that stands within the part.
+            assert holds_a_frame(by_the_law, codec, cut[:written])
+            assert by_the_law(codec, cut[:written] + write.data) == [cut, following]
+            continue
+        for parser in PARSERS:
+            assume(not holds_a_frame(parser, codec, cut[:written]))
+            assert parser(codec, cut[:written] + write.data) == [following], parser.__name__
+
+
+@pytest.mark.parametrize("table", TABLES)
+@given(data=st.data())
+def test_unknown_cut_is_ended_whatever_was_written(table: str, data: st.DataObject) -> None:
+    codec = _codec(table, data)
+    cut, following = _request(codec, data), _request(codec, data)
+    alignment = Alignment(codec)
+    alignment.cut(alignment.begin(cut), None)
+    written = alignment.begin(following).data
+    for parser in PARSERS:
+        assume(not holds_a_frame(parser, codec, cut))
+        for size in range(len(cut) + 1):
+            whole = [cut] if size == len(cut) else []
+            assert parser(codec, cut[:size] + written) == [*whole, following], size
+
+
+@pytest.mark.parametrize("table", TABLES)
+@given(data=st.data())
+def test_cut_within_the_aligning_bytes_is_ended_too(table: str, data: st.DataObject) -> None:
+    codec = _codec(table, data)
+    cut, second, third = (_request(codec, data) for _ in range(3))
+    size = data.draw(st.integers(1, len(cut) - 1))
+    assume(not holds_a_frame(by_the_law, codec, cut[:size]))
+    alignment = Alignment(codec)
+    _cut(alignment, cut, size)
+    write = alignment.begin(second)
+    again = data.draw(st.integers(0, len(write.data) - 1))
+    request_part = alignment.cut(write, again)
+    assert request_part == max(0, again - len(write.align))
+    received = cut[:size] + write.data[:again] + alignment.begin(third).data
+    frames = by_the_law(codec, received)
+    assert frames[-1] == third
+    assert frames in ([third], [second, third])
+
+
+def test_lost_transport_is_aligned_whatever_part_of_the_longest_request_got_through() -> None:
+    codec = codecs.load(mycobot280.TABLE)
+    longest, last, stop = (
+        codec.encode("send_angles", "request", [(1, 2, 3, 4, 5, 6), 50]),
+        codec.encode("get_angles", "request", []),
+        codec.encode("stop", "request", []),
+    )
+    alignment = Alignment(codec)
+    alignment.begin(last)
+    alignment.end()
+    alignment.lose()
+    written = alignment.begin(stop).data
+    for request in (longest, last):
+        for size in range(1, len(request)):
+            assert by_the_law(codec, request[:size] + written) == [stop]
+
+
+def test_whole_write_leaves_the_line_aligned() -> None:
+    codec = codecs.load(mycobot280.TABLE)
+    stop = codec.encode("stop", "request", [])
+    alignment = Alignment(codec)
+    _cut(alignment, stop, 3)
+    assert alignment.begin(stop).align
+    alignment.end()
+    assert alignment.begin(stop) == Write(b"", stop)
+
+
+def test_frame_around_a_whole_frame_is_completed_instead() -> None:
+    codec = codecs.load(mycobot280.TABLE)
+    # -2.58 degrees are FE FE, 5.31 are 02 13, and FA is the first byte of -14.64.
+    angles = [(-2.58, 5.31, -14.64, 0, 0, 0), 50]
+    cut = codec.encode("send_angles", "request", angles)
+    stop = codec.encode("stop", "request", [])
+    assert bytes.fromhex("FE FE 02 13 FA") in cut, "release_all_servos"
+    alignment = Alignment(codec)
+    _cut(alignment, cut, 12)
+    assert alignment.held == (Part(cut, 12),)
+    write = alignment.begin(stop)
+    assert write.align == cut[12:]
+    alignment.cut(write, 2)
+    assert alignment.begin(stop).align == cut[14:]
+    alignment.cut(alignment.begin(stop), 4)
+    assert alignment.begin(stop).align == b"", "the frame is complete by now"
+
+
+def test_cut_of_the_text_after_a_frame_is_not_the_beginning_of_a_frame() -> None:
+    codec = codecs.load(mycobot280.TABLE)
+    request = codec.encode("set_ssid_pwd", "request", []) + b"name password"
+    alignment = Alignment(codec)
+    _cut(alignment, request, len(request) - 4)
+    assert alignment.held == ()
