@@ -122,6 +122,10 @@ class NativeFramer:
         """How many fed bytes no event covers yet; fewer than the longest frame has."""
 
     @property
+    def fed(self) -> int:
+        """How many bytes were fed since the framer was made."""
+
+    @property
     def counters(self) -> Counters:
         """The counts since the framer was made."""
 

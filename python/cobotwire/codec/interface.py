@@ -53,6 +53,11 @@ class Framer(Protocol):
         ...
 
     @property
+    def fed(self) -> int:
+        """How many bytes were fed since the framer was made."""
+        ...
+
+    @property
     def counters(self) -> Counters:
         """The counts since the framer was created."""
         ...

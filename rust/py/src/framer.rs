@@ -51,6 +51,12 @@ impl NativeFramer {
         self.core.pending()
     }
 
+    /// How many bytes were fed since the framer was made.
+    #[getter]
+    fn fed(&self) -> u64 {
+        self.core.tally().bytes
+    }
+
     /// The counts since the framer was made.
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -28,6 +28,15 @@ class _Broken(ReferenceFramer):
         """Return how many bytes a header claims."""
         return _claimed(self._judge, data, start)
 
+    def _forget(self) -> None:
+        """Drop the waiting bytes without an event."""
+        end = self._state.offset + self.pending
+        self._state = self._state._replace(waiting=b"", offset=end)
+
+    def _restart(self) -> None:
+        """Count offsets from here on."""
+        self._state = self._state._replace(offset=0)
+
 
 def _claimed(judge: Judge, data: bytes, start: int) -> int:
     return judge.frame.overhead + data[start + judge.frame.length_at]
@@ -104,8 +113,7 @@ class _SilenceLoses(_Broken):
     flaw = "forgets the waiting bytes at a silence"
 
     def flush(self) -> list[Event]:
-        self._offset += len(self._waiting)
-        self._waiting.clear()
+        self._forget()
         return []
 
 
@@ -121,7 +129,7 @@ class _SilenceRestarts(_Broken):
 
     def flush(self) -> list[Event]:
         events = super().flush()
-        self._offset = 0
+        self._restart()
         return events
 
 
@@ -129,8 +137,7 @@ class _ChunkForgets(_Broken):
     flaw = "forgets the waiting bytes when a new chunk arrives"
 
     def feed(self, data: Data) -> list[Event]:
-        self._offset += len(self._waiting)
-        self._waiting.clear()
+        self._forget()
         return super().feed(data)
 
 
@@ -145,8 +152,8 @@ class _ChunkRestarts(_Broken):
     flaw = "restarts offsets in each chunk"
 
     def feed(self, data: Data) -> list[Event]:
-        if not self._waiting:
-            self._offset = 0
+        if not self.pending:
+            self._restart()
         return super().feed(data)
 
 
@@ -154,13 +161,10 @@ class _Late(_Broken):
     flaw = "returns a frame only after the next byte"
 
     def feed(self, data: Data) -> list[Event]:
-        self._waiting += data
-        if len(self._waiting) < 2:
-            return []
-        last = bytes(self._waiting[-1:])
-        del self._waiting[-1:]
+        bytes_so_far = self._state.waiting + bytes(data)
+        self._state = self._state._replace(waiting=bytes_so_far[:-1])
         events = super().feed(b"")
-        self._waiting += last
+        self._state = self._state._replace(waiting=self._state.waiting + bytes_so_far[-1:])
         return events
 
 
@@ -169,7 +173,7 @@ class _Impatient(_Broken):
 
     def feed(self, data: Data) -> list[Event]:
         events = super().feed(data)
-        return events + (super().flush() if len(self._waiting) > 10 else [])
+        return events + (super().flush() if self.pending > 10 else [])
 
 
 class _Rewriting(_Broken):

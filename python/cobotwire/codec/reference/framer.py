@@ -7,9 +7,23 @@ skips the bytes that a false header claimed. A candidate that more bytes could c
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from cobotwire.codec.events import Counters, Event, Frame, Noise, NoiseReason, Read
 from cobotwire.codec.interface import Data
 from cobotwire.codec.reference.judge import Judge
+
+
+class _State(NamedTuple):
+    """What a framer knows: replaced as a whole, so that Ctrl-C leaves the old state or the new one.
+
+    ``waiting`` are the bytes that no event covers yet, from ``offset`` of the stream on.
+    """
+
+    waiting: bytes
+    offset: int
+    counters: Counters
+    in_noise: bool
 
 
 class ReferenceFramer:
@@ -18,69 +32,58 @@ class ReferenceFramer:
     def __init__(self, judge: Judge, read: Read) -> None:
         self._judge = judge
         self._read = read
-        self._waiting = bytearray()
-        self._offset = 0
-        self._counters = Counters(0, {}, {}, 0)
-        self._in_noise = False
+        self._state = _State(b"", 0, Counters(0, {}, {}, 0), False)
 
     @property
     def pending(self) -> int:
         """The number of fed bytes that no event covers yet."""
-        return len(self._waiting)
+        return len(self._state.waiting)
+
+    @property
+    def fed(self) -> int:
+        """The number of bytes fed since the framer was created."""
+        return self._state.counters.bytes
 
     @property
     def counters(self) -> Counters:
         """The counts since the framer was created."""
-        counters = self._counters
+        counters = self._state.counters
         return counters._replace(frames=dict(counters.frames), noise=dict(counters.noise))
 
     def feed(self, data: Data) -> list[Event]:
         """Take bytes; return the events that are certain by now."""
-        before = len(self._waiting)
-        self._waiting += data
-        fed = len(self._waiting) - before
-        self._counters = self._counters._replace(bytes=self._counters.bytes + fed)
-        return self._cut(at_end=False)
+        # Any buffer of bytes, but no number and no list.
+        waiting = bytearray(self._state.waiting)
+        waiting += data
+        return self._cut(bytes(waiting), at_end=False)
 
     def flush(self) -> list[Event]:
         """Stop waiting for more bytes; return the remaining events."""
-        return self._cut(at_end=True)
+        return self._cut(self._state.waiting, at_end=True)
 
-    def _cut(self, at_end: bool) -> list[Event]:
+    def _cut(self, data: bytes, at_end: bool) -> list[Event]:
+        before, start = self._state, 0
         events: list[Event] = []
-        data, start = bytes(self._waiting), 0
         while start < len(data):
             verdict = self._judge.judge(data, start)
             if isinstance(verdict, int):
                 frame = data[start : start + verdict]
                 id = frame[self._judge.frame.overhead]
-                events.append(Frame(self._offset + start, frame, id, self._read))
+                events.append(Frame(before.offset + start, frame, id, self._read))
                 start += verdict
             elif verdict == "truncated" and not at_end:
                 break
             else:
                 end = start + self._refuted_size(data, start, verdict)
-                self._add_noise(events, self._offset + start, data[start:end], verdict)
+                self._add_noise(events, before.offset + start, data[start:end], verdict)
                 start = min(end, len(data))
-        del self._waiting[:start]
-        self._offset += start
-        self._count(events)
+        counters, in_noise = _counted(before, len(data) - len(before.waiting), events)
+        self._state = _State(data[start:], before.offset + start, counters, in_noise)
         return events
 
     def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
         """Return the number of bytes to skip for a refuted candidate: 1, whatever LEN it has."""
         return 1
-
-    def _count(self, events: list[Event]) -> None:
-        _, frames, noise, resyncs = self._counters
-        for event in events:
-            if isinstance(event, Frame):
-                frames[event.command] = frames.get(event.command, 0) + 1
-                resyncs += self._in_noise
-            else:
-                noise[event.reason] = noise.get(event.reason, 0) + len(event.data)
-            self._in_noise = isinstance(event, Noise)
-        self._counters = self._counters._replace(resyncs=resyncs)
 
     @staticmethod
     def _add_noise(events: list[Event], offset: int, data: bytes, reason: NoiseReason) -> None:
@@ -89,3 +92,19 @@ class ReferenceFramer:
             events[-1] = Noise(last.offset, last.data + data, reason)
         else:
             events.append(Noise(offset, data, reason))
+
+
+def _counted(before: _State, fed: int, events: list[Event]) -> tuple[Counters, bool]:
+    """Return the counters after these events, and whether the last one was noise."""
+    counters, in_noise = before.counters, before.in_noise
+    frames, noise, resyncs = counters.frames, counters.noise, counters.resyncs
+    if events:
+        frames, noise = dict(frames), dict(noise)
+    for event in events:
+        if isinstance(event, Frame):
+            frames[event.command] = frames.get(event.command, 0) + 1
+            resyncs += in_noise
+        else:
+            noise[event.reason] = noise.get(event.reason, 0) + len(event.data)
+        in_noise = isinstance(event, Noise)
+    return Counters(counters.bytes + fed, frames, noise, resyncs), in_noise
