@@ -47,4 +47,4 @@ def test_get_angles_runs_code_of_at_most_12_files() -> None:
                 sys.setprofile(None)
         simulator.stdin.close()
     assert "client/connection.py" in files
-    assert len(files) <= MOST_FILES, sorted(files)
+    assert len(files) <= MOST_FILES, "\n".join(sorted(files))

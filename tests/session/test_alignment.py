@@ -14,7 +14,7 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.editions import mycobot, mycobot280
 from cobotwire.protocol.frame_format import FrameFormat
-from cobotwire.session.alignment import Alignment, Part, Write
+from cobotwire.session.alignment import Alignment, Part
 
 TABLES = {
     "mycobot": mycobot.TABLE,
@@ -81,7 +81,7 @@ def _request(codec: Codec, data: st.DataObject) -> bytes:
 
 
 def _cut(alignment: Alignment, request: bytes, written: int) -> None:
-    alignment.cut(alignment.begin(request), written)
+    alignment.cut(alignment.align, request, written)
 
 
 @pytest.mark.parametrize("table", TABLES)
@@ -94,16 +94,19 @@ def test_next_request_is_the_only_frame_after_a_cut_at_any_position(
     for written in range(1, len(cut)):
         alignment = Alignment(codec)
         _cut(alignment, cut, written)
-        write = alignment.begin(following)
+        received = cut[:written] + alignment.align + following
         [part] = alignment.held
-        if write.align == part.rest:
+        if alignment.align == part.rest:
             # Fill bytes would expose a frame that stands within the part.
             assert holds_a_frame(by_the_law, codec, cut[:written])
-            assert by_the_law(codec, cut[:written] + write.data) == [cut, following]
+            assert by_the_law(codec, received) == [
+                cut,
+                following,
+            ]
             continue
         for parser in PARSERS:
             assume(not holds_a_frame(parser, codec, cut[:written]))
-            assert parser(codec, cut[:written] + write.data) == [following], parser.__name__
+            assert parser(codec, received) == [following], parser.__name__
 
 
 @pytest.mark.parametrize("table", TABLES)
@@ -112,8 +115,8 @@ def test_unknown_cut_is_ended_whatever_was_written(table: str, data: st.DataObje
     codec = _codec(table, data)
     cut, following = _request(codec, data), _request(codec, data)
     alignment = Alignment(codec)
-    alignment.cut(alignment.begin(cut), None)
-    written = alignment.begin(following).data
+    alignment.cut(b"", cut, None)
+    written = alignment.align + following
     for parser in PARSERS:
         assume(not holds_a_frame(parser, codec, cut))
         for size in range(len(cut) + 1):
@@ -130,11 +133,11 @@ def test_cut_within_the_aligning_bytes_is_ended_too(table: str, data: st.DataObj
     assume(not holds_a_frame(by_the_law, codec, cut[:size]))
     alignment = Alignment(codec)
     _cut(alignment, cut, size)
-    write = alignment.begin(second)
-    again = data.draw(st.integers(0, len(write.data) - 1))
-    request_part = alignment.cut(write, again)
-    assert request_part == max(0, again - len(write.align))
-    received = cut[:size] + write.data[:again] + alignment.begin(third).data
+    align = alignment.align
+    again = data.draw(st.integers(0, len(align + second) - 1))
+    request_part = alignment.cut(align, second, again)
+    assert request_part == max(0, again - len(align))
+    received = cut[:size] + (align + second)[:again] + alignment.align + third
     frames = by_the_law(codec, received)
     assert frames[-1] == third
     assert frames in ([third], [second, third])
@@ -148,10 +151,8 @@ def test_lost_transport_is_aligned_whatever_part_of_the_longest_request_got_thro
         codec.encode("stop", "request", []),
     )
     alignment = Alignment(codec)
-    alignment.begin(last)
-    alignment.end()
-    alignment.lose()
-    written = alignment.begin(stop).data
+    alignment.lose(last)
+    written = alignment.align + stop
     for request in (longest, last):
         for size in range(1, len(request)):
             assert by_the_law(codec, request[:size] + written) == [stop]
@@ -162,9 +163,9 @@ def test_whole_write_leaves_the_line_aligned() -> None:
     stop = codec.encode("stop", "request", [])
     alignment = Alignment(codec)
     _cut(alignment, stop, 3)
-    assert alignment.begin(stop).align
+    assert alignment.align
     alignment.end()
-    assert alignment.begin(stop) == Write(b"", stop)
+    assert alignment.align == b""
 
 
 def test_frame_around_a_whole_frame_is_completed_instead() -> None:
@@ -177,12 +178,12 @@ def test_frame_around_a_whole_frame_is_completed_instead() -> None:
     alignment = Alignment(codec)
     _cut(alignment, cut, 12)
     assert alignment.held == (Part(cut, 12),)
-    write = alignment.begin(stop)
-    assert write.align == cut[12:]
-    alignment.cut(write, 2)
-    assert alignment.begin(stop).align == cut[14:]
-    alignment.cut(alignment.begin(stop), 4)
-    assert alignment.begin(stop).align == b"", "the frame is complete by now"
+    assert alignment.align == cut[12:]
+    alignment.cut(alignment.align, stop, 2)
+    assert alignment.align == cut[14:]
+    alignment.cut(alignment.align, stop, 4)
+    assert alignment.align == b"", "the frame is complete by now"
+    assert alignment.held == ()
 
 
 def test_cut_of_the_text_after_a_frame_is_not_the_beginning_of_a_frame() -> None:

@@ -152,7 +152,8 @@ def test_outstanding_reply_of_a_repeated_request_holds_the_next_one(
     )
     exchange.receive(ANGLES, 0.35)
     assert not again.done
-    assert exchange.outgoing(0.35, drained=True) == QUERY_ANGLES
+    assert exchange.outgoing(1.19, drained=True) == b"", "what came may have been a copy"
+    assert exchange.outgoing(1.2, drained=True) == QUERY_ANGLES
 
 
 def test_grace_of_the_policy_ends_the_hold(exchange: Exchange) -> None:
@@ -175,7 +176,7 @@ def test_lost_transport_ends_every_request(exchange_280: Exchange) -> None:
     first_request, queued = submit(exchange_280, "get_angles"), submit(exchange_280, "is_power_on")
     exchange_280.outgoing(0.0, drained=True)
     _, ack = exchange_280.send_one_way(encode_280("stop", ()), 0.0, ack_within=1.0)
-    exchange_280.fail(LinkError("port", "is gone"))
+    exchange_280.fail(LinkError("port", "is gone"), 0.1)
     assert ack is not None
     for pending in (first_request, queued, ack):
         with pytest.raises(LinkError, match="port: is gone"):

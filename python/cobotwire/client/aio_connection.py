@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Callable
 from functools import partial
 
 from cobotwire.client.opening import check_port, open_port
@@ -45,6 +46,7 @@ class AsyncConnection:
         self.url = port if isinstance(port, str) else port.url
         self.listeners = TrafficListeners(trace, self.url)
         self._exchange = exchange
+        self._alignment = exchange.alignment
         self._attached: AsyncTransport | None = None
         self._lost: LinkError | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -76,7 +78,6 @@ class AsyncConnection:
         data, pending = self._exchange.send_one_way(request, self.now(), ack_within)
         try:
             await self._write(transport, data)
-            self.listeners.sent(data)
             self._turn()
             if pending is not None:
                 await self._await(pending)
@@ -144,8 +145,38 @@ class AsyncConnection:
         if self._lost is not None:
             raise LinkError(self._lost.url, self._lost.detail)
         over: asyncio.Future[None] = self._loop.create_future()
-        if not transport.write(data, partial(_written, over)):
+        if not self._begin_write(transport, data, partial(_end_wait, over)):
             await over
+
+    def _begin_write(
+        self, transport: AsyncTransport, request: bytes, done: Callable[[LinkError | None], None]
+    ) -> bool:
+        """Write a request; return whether it was taken at once. Otherwise ``done`` is called.
+
+        What was cut is noted even if the caller was cancelled meanwhile.
+        """
+        align = self._alignment.align
+
+        def ended(error: LinkError | None) -> None:
+            if error is None:
+                self._written(align, request)
+            else:
+                error.written = self._alignment.cut(align, request, error.written)
+            done(error)
+
+        try:
+            taken = transport.write(align + request, ended)
+        except LinkError as error:
+            error.written = self._alignment.cut(align, request, error.written)
+            raise
+        if taken:
+            self._written(align, request)
+        return taken
+
+    def _written(self, align: bytes, request: bytes) -> None:
+        if align:
+            self._alignment.end()
+        self.listeners.sent(align, request)
 
     def _turn(self) -> None:
         """Take what has come, let time pass, send the request that is next, and set the timer."""
@@ -153,14 +184,14 @@ class AsyncConnection:
         try:
             data = b"" if self._lost is not None else self._transport().read()
         except LinkError as error:
-            self.listeners.lost(error)
             self._lose(error)
+            self.listeners.lost(error)
             return
         now = self.now()
         events = exchange.receive(data, now) if data else []
         events += exchange.wake(now)
         if self._lost is not None:
-            exchange.fail(self._lost)
+            events += exchange.fail(self._lost, now)
         elif exchange.has_outgoing(now):
             self._send_request(now, drained=not data)
         idle = exchange.idle_seconds(now)
@@ -174,11 +205,9 @@ class AsyncConnection:
         if not data:
             return
         try:
-            self._transport().write(data, self._request_written)
+            self._begin_write(self._transport(), data, self._request_written)
         except LinkError as error:
             self._exchange.fail_waiting(error)
-            return
-        self.listeners.sent(data)
 
     def _request_written(self, error: LinkError | None) -> None:
         if error is not None:
@@ -206,7 +235,8 @@ class AsyncConnection:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-        self._exchange.fail(self._lost)
+        now = self.now()
+        self.listeners.received(self._exchange.fail(self._lost, now), now)
 
 
 def _close_unwanted(work: asyncio.Future[Transport]) -> None:
@@ -219,7 +249,7 @@ def _wake(over: asyncio.Future[None]) -> None:
         over.set_result(None)
 
 
-def _written(over: asyncio.Future[None], error: LinkError | None) -> None:
+def _end_wait(over: asyncio.Future[None], error: LinkError | None) -> None:
     if over.done():
         return
     if error is None:

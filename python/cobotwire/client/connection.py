@@ -1,13 +1,14 @@
 """One transport that many threads share.
 
 Writing is separate from reading. A thread that sends a one-way request writes it at once. Of the
-threads that wait for replies, one reads for all: it feeds the exchange, sends the next request and
-wakes the others; when its own reply has come, another takes over. So a lone caller reads its own
-reply without a switch of threads, and a one-way request never waits for another thread's reply.
+threads that wait for replies, one leads: it reads for all, feeds the exchange, sends the next
+request and wakes the others. When its own reply has come, another takes over. So a lone caller
+reads its own reply without a switch of threads, and a one-way request never waits for another
+thread's reply.
 
-Ctrl-C may come anywhere. Locks are taken by ``with`` and held for moments; which thread reads is a
-plain number that this thread finds again; those that wait look at it now and then. So nothing stays
-locked.
+Ctrl-C may come anywhere. Locks are taken by ``with`` and held for moments, so none stays locked.
+Which thread leads is only a number, and nothing relies on it: a leader that makes no progress is
+replaced, and if it was only slow, the lock of the reader keeps the bytes in order.
 """
 
 from __future__ import annotations
@@ -50,11 +51,17 @@ class Connection:
         self.now, self.sleep, _ = times_of(self._transport)
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange
+        self._alignment = exchange.alignment
         # Held around every step of the exchange.
         self._state = threading.Lock()
         # Held while a frame is written, so that frames do not mix. Taken before the other one.
         self._writing = threading.Lock()
-        self._reader: int | None = None
+        # Held from reading bytes until they are sorted and reported, so that they stay in order.
+        # Reentrant, since a traffic listener may call the arm. Taken before the other two.
+        self._reading = threading.RLock()
+        self._leader: int | None = None
+        # How often leaders have read; a leader that does not count on is gone.
+        self._turns = 0
         self._followers: list[threading.Lock] = []
         forks.watch(self)
 
@@ -64,16 +71,17 @@ class Connection:
             with self._state:
                 now = self.now()
                 data, pending = self._exchange.send_one_way(request, now, ack_within)
-            self._transport.write(data)
-        self.listeners.sent(data)
+            align = self._write(data)
+        self.listeners.sent(align, data)
         if pending is not None:
             self._await(pending, SLICE_SECONDS)
             pending.result()
-        elif self._leads():
-            try:
+            return
+        try:
+            if self._leads():
                 self._drain(now + DRAIN_SECONDS)
-            finally:
-                self._resign()
+        finally:
+            self._resign()
 
     def request(
         self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
@@ -83,10 +91,9 @@ class Connection:
         Raises:
             LinkError: the transport is gone.
         """
-        with self._state:
-            pending = self._exchange.submit(request, self.now(), policy, wait)
+        pending = PendingRequest(request, wait, policy, self.now())
         # What has come already is read first, without waiting.
-        self._await(pending, 0.0)
+        self._await(pending, 0.0, queued=False)
         return pending
 
     def listen(self, seconds: float) -> None:
@@ -97,12 +104,13 @@ class Connection:
         """
         until = self.now() + seconds
         while (left := until - self.now()) > 0:
-            if self._leads():
-                try:
+            try:
+                leads = self._leads()
+                if leads:
                     self._turn(min(left, SLICE_SECONDS))
-                finally:
-                    self._resign()
-            else:
+            finally:
+                self._resign()
+            if not leads:
                 # In real time, whatever the transport's: another thread is waited for.
                 time.sleep(min(left, CHECK_SECONDS))
 
@@ -113,10 +121,15 @@ class Connection:
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held; in a forked child the transport is closed."""
         self._state, self._writing = threading.Lock(), threading.Lock()
-        self._reader, self._followers = None, []
+        self._reading = threading.RLock()
+        self._leader, self._followers = None, []
 
-    def _await(self, pending: Pending, longest: float) -> None:
+    def _await(self, pending: Pending, longest: float, queued: bool = True) -> None:
         try:
+            if not queued:
+                assert isinstance(pending, PendingRequest)
+                with self._state:
+                    self._exchange.enqueue(pending)
             while not pending.done:
                 if self._leads():
                     self._turn(longest)
@@ -131,43 +144,45 @@ class Connection:
             self._resign()
 
     def _leads(self) -> bool:
-        """Return whether this thread reads for all; it does from now on if no other one does."""
+        """Return whether this thread leads; it does from now on if no other one does."""
         me = threading.get_ident()
-        if self._reader != me:
+        if self._leader != me:
             with self._state:
-                if self._reader is None:
-                    self._reader = me
-        return self._reader == me
+                if self._leader is None:
+                    self._leader = me
+        return self._leader == me
 
     def _resign(self) -> None:
-        if self._reader == threading.get_ident():
-            self._reader = None
+        if self._leader == threading.get_ident():
+            self._leader = None
             self._wake_followers()
 
     def _turn(self, longest: float) -> None:
         """Read once, let time pass, and send the request that is next."""
         exchange = self._exchange
-        if longest:
+        with self._reading:
+            self._turns += 1
+            if longest:
+                with self._state:
+                    idle = exchange.idle_seconds(self.now())
+                if idle is not None and idle < longest:
+                    longest = idle
+            try:
+                data = self._transport.read(longest)
+            except LinkError as error:
+                self._lose(error)
+                raise
+            now = self.now()
             with self._state:
-                idle = exchange.idle_seconds(self.now())
-            if idle is not None and idle < longest:
-                longest = idle
-        try:
-            data = self._transport.read(longest)
-        except LinkError as error:
-            self._lose(error)
-            raise
-        now = self.now()
-        with self._state:
-            # What has come is received before time passes, or it would count as late.
-            events = exchange.receive(data, now) if data else []
-            events += exchange.wake(now)
-            outgoing = exchange.has_outgoing(now)
-        if outgoing:
-            self._send_request(drained=not data)
-        if events:
-            self._wake_followers()
-            self.listeners.received(events, now)
+                # What has come is received before time passes, or it would count as late.
+                events = exchange.receive(data, now) if data else []
+                events += exchange.wake(now)
+                outgoing = exchange.has_outgoing(now)
+            if outgoing:
+                self._send_request(drained=not data)
+            if events:
+                self._wake_followers()
+                self.listeners.received(events, now)
 
     def _send_request(self, drained: bool) -> None:
         with self._writing:
@@ -176,40 +191,66 @@ class Connection:
             if not data:
                 return
             try:
-                self._transport.write(data)
+                align = self._write(data)
             except LinkError as error:
                 with self._state:
                     self._exchange.fail_waiting(error)
                 return
-        self.listeners.sent(data)
+        self.listeners.sent(align, data)
+
+    def _write(self, request: bytes) -> bytes:
+        """Write a request; the caller holds the lock.
+
+        Returns:
+            What was written before it, to end an earlier request that was cut; mostly nothing.
+        """
+        align = self._alignment.align
+        try:
+            self._transport.write(align + request)
+            if align:
+                self._alignment.end()
+        except LinkError as error:
+            error.written = self._alignment.cut(align, request, error.written)
+            raise
+        except BaseException:
+            self._alignment.cut(align, request, None)
+            raise
+        return align
 
     def _drain(self, until: float) -> None:
         """Read what has come, so that no buffer overflows while only one-way requests are sent."""
-        while data := self._transport.read(0):
-            now = self.now()
-            with self._state:
-                events = self._exchange.receive(data, now)
-            self.listeners.received(events, now)
-            if now >= until:
-                return
+        with self._reading:
+            while data := self._transport.read(0):
+                now = self.now()
+                with self._state:
+                    events = self._exchange.receive(data, now)
+                self.listeners.received(events, now)
+                if now >= until:
+                    return
 
     def _lose(self, error: LinkError) -> None:
         """End every request: the transport is gone."""
+        now = self.now()
         with self._state:
-            self._exchange.fail(error)
+            events = self._exchange.fail(error, now)
         self._wake_followers()
+        self.listeners.received(events, now)
         self.listeners.lost(error)
 
     def _follow(self, pending: Pending) -> None:
-        """Wait until the reading thread has something, or none reads."""
+        """Wait until the leader has something, or another thread must lead."""
         baton = threading.Lock()
         baton.acquire()
         with self._state:
-            if pending.done or self._reader is None:
+            leader, turns = self._leader, self._turns
+            if pending.done or leader is None:
                 return
             self._followers.append(baton)
-        # Not without end: whatever becomes of the reading thread, this one checks again.
-        baton.acquire(timeout=CHECK_SECONDS)
+        if not baton.acquire(timeout=CHECK_SECONDS):
+            with self._state:
+                if (leader, turns) == (self._leader, self._turns):
+                    # Ctrl-C took it out of its loop before it could resign, or it is very slow.
+                    self._leader = None
 
     def _wake_followers(self) -> None:
         if not self._followers:

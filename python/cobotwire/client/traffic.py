@@ -63,8 +63,16 @@ class TrafficListeners:
 
         return remove
 
-    def sent(self, data: bytes) -> None:
-        """Report a frame that was written, with the text that follows some."""
+    def sent(self, align: bytes, request: bytes) -> None:
+        """Report what was written: bytes that align the line, if any; and a request with its text.
+
+        They are two events, so that listeners get a frame.
+        """
+        if align:
+            self._sent(align)
+        self._sent(request)
+
+    def _sent(self, data: bytes) -> None:
         if self._logger.isEnabledFor(self._debug):
             self._logger.debug("%s > %s", self._url, _hex(data))
         if self._listeners:

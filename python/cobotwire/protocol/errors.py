@@ -77,10 +77,11 @@ class LinkError(CobotwireError, OSError):
     Attributes:
         url: the port or URL.
         detail: what happened.
-        written: the number of bytes that were written before the write failed.
+        written: the number of bytes of the request that were written before the write failed; None
+            if it is not known.
     """
 
-    def __init__(self, url: str, detail: str, written: int = 0) -> None:
+    def __init__(self, url: str, detail: str, written: int | None = 0) -> None:
         self.url = url
         self.detail = detail
         self.written = written

@@ -39,81 +39,63 @@ class Part(NamedTuple):
         return self.request[self.written :]
 
 
-class Write(NamedTuple):
-    """One write to a transport: bytes that align the line, then a request.
+class Alignment:
+    """Knows which parts of a request the peer may hold, and what ends them.
 
     Attributes:
-        align: bytes that end an earlier request that was begun; empty on an aligned line.
-        request: the request.
+        align: what must be written before the next request; empty on an aligned line.
     """
-
-    align: bytes
-    request: bytes
-
-    @property
-    def data(self) -> bytes:
-        """All bytes of the write."""
-        return self.align + self.request
-
-
-class Alignment:
-    """Knows which parts of a request the peer may hold, and what ends them."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
         self._format = codec.table.frame
         # Every part that the peer may hold: one, or several if it is not known what was written.
         self._held: tuple[Part, ...] = ()
-        self._align = b""
-        self._last = b""
+        self.align = b""
 
     @property
     def held(self) -> tuple[Part, ...]:
         """Every part that the peer may hold; empty on an aligned line."""
         return self._held
 
-    def begin(self, request: bytes) -> Write:
-        """Return what to write, so that the peer receives ``request``."""
-        self._last = request
-        return Write(self._align, request)
-
     def end(self) -> None:
-        """Note that a write was taken whole: the line is aligned."""
-        if self._align:
+        """Note that ``align`` and a request after it were taken whole."""
+        if self.align:
             self.hold(())
 
-    def cut(self, write: Write, written: int | None) -> int | None:
-        """Note that only ``written`` bytes of a write were taken; None: an unknown number.
+    def cut(self, align: bytes, request: bytes, written: int | None) -> int | None:
+        """Note that of ``align + request`` only ``written`` bytes were taken; None: nobody knows.
 
         Returns:
-            How many of these bytes belong to its request.
+            How many of these bytes belong to the request.
         """
-        align, request = write
         if written is None:
             self.hold(self._held + _all_parts(self._format, request))
             return None
-        if written > len(align):
+        if written and written >= len(align):
             begun = written - len(align)
             # Text may follow a frame. It is not the beginning of a frame.
             whole = _frame_size(self._format, request)
-            self.hold((Part(request, begun),) if begun < whole else ())
+            self.hold((Part(request, begun),) if 0 < begun < whole else ())
             return begun
         if written and self._completes():
             [part] = self._held
             self.hold((Part(part.request, part.written + written),))
         return 0
 
-    def lose(self) -> None:
-        """Note that the transport is gone: requests that were on their way may be cut anywhere."""
-        if self._last:
-            longest = max(FrameIndex(self._codec.table, "request").lengths)
-            begun = self._last[: self._format.length_at] + bytes([longest])
-            parts = Part(begun, len(begun)), *_all_parts(self._format, self._last)
-            self.hold(self._held + parts)
+    def lose(self, last: bytes) -> None:
+        """Note that the transport is gone; ``last`` is the last request that was written.
+
+        This request, and earlier ones that were still on their way, may be cut anywhere.
+        """
+        longest = max(FrameIndex(self._codec.table, "request").lengths)
+        begun = last[: self._format.length_at] + bytes([longest])
+        parts = Part(begun, len(begun)), *_all_parts(self._format, last)
+        self.hold(self._held + parts)
 
     def hold(self, parts: tuple[Part, ...]) -> None:
         """Note every part that the peer may hold."""
-        self._align = self._ending(parts) if parts else b""
+        self.align = self._ending(parts) if parts else b""
         self._held = parts
 
     def _ending(self, parts: tuple[Part, ...]) -> bytes:
@@ -129,7 +111,7 @@ class Alignment:
         return any(isinstance(event, Frame) for event in events)
 
     def _completes(self) -> bool:
-        return len(self._held) == 1 and self._align == self._held[0].rest
+        return len(self._held) == 1 and self.align == self._held[0].rest
 
 
 def fill_bytes(format: FrameFormat, parts: Sequence[bytes]) -> bytes:
@@ -164,9 +146,9 @@ def _completes_one(format: FrameFormat, part: bytes, fill: bytes) -> bool:
     data = part + fill
     for start, end in _frames(format, part, (fill * 2)[:2]):
         check_at = end - format.check_size
-        if end > len(part) and check_at > start + format.overhead:
-            if format.end(data[start:check_at]) == data[check_at:end]:
-                return True
+        ends_in_fill = end > len(part) and check_at > start + format.overhead
+        if ends_in_fill and format.end(data[start:check_at]) == data[check_at:end]:
+            return True
     return False
 
 

@@ -32,6 +32,7 @@ from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame, Noise
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.session import outstanding
 from cobotwire.session.acks import Acks
+from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
 from cobotwire.session.events import (
     AckReceived,
@@ -61,7 +62,8 @@ class Exchange:
         self._codec = codec
         self._framer = codec.framer("reply")
         self._replying_ids = {c.id for c in codec.table.commands if c.answers}
-        self._received = 0
+        self.alignment = Alignment(codec)
+        self._sent_last = b""
         self._queue: list[PendingRequest] = []
         # The request that was sent last; it waits for its reply unless it is done.
         self._last: PendingRequest | None = None
@@ -77,8 +79,12 @@ class Exchange:
     ) -> PendingRequest:
         """Queue a request; ``wait`` is its deadline in seconds, None: that of the edition."""
         pending = PendingRequest(request, wait, policy, now)
-        self._queue.append(pending)
+        self.enqueue(pending)
         return pending
+
+    def enqueue(self, pending: PendingRequest) -> None:
+        """Queue a request whose caller already holds it, and gives it up in any case."""
+        self._queue.append(pending)
 
     def send_one_way(
         self, request: EncodedRequest, now: float, ack_within: float | None = None
@@ -88,10 +94,11 @@ class Exchange:
         The second is there if ``ack_within`` says how many seconds its acknowledgement is waited
         for, and the edition has one.
         """
-        self._echo.sent_one_way(request, self._received)
+        self._echo.sent_one_way(request, self._framer.fed)
+        self._sent_last = request.frame
         pending = None
         if request.command.ack:
-            ack = self._acks.expect(request, now, ack_within or 0.0, self._received)
+            ack = self._acks.expect(request, now, ack_within or 0.0, self._framer.fed)
             if request.command.id in self._replying_ids:
                 self._expect_late_reply(request, ack.until)
             if ack_within is not None:
@@ -108,13 +115,23 @@ class Exchange:
         pending.cancel()
         self._drop_done()
 
-    def fail(self, error: LinkError) -> None:
-        """End every request: the transport is gone."""
+    def fail(self, error: LinkError, now: float) -> list[SessionEvent]:
+        """End every request: the transport is gone.
+
+        Returns:
+            What the bytes are that still waited: what comes after the transport is open again does
+            not complete them.
+        """
+        events = self._sort(self._framer.flush(), now)
+        if self._sent_last:
+            self.alignment.lose(self._sent_last)
+            self._sent_last = b""
         self.fail_waiting(error)
         for pending in (*self._queue, *self._pending_acks):
             if not pending.done:
                 pending.fail(error)
         self._drop_done()
+        return events
 
     def fail_waiting(self, error: LinkError) -> None:
         """End the request that waits: the bytes that :meth:`outgoing` gave were not written."""
@@ -127,7 +144,6 @@ class Exchange:
 
     def receive(self, data: bytes, now: float) -> list[SessionEvent]:
         """Take received bytes; return what they are."""
-        self._received += len(data)
         return self._sort(self._framer.feed(data), now)
 
     def wake(self, now: float) -> list[SessionEvent]:
@@ -185,9 +201,9 @@ class Exchange:
                 return b""
         if self._outstanding:
             self._outstanding = outstanding.without_expired(self._outstanding, now)
-        self._echo.sent(pending.request, self._received)
-        pending.begin(now, self._received)
-        self._last = pending
+        self._echo.sent(pending.request, self._framer.fed)
+        pending.begin(now, self._framer.fed)
+        self._last, self._sent_last = pending, pending.request.frame
         self._queue.remove(pending)
         return pending.request.frame
 
@@ -320,11 +336,12 @@ class Exchange:
 
     def _match_other(self, frame: Frame, now: float, is_copy: bool) -> SessionEvent:
         """Find out what a frame is that does not reply to the request that waits."""
-        late = outstanding.find(self._outstanding, frame)
+        late = outstanding.find(self._outstanding, frame, now)
         if late is not None:
-            self._outstanding.remove(late)
             if late.request.command.answers:
+                # It stays outstanding: this may be a copy, with the reply itself still to come.
                 return self._note(LateReply(late.request.command, frame))
+            self._outstanding.remove(late)
         if is_copy:
             self._acks.note_copy(frame)
             return self._note(EchoReceived(frame))

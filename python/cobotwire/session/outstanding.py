@@ -1,8 +1,9 @@
 """Outstanding replies: those to requests that were given up, or were sent more than once.
 
 A late reply looks like the reply to the next request of the same command. So that request is held
-until the late reply has come, or is too late to come at all. The functions take a list of
-outstanding replies, oldest first, and change nothing.
+until the late reply is too late to come at all. It is not sent earlier, even if a late reply has
+come: some lines double replies, so the one that came may be a copy of another attempt's. The
+functions take a list of outstanding replies, oldest first, and change nothing.
 """
 
 from __future__ import annotations
@@ -32,9 +33,9 @@ def held_until(outstanding: list[OutstandingReply], request: EncodedRequest) -> 
     return max(alike, default=None)
 
 
-def find(outstanding: list[OutstandingReply], frame: Frame) -> OutstandingReply | None:
-    """Return the oldest outstanding reply that a frame can be; None: it is none of them."""
+def find(outstanding: list[OutstandingReply], frame: Frame, now: float) -> OutstandingReply | None:
+    """Return the oldest outstanding reply that a frame can be; None: no such reply is expected."""
     for reply in outstanding:
-        if can_reply_to(frame, reply.request):
+        if reply.until > now and can_reply_to(frame, reply.request):
             return reply
     return None

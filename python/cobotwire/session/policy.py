@@ -28,8 +28,8 @@ class RetryPolicy:
         shortest_attempt: seconds that each attempt gets at least, above 0; a short deadline has
             fewer attempts.
         grace: seconds after an attempt during which its late reply is still expected, 0 or more.
-            A later request whose reply would look the same is held until then, or until the late
-            reply has come.
+            A later request whose reply would look the same is held until then, even if a late reply
+            has come: it may be a copy.
     """
 
     attempts: int = 3

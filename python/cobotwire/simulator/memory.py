@@ -113,7 +113,7 @@ class MemoryTransport:
             step(*arguments)
         except PeerDisconnected:
             self.close()
-            raise LinkError(self.url, "the peer is gone") from None
+            raise LinkError(self.url, "the peer is gone", written=None) from None
 
     def _take(self) -> bytes:
         return b"".join(iter(self._connection.take, b""))

@@ -41,8 +41,9 @@ class PolledTransport:
         self._descriptor = descriptor
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(descriptor, ready)
-        # Writes that were not taken yet, oldest first; the first one perhaps in part.
+        # Writes that were not taken yet, oldest first, and how much of the first one was taken.
         self._waiting: deque[tuple[bytes, Done]] = deque()
+        self._taken = 0
         self._stuck: asyncio.TimerHandle | None = None
         self._closed = False
         forks.watch(self)
@@ -57,38 +58,51 @@ class PolledTransport:
             taken = self._transport.write_some(data)
             if taken == len(data):
                 return True
-            data = data[taken:]
+            self._taken = taken
             self._loop.add_writer(self._descriptor, self._write_on)
-            self._stuck = self._loop.call_later(WRITE_TIMEOUT, self._give_up)
+            self._restart_timer()
         self._waiting.append((data, done))
         return False
 
     def _write_on(self) -> None:
         data, done = self._waiting[0]
         try:
-            taken = self._transport.write_some(data)
+            taken = self._transport.write_some(data[self._taken :])
         except LinkError as error:
             self._end_writing(error)
             return
-        if taken < len(data):
-            self._waiting[0] = (data[taken:], done)
+        if taken:
+            self._restart_timer()
+        self._taken += taken
+        if self._taken < len(data):
             return
         self._waiting.popleft()
+        self._taken = 0
         done(None)
         if not self._waiting:
             self._end_writing(None)
+
+    def _restart_timer(self) -> None:
+        """Wait for the next byte to be taken: a slow line is not a stuck one."""
+        if self._stuck is not None:
+            self._stuck.cancel()
+        self._stuck = self._loop.call_later(WRITE_TIMEOUT, self._give_up)
 
     def _give_up(self) -> None:
         detail = f"cannot be written: no byte was taken in {WRITE_TIMEOUT:.1f} s"
         self._end_writing(LinkError(self._transport.url, detail))
 
     def _end_writing(self, error: LinkError | None) -> None:
+        """End all writes; those after the first one were not begun."""
         self._loop.remove_writer(self._descriptor)
         if self._stuck is not None:
             self._stuck.cancel()
         waiting, self._waiting = self._waiting, deque()
+        taken, self._taken = self._taken, 0
         for _, done in waiting:
-            done(error)
+            # Each caller raises an error of its own.
+            done(None if error is None else LinkError(error.url, error.detail, taken))
+            taken = 0
 
     def close(self) -> None:
         """Stop watching and close the transport."""
@@ -111,7 +125,9 @@ class ThreadedTransport:
         self._loop = asyncio.get_running_loop()
         self._ready = ready
         self._read_queue: queue.SimpleQueue[bytes | LinkError] = queue.SimpleQueue()
-        self._write_queue: queue.SimpleQueue[tuple[bytes, Done] | None] = queue.SimpleQueue()
+        # With each write how many had failed when it was queued, as far as the loop knew.
+        self._write_queue: queue.SimpleQueue[tuple[bytes, Done, int] | None] = queue.SimpleQueue()
+        self._failures = 0
         self._lost: LinkError | None = None
         self._closed = False
         forks.watch(self)
@@ -134,7 +150,7 @@ class ThreadedTransport:
 
     def write(self, data: bytes, done: Done) -> bool:
         """Send ``data`` after what was sent before."""
-        self._write_queue.put((data, done))
+        self._write_queue.put((data, done, self._failures))
         return False
 
     def close(self) -> None:
@@ -161,14 +177,26 @@ class ThreadedTransport:
                 return
 
     def _write_on(self) -> None:
+        failures = 0
+        error: LinkError | None = None
         while (next_write := self._write_queue.get()) is not None:
-            data, done = next_write
+            data, done, known = next_write
+            if error is not None and known < failures:
+                # It was queued before the loop knew that an earlier write was cut: the peer would
+                # take it for the rest of that one.
+                self._in_loop(done, LinkError(error.url, error.detail))
+                continue
             try:
                 self._transport.write(data)
-            except LinkError as error:
-                self._in_loop(done, error)
+            except LinkError as failed:
+                error, failures = failed, failures + 1
+                self._in_loop(self._fail_write, done, failed)
             else:
                 self._in_loop(done, None)
+
+    def _fail_write(self, done: Done, error: LinkError) -> None:
+        self._failures += 1
+        done(error)
 
     def _in_loop(self, call: Callable[..., None], *arguments: object) -> None:
         # In a loop that was closed meanwhile nothing waits.

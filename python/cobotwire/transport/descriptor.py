@@ -101,7 +101,7 @@ class DescriptorTransport(ABC):
                 # The frame is finished first: after half a frame, the arm would miss the next one.
                 interrupt = error
             except LinkError as error:
-                error.written += written
+                error.written = written
                 raise
             if written < len(data) and time.monotonic() >= deadline:
                 taken = f"only {written} of {len(data)} bytes were taken in {limit:.1f} s"

@@ -45,7 +45,7 @@ class TappedTransport:
         try:
             self._transport.write(data)
         except LinkError as error:
-            self._show("sent", data[: error.written])
+            self._show("sent", data[: error.written or 0])
             raise
         self._show("sent", data)
 

@@ -68,7 +68,7 @@ class UrlTransport:
 
     def write(self, data: bytes) -> None:
         """Send all of ``data``. If that fails, pyserial does not tell how much was taken."""
-        with self._faults("cannot be written"):
+        with self._faults("cannot be written", written=None):
             limit = write_limit(len(data), self._baudrate)
             if self._port.write_timeout != limit:
                 self._port.write_timeout = limit
@@ -130,7 +130,7 @@ class UrlTransport:
         self._port = None
 
     @contextmanager
-    def _faults(self, what: str) -> Iterator[None]:
+    def _faults(self, what: str, written: int | None = 0) -> Iterator[None]:
         if self._closed:
             raise LinkError(self.url, f"{what}: {self._why_closed}")
         try:
@@ -139,7 +139,7 @@ class UrlTransport:
         # AttributeError, a POSIX port with termios.error or TypeError.
         except Exception as error:
             reason = "it was closed meanwhile" if self._closed else reason_of(error)
-            raise LinkError(self.url, f"{what}: {reason}") from error
+            raise LinkError(self.url, f"{what}: {reason}", written) from error
 
 
 def _nothing() -> None:

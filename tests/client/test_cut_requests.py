@@ -1,0 +1,146 @@
+"""A request of which the transport took only a part never becomes a part of another request."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import select
+import threading
+import time
+import tty
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from both_ways import InLoop
+from cobotwire import LinkError
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Frame
+from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
+from cobotwire.transport.aio import WRITE_TIMEOUT
+
+CODEC = codecs.load(TABLE)
+# -2.58 degrees are FE FE: half of this request and a stop were a legal motion.
+ANGLES = (0.0, 0.0, -2.58, 0.0, 0.0, 0.0)
+MOTION = CODEC.encode("send_angles", "request", [ANGLES, 50])
+STOP = CODEC.encode("stop", "request", [])
+
+
+def frames(received: bytes) -> list[bytes]:
+    """Return the requests that an arm finds in what it received."""
+    framer = CODEC.framer("request")
+    events = [*framer.feed(received), *framer.flush()]
+    return [event.data for event in events if isinstance(event, Frame)]
+
+
+class StallingTransport:
+    """A transport that takes ``taken`` bytes of the first request, then everything."""
+
+    url = "stalling"
+
+    def __init__(self, taken: int, written: int | None) -> None:
+        self.received = b""
+        self._taken: int | None = taken
+        self._written = written
+
+    def write(self, data: bytes) -> None:
+        if self._taken is None:
+            self.received += data
+            return
+        self.received += data[: self._taken]
+        self._taken = None
+        raise LinkError(self.url, "it stalled", self._written)
+
+    def read(self, timeout: float) -> bytes:
+        return b""
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize("who", [MyCobot280, lambda port: InLoop(AsyncMyCobot280, port)])
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("taken", range(len(MOTION)))
+def test_stop_after_a_cut_motion_arrives_and_nothing_else(
+    taken: int, known: bool, who: Callable[[Any], Any]
+) -> None:
+    transport = StallingTransport(taken, taken if known else None)
+    with who(transport) as arm:
+        with pytest.raises(LinkError) as caught:
+            arm.send_angles(ANGLES, 50)
+        assert caught.value.written == (taken if known else None)
+        arm.stop()
+        arm.stop()
+    assert frames(transport.received) == [STOP, STOP]
+
+
+class StuckPty:
+    """A pseudo-terminal that nothing reads until :meth:`drain`."""
+
+    def __init__(self) -> None:
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        self.url = os.ttyname(self._slave)
+
+    def drain(self) -> bytes:
+        """Return what was written until nothing more comes."""
+        received = b""
+        while select.select([self._master], [], [], 0.2)[0]:
+            received += os.read(self._master, 65536)
+        return received
+
+    def read(self, size: int) -> bytes:
+        """Return up to ``size`` bytes; nothing if none are there."""
+        ready, _, _ = select.select([self._master], [], [], 0)
+        return os.read(self._master, size) if ready else b""
+
+    def close(self) -> None:
+        for descriptor in (self._master, self._slave):
+            os.close(descriptor)
+
+
+@pytest.mark.parametrize("who", [MyCobot280, lambda port: InLoop(AsyncMyCobot280, port)])
+@pytest.mark.parametrize("before", range(3))
+def test_stop_arrives_first_once_a_stuck_port_recovers(
+    before: int, who: Callable[[Any], Any]
+) -> None:
+    pty = StuckPty()
+    whole = 0
+    with who(pty.url) as arm:
+        for _ in range(before):
+            # Five bytes each move the position at which the motion is cut.
+            arm.stop()
+        written = None
+        while written is None:
+            try:
+                arm.send_angles(ANGLES, 50)
+                whole += 1
+            except LinkError as error:
+                written = error.written
+        assert written in range(len(MOTION))
+        received = pty.drain()
+        arm.stop()
+        received += pty.drain()
+    assert frames(received) == [STOP] * before + [MOTION] * whole + [STOP]
+    pty.close()
+
+
+def test_asyncio_client_sends_every_request_on_a_slow_line() -> None:
+    pty = StuckPty()
+
+    async def flood() -> None:
+        async with AsyncMyCobot280(pty.url) as arm:
+            await asyncio.gather(*(arm.send_angles(ANGLES, 50) for _ in range(500)))
+
+    received = b""
+    sending = threading.Thread(target=asyncio.run, args=(flood(),))
+    started = time.monotonic()
+    sending.start()
+    while sending.is_alive():
+        received += pty.read(60)
+        time.sleep(0.02)
+    # Longer than the time after which a line that takes nothing at all is an error.
+    assert time.monotonic() - started > 1.5 * WRITE_TIMEOUT
+    assert frames(received + pty.drain()) == [MOTION] * 500
+    pty.close()
