@@ -24,6 +24,8 @@ CODEC = codecs.load(TABLE)
 # -2.58 degrees are FE FE: half of this request and a stop were a legal motion.
 ANGLES = (0.0, 0.0, -2.58, 0.0, 0.0, 0.0)
 MOTION = CODEC.encode("send_angles", "request", [ANGLES, 50])
+# More than the buffer of a pseudo-terminal holds, which is 64 KiB.
+REQUESTS = 4000
 STOP = CODEC.encode("stop", "request", [])
 
 
@@ -131,16 +133,16 @@ def test_asyncio_client_sends_every_request_on_a_slow_line() -> None:
 
     async def flood() -> None:
         async with AsyncMyCobot280(pty.url) as arm:
-            await asyncio.gather(*(arm.send_angles(ANGLES, 50) for _ in range(500)))
+            await asyncio.gather(*(arm.send_angles(ANGLES, 50) for _ in range(REQUESTS)))
 
     received = b""
     sending = threading.Thread(target=asyncio.run, args=(flood(),))
     started = time.monotonic()
     sending.start()
     while sending.is_alive():
-        received += pty.read(60)
+        received += pty.read(300)
         time.sleep(0.02)
     # Longer than the time after which a line that takes nothing at all is an error.
     assert time.monotonic() - started > 1.5 * WRITE_TIMEOUT
-    assert frames(received + pty.drain()) == [MOTION] * 500
+    assert frames(received + pty.drain()) == [MOTION] * REQUESTS
     pty.close()

@@ -183,7 +183,7 @@ def test_frame_around_a_whole_frame_is_completed_instead() -> None:
     assert alignment.align == cut[14:]
     alignment.cut(alignment.align, stop, 4)
     assert alignment.align == b"", "the frame is complete by now"
-    assert alignment.held == ()
+    assert not alignment.held
 
 
 def test_cut_of_the_text_after_a_frame_is_not_the_beginning_of_a_frame() -> None:
@@ -191,4 +191,4 @@ def test_cut_of_the_text_after_a_frame_is_not_the_beginning_of_a_frame() -> None
     request = codec.encode("set_ssid_pwd", "request", []) + b"name password"
     alignment = Alignment(codec)
     _cut(alignment, request, len(request) - 4)
-    assert alignment.held == ()
+    assert not alignment.held

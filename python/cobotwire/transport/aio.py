@@ -13,7 +13,10 @@ from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
 from cobotwire.transport.interface import AsyncTransport, PollableTransport, Transport
 
+# A write fails when no byte of it was taken for this long.
 WRITE_TIMEOUT = 1.0
+# How often a write that waits is tried again.
+TRY_SECONDS = 0.02
 # After at most this long the reading thread notices that the transport was closed.
 SLICE_SECONDS = 0.1
 
@@ -44,7 +47,8 @@ class PolledTransport:
         # Writes that were not taken yet, oldest first, and how much of the first one was taken.
         self._waiting: deque[tuple[bytes, Done]] = deque()
         self._taken = 0
-        self._stuck: asyncio.TimerHandle | None = None
+        self._progress_at = 0.0
+        self._timer: asyncio.TimerHandle | None = None
         self._closed = False
         forks.watch(self)
 
@@ -59,8 +63,9 @@ class PolledTransport:
             if taken == len(data):
                 return True
             self._taken = taken
+            self._progress_at = self._loop.time()
             self._loop.add_writer(self._descriptor, self._write_on)
-            self._restart_timer()
+            self._try_later()
         self._waiting.append((data, done))
         return False
 
@@ -72,7 +77,7 @@ class PolledTransport:
             self._end_writing(error)
             return
         if taken:
-            self._restart_timer()
+            self._progress_at = self._loop.time()
         self._taken += taken
         if self._taken < len(data):
             return
@@ -82,21 +87,27 @@ class PolledTransport:
         if not self._waiting:
             self._end_writing(None)
 
-    def _restart_timer(self) -> None:
-        """Wait for the next byte to be taken: a slow line is not a stuck one."""
-        if self._stuck is not None:
-            self._stuck.cancel()
-        self._stuck = self._loop.call_later(WRITE_TIMEOUT, self._give_up)
+    def _try_later(self) -> None:
+        # A tty is reported as writable only when most of its buffer is free; it takes bytes before.
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = self._loop.call_later(TRY_SECONDS, self._try)
 
-    def _give_up(self) -> None:
-        detail = f"cannot be written: no byte was taken in {WRITE_TIMEOUT:.1f} s"
-        self._end_writing(LinkError(self._transport.url, detail))
+    def _try(self) -> None:
+        if self._waiting:
+            self._write_on()
+        if self._waiting:
+            if self._loop.time() - self._progress_at < WRITE_TIMEOUT:
+                self._try_later()
+            else:
+                detail = f"cannot be written: no byte was taken in {WRITE_TIMEOUT:.1f} s"
+                self._end_writing(LinkError(self._transport.url, detail))
 
     def _end_writing(self, error: LinkError | None) -> None:
         """End all writes; those after the first one were not begun."""
         self._loop.remove_writer(self._descriptor)
-        if self._stuck is not None:
-            self._stuck.cancel()
+        if self._timer is not None:
+            self._timer.cancel()
         waiting, self._waiting = self._waiting, deque()
         taken, self._taken = self._taken, 0
         for _, done in waiting:
