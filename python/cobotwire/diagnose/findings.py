@@ -66,8 +66,8 @@ class Finding:
 
     @property
     def reboots(self) -> bool:
-        """Return whether the controller reboots."""
-        return False
+        """Return whether the controller reboots, if the finding is a sign of a failure."""
+        return True
 
     def describe(self) -> str:
         """Describe the finding on one line."""

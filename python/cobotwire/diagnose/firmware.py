@@ -80,11 +80,6 @@ class Boot(Finding):
         """Return the cause of the boot."""
         return self.cause
 
-    @property
-    def reboots(self) -> bool:
-        """Return whether the controller reboots."""
-        return True
-
     def describe(self) -> str:
         """Describe the boot."""
         return f"the controller boots: {self.cause}"

@@ -32,11 +32,6 @@ class Nuls(Finding):
         """Return "" if the controller restarts, since NULs do not say why."""
         return "" if self.reboot else None
 
-    @property
-    def reboots(self) -> bool:
-        """Return whether the controller reboots."""
-        return self.reboot
-
     def describe(self) -> str:
         """Describe the run."""
         return f"{self.count} NULs" + (": the controller restarts" if self.reboot else "")

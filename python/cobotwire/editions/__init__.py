@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol, cast
 
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
     from cobotwire.client import Client
@@ -51,11 +51,8 @@ def load(name: str = DEFAULT) -> Edition:
     try:
         package = import_module(name)
     except (ModuleNotFoundError, ValueError, TypeError):
-        from difflib import get_close_matches
-
-        near = get_close_matches(name, names(), n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(names())}"
-        message = f"there is no edition {name!r}; {hint}"
+        hint = did_you_mean(name, names()) or f"; choose from {', '.join(names())}"
+        message = f"there is no edition {name!r}{hint}"
         raise UsageError("edition", name, message=message) from None
     if not hasattr(package, "TABLE") or not hasattr(package, "CLIENT"):
         message = f"{name} is not the package of an edition; make one with cobotwire-gen build"

@@ -6,10 +6,18 @@ data, and this module alone makes the text from them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cobotwire.protocol.printable import printable
+
+
+def did_you_mean(given: object, known: Iterable[str]) -> str:
+    """Return a hint for a misspelt word, such as ``; did you mean late?``, or an empty text."""
+    from difflib import get_close_matches  # rarely needed, slow to import
+
+    near = get_close_matches(given, list(known), n=1) if isinstance(given, str) else []
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 class CobotwireError(Exception):

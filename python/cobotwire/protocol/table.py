@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import UsageError, did_you_mean
 from cobotwire.protocol.fields import Case, Field, FieldKind, Number, Variant
 from cobotwire.protocol.frame_format import Check, FrameFormat
 from cobotwire.protocol.made_messages import (
@@ -205,10 +205,7 @@ class Table:
         for command in self.commands:
             if command.name == name:
                 return command
-        from difflib import get_close_matches  # rarely needed, slow to import
-
-        near = get_close_matches(name, [command.name for command in self.commands], n=1)
-        hint = f"; did you mean {near[0]}?" if near else ""
+        hint = did_you_mean(name, [command.name for command in self.commands])
         message = f"there is no command {name!r} in edition {self.edition}{hint}"
         raise UsageError("command", name, message=message)
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from random import Random
 
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import UsageError, did_you_mean
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.faults.exchange import Request
 from cobotwire.simulator.faults.fault import Fault
-from cobotwire.simulator.faults.rules import nearest
 
 
 class Chooser:
@@ -63,7 +62,7 @@ def unknown_command(name: str | int, table: Table) -> str | None:
     names = [command.name for command in table.commands]
     if isinstance(name, int) or name in names:
         return None
-    return f"a command of edition {table.edition}{nearest(name, names)}"
+    return f"a command of edition {table.edition}{did_you_mean(name, names)}"
 
 
 def check_commands(faults: tuple[Fault, ...], table: Table) -> None:

@@ -7,13 +7,13 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from cobotwire.protocol.errors import ScenarioError, UsageError
+from cobotwire.protocol.errors import ScenarioError, UsageError, did_you_mean
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.faults.chooser import unknown_command
 from cobotwire.simulator.faults.fault import Fault
 from cobotwire.simulator.faults.kinds import KINDS
 from cobotwire.simulator.faults.nodes import Node, Place, parse
-from cobotwire.simulator.faults.rules import RULE, Rule, Several, integer, nearest, number
+from cobotwire.simulator.faults.rules import RULE, Rule, Several, integer, number
 from cobotwire.simulator.faults.scenario import Scenario
 
 SHOWN = 60
@@ -96,7 +96,7 @@ def _fault(node: Node, table: Table | None, problems: list[tuple[Place, str]]) -
         return None
     cls = KINDS.get(named.value) if isinstance(named.value, str) else None
     if cls is None:
-        hint = nearest(named.value, KINDS) or f"; known: {_known(KINDS)}"
+        hint = did_you_mean(named.value, KINDS) or f"; known: {_known(KINDS)}"
         problems.append((named.place, f"there is no fault {_shown(named)}{hint}"))
         return None
     rules = {field.name: field.metadata[RULE] for field in fields(cls)}
@@ -147,7 +147,7 @@ def _report_unknown(
     problems: list[tuple[Place, str]],
 ) -> None:
     for key in left:
-        hint = nearest(key, known) or f"; known: {_known(known)}"
+        hint = did_you_mean(key, known) or f"; known: {_known(known)}"
         problems.append((node.keys[key], f"{what} has no key {key}{hint}"))
 
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import field
-from difflib import get_close_matches
 from typing import Any
+
+from cobotwire.protocol.errors import did_you_mean
 
 Rule = Callable[[Any], Any]
 """Raises a ValueError that says which values are allowed."""
@@ -58,7 +59,7 @@ def one_of(words: Iterable[str]) -> Rule:
 
     def rule(value: Any) -> str:
         if value not in known:
-            raise ValueError(f"one of {', '.join(known)}{nearest(value, known)}")
+            raise ValueError(f"one of {', '.join(known)}{did_you_mean(value, known)}")
         return str(value)
 
     return rule
@@ -99,9 +100,3 @@ def pairs_of_hex(value: Any) -> bytes:
 
 SECONDS = number(0, LONGEST_SECONDS)
 SHARE = number(0, 1)
-
-
-def nearest(given: Any, known: Iterable[str]) -> str:
-    """Return a hint for a misspelt word; empty if no word is similar."""
-    near = get_close_matches(given, list(known), n=1) if isinstance(given, str) else []
-    return f"; did you mean {near[0]}?" if near else ""

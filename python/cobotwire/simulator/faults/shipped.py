@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import UsageError, did_you_mean
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.faults.reader import load
-from cobotwire.simulator.faults.rules import nearest
 from cobotwire.simulator.faults.scenario import Scenario
 
 FOLDER = Path(__file__).parent / "scenarios"
@@ -31,6 +30,6 @@ def find(wanted: str, table: Table | None = None) -> Scenario:
         return load(wanted, table)
     known = shipped()
     if wanted not in known:
-        allowed = f"a file, or one of {', '.join(known)}{nearest(wanted, known)}"
+        allowed = f"a file, or one of {', '.join(known)}{did_you_mean(wanted, known)}"
         raise UsageError("scenario", wanted, allowed)
     return load(known[wanted], table)

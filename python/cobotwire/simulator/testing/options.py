@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Protocol
 
 from cobotwire import editions
 from cobotwire.codec.interface import Codec
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import UsageError, did_you_mean
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import Clock
 from cobotwire.simulator.peer import Peer
@@ -79,10 +78,8 @@ def combined(
             raise UsageError("simulated_arm", value, message=message)
         for name in names:
             if name not in known:
-                near = "".join(
-                    f"; did you mean {one}?" for one in get_close_matches(name, known, 1)
-                )
-                raise UsageError("simulated_arm", name, f"one of {', '.join(known)}{near}")
+                allowed = f"one of {', '.join(known)}{did_you_mean(name, known)}"
+                raise UsageError("simulated_arm", name, allowed)
         given |= names
     result = ArmOptions(**given, folder=folder)
     if result.transport not in (*TRANSPORTS, None):
