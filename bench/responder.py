@@ -29,5 +29,5 @@ def responder(script: str, *arguments: str) -> Iterator[str]:
 
 
 def within(met: bool) -> str:
-    """Return the word that a bench prints beside a limit."""
+    """Return the word that a bench prints before a limit."""
     return "within" if met else "OVER"

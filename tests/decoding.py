@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from pathlib import Path
 
 from cobotwire.simulator.faults import noise
+from command_line import PROGRAM
 from diagnosing import ANGLES, FRAME, READ
 
-COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "decode"]
+COMMAND = [*PROGRAM, "decode"]
 FIELD = FRAME + READ + ANGLES + b"cmd_len error\r\n" + noise.PANIC + bytes(277) + FRAME + b"\x78"
 
 

@@ -1,4 +1,4 @@
-"""Tables of a few numbers, for what no edition has: odd widths, signs, scales and ids."""
+"""Make small tables with features that no edition has: odd widths, signs, scales and ids."""
 
 from __future__ import annotations
 

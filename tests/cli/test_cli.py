@@ -13,19 +13,7 @@ import pytest
 from cobotwire import __version__
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
-
-COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
-
-
-def run(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *words],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-        env={**os.environ, **environment},
-    )
+from command_line import run_program as run
 
 
 @pytest.mark.parametrize("codec", ["native", "reference"])
@@ -41,7 +29,7 @@ def test_demo_decodes_every_reply_correctly(codec: str) -> None:
 
 def test_demo_with_a_wrong_reply_fails() -> None:
     wrong = (
-        "import cobotwire.simulator.state as s, cobotwire.inspect.demo as d; "
+        "import cobotwire.inspect.demo as d; "
         "d.OPENING = 55; d.TOOL = d.TOOL._replace(z=50.004); "
         "from cobotwire.cli import main; main()"
     )

@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from cobotwire.capture import CaptureWriter, Interface, Packet, read
 from cobotwire.simulator import PtyServer, SimulatedArm
+from command_line import run_program as run
 from scripted_peer import ScriptedPeer
 
-COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
 QUERY = bytes.fromhex("FE FE 02 20 FA")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
-
-
-def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=60, check=False
-    )
 
 
 @pytest.fixture

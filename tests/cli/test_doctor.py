@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import threading
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +14,10 @@ import pytest
 from cobotwire.capture import read
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
+from command_line import run_program
 from scripted_peer import ScriptedPeer, ScriptedTcpPeer, Step
 
-COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "doctor"]
+run = partial(run_program, "doctor")
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
 STILL = bytes.fromhex("FE FE 03 2B 00 FA")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
@@ -28,12 +28,6 @@ PANIC = (
     b"Rebooting...\r\n" + bytes(277)
 )
 LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
-
-
-def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=60, check=False
-    )
 
 
 def examined(scripts: list[list[Step]], *words: str) -> tuple[int, dict[str, Any]]:

@@ -7,23 +7,19 @@ import os
 import pty
 import signal
 import subprocess
-import sys
+from functools import partial
 from pathlib import Path
 
 from cobotwire import MyCobot
 from cobotwire.capture import read
 from cobotwire.simulator import PtyServer
+from command_line import PROGRAM, run_program
 from scripted_peer import ScriptedPeer
 
-COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "monitor"]
+COMMAND = [*PROGRAM, "monitor"]
+run = partial(run_program, "monitor")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
-
-
-def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=60, check=False
-    )
 
 
 def test_monitor_prints_lines_without_a_terminal(server: PtyServer) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -17,15 +17,11 @@ from cobotwire.capture import Recording, read
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer
 from cobotwire.transport import TappedTransport, open_transport
+from command_line import PROGRAM, run_program
 
-COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "replay"]
+COMMAND = [*PROGRAM, "replay"]
+run = partial(run_program, "replay")
 ANGLES = (10.0, -20.0, 30.0, 0.0, 5.5, 0.0)
-
-
-def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *map(str, words)], capture_output=True, text=True, timeout=60, check=False
-    )
 
 
 def converse(url: str, tap: Recording | None = None) -> list[object]:

@@ -10,7 +10,6 @@ import signal
 import socket
 import struct
 import subprocess
-import sys
 import termios
 import time
 from collections.abc import Iterator
@@ -19,8 +18,9 @@ from pathlib import Path
 import pytest
 
 from cobotwire import MyCobot
+from command_line import PROGRAM, run_program
 
-COMMAND = [sys.executable, "-c", "from cobotwire.cli import main; main()", "sim"]
+COMMAND = [*PROGRAM, "sim"]
 
 
 @pytest.fixture
@@ -83,12 +83,6 @@ def test_sim_ends_while_a_client_does_not_read(
         assert sim.wait(timeout=10) == 0
     finally:
         os.close(client)
-
-
-def _run(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *words], capture_output=True, text=True, timeout=30, check=False
-    )
 
 
 @pytest.mark.parametrize("sim", [["--tcp", ":0"]], indirect=True)
@@ -200,7 +194,7 @@ def _until(descriptor: int, wanted: bytes) -> bytes:
     ],
 )
 def test_wrong_options_are_rejected(words: list[str], message: str) -> None:
-    result = _run(*words)
+    result = run_program("sim", *words)
     assert result.returncode == 2
     assert message in result.stderr
     assert "Traceback" not in result.stderr
@@ -208,7 +202,7 @@ def test_wrong_options_are_rejected(words: list[str], message: str) -> None:
 
 def test_tcp_port_in_use_has_the_exit_code_of_a_failed_port() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        result = _run("--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
+        result = run_program("sim", "--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
     assert result.returncode == 3
     assert "cannot listen" in result.stderr
 

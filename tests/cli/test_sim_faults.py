@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from cobotwire import MyCobot
+from command_line import PROGRAM
 
-SIM = [sys.executable, "-c", "from cobotwire.cli import main; main()", "sim"]
+SIM = [*PROGRAM, "sim"]
 
 
 def test_faults_of_a_shipped_scenario_are_injected_and_printed() -> None:

@@ -1,7 +1,6 @@
-"""Columns grant and refuse views exactly as PEP 3118 says, for every combination of flags.
+"""Columns grant and refuse views as PEP 3118 requires, for every combination of flags.
 
-Python's own exporters, ``memoryview`` and the one that CPython tests itself with, say what is
-right.
+The oracles are Python's own exporters: ``memoryview``, and the exporter of CPython's tests.
 """
 
 from __future__ import annotations
@@ -21,8 +20,8 @@ import small_tables
 from cobotwire import codec as codecs
 from cobotwire.protocol.table import FrameFormat, Variant
 
-# Every bit that a consumer can set: WRITABLE, FORMAT, ND, STRIDES, C, F, ANY and INDIRECT, and one
-# without a meaning.
+# Every bit that a consumer can set (WRITABLE, FORMAT, ND, STRIDES, C, F, ANY and INDIRECT), and one
+# bit without a meaning.
 FLAGS = range(0x200)
 SIMPLE, WRITABLE, FORMAT, ND = 0, 1, 4, 8
 STRIDES, C_ORDER, F_ORDER, ANY_ORDER, INDIRECT = 0x18, 0x38, 0x58, 0x98, 0x118
@@ -48,7 +47,7 @@ class View(ctypes.Structure):
 
 
 def granted(exporter: Any, flags: int) -> Any:
-    """Return all that a consumer sees of the view, or the type of the error."""
+    """Return everything that a consumer sees of the view, or the name of the error."""
     view = View(obj=POISON)
     try:
         ctypes.pythonapi.PyObject_GetBuffer(ctypes.py_object(exporter), ctypes.byref(view), flags)
@@ -109,7 +108,7 @@ EACH_MEMORY = pytest.mark.parametrize("memory", [pytest.param(m, id=n) for n, m 
 
 
 def cpythons_tester() -> Any:
-    """Return the module with which CPython tests views."""
+    """Return the module that CPython's own tests of views use; skip the test if it is absent."""
     reason = "this build of CPython has no _testbuffer"
     return pytest.importorskip("_testbuffer", reason=reason, exc_type=ImportError)
 
@@ -133,7 +132,7 @@ def test_column_grants_and_refuses_what_a_memoryview_does(memory: Any) -> None:
 def test_column_grants_and_refuses_what_cpythons_test_exporter_does(memory: Any) -> None:
     exporter = cpythons_tester()
     view = memoryview(memory)
-    # It makes no empty arrays, so the empty column is compared with one that has an item.
+    # The exporter makes no empty arrays, so the empty column is compared with an array of one item.
     items = np.asarray(view).ravel().tolist() or [0]
     same = exporter.ndarray(
         items, shape=list(view.shape or ()) if view.nbytes else [1], format=view.format
@@ -190,7 +189,7 @@ print(seen)
 
 
 def test_cpythons_test_consumer_reads_every_view_that_it_is_granted() -> None:
-    """Run in a process of its own, since a wrong view crashes the consumer."""
+    # In a separate process, since a wrong view crashes the consumer.
     cpythons_tester()
     path = [str(Path(__file__).parent), *sys.path]
     done = subprocess.run(

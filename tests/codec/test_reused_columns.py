@@ -1,4 +1,4 @@
-"""``out=`` takes the memory of earlier columns all at once, or leaves them as they were."""
+"""``out=`` takes the memory of all earlier columns, or leaves all of them unchanged."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ import small_tables
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Columns
 from cobotwire.editions import mycobot280
+from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.table import Table, Variant
 
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
 FLAG = bytes.fromhex("FE FE 03 12 01 FA")
 
 
-class Nosy:
-    """Stands for a command; whoever reads its name gives another thread time to make a view."""
+class ViewingCommand:
+    """A command that makes a view when its name is read, as another thread might at that time."""
 
     def __init__(self, name: str, exporter: Any) -> None:
         self._name, self._exporter = name, exporter
@@ -41,48 +42,45 @@ def found(columns: Columns) -> Any:
 
 
 @pytest.mark.parametrize("viewed", [0, 1])
-def test_view_made_during_the_call_leaves_all_columns_as_they_were(
-    codec: Codec, viewed: int
-) -> None:
+def test_view_made_during_a_native_call_leaves_all_columns_unchanged(viewed: int) -> None:
+    codec = codecs.load(TABLE, "native")
     out = codec.decode_columns(ANGLES * 3 + FLAG, "reply")
     before = found(out)
     commands = [rows.command for rows in out]
-    nosy: Any = Nosy(commands[0].name, out[viewed]._offset)
-    out[0].command = nosy
-    if codec.name == "native":
-        with pytest.raises(BufferError, match="out is still used"):
-            codec.decode_columns(ANGLES, "reply", out=out)
-        assert nosy.views, "the view was made during the call"
+    viewing: Any = ViewingCommand(commands[0].name, out[viewed]._offset)
+    out[0].command = viewing
+    with pytest.raises(BufferError, match="out is still used"):
+        codec.decode_columns(ANGLES, "reply", out=out)
+    assert viewing.views, "the view was made during the call"
     out[0].command = commands[0]
     assert found(out) == before
-    for view in nosy.views:
+    for view in viewing.views:
         assert list(view) == list(out[viewed].offset)
         view.release()
-    if codec.name == "native":
-        codec.decode_columns(ANGLES, "reply", out=out)
-        assert len(out) == 0
+    codec.decode_columns(ANGLES, "reply", out=out)
+    assert len(out) == 0
 
 
-def test_columns_with_commands_that_the_edition_lacks_are_no_error(codec: Codec) -> None:
-    """The reference keeps the memory of any ``out``, whatever edition it is of."""
+def test_out_with_commands_that_the_edition_lacks_is_accepted(codec: Codec) -> None:
+    # The reference keeps the memory of any ``out``, of whatever edition.
     table = small_tables.table(
         small_tables.command(
-            1, "nobody_knows", (Variant((small_tables.field("a", small_tables.number()),)),)
+            1, "unknown", (Variant((small_tables.field("a", small_tables.number()),)),)
         )
     )
     other = codecs.load(table, codec.name)
-    data = other.encode("nobody_knows", "request", (7,)) * 3
+    data = other.encode("unknown", "request", (7,)) * 3
     out = other.decode_columns(data, "request")
     assert len(out) == 1
     columns = codec.decode_columns(ANGLES, "reply", out=out)
     assert found(columns) == [([0], [[[1.0, 2.0, 3.0, 4.0, 5.0, 6.5]]])]
 
 
-def test_columns_of_a_variant_with_other_fields_are_no_error(codec: Codec) -> None:
-    """A command of the same name need not have the same fields, variants or reply."""
-    alike = replace(mycobot280.TABLE, commands=tuple(_without_reply(mycobot280.TABLE)))
+def test_out_of_a_table_with_other_variants_is_accepted(codec: Codec) -> None:
+    # A command of the same name need not have the same fields, variants or reply.
+    changed = replace(mycobot280.TABLE, commands=tuple(_without_reply(mycobot280.TABLE)))
     out = codecs.load(mycobot280.TABLE, codec.name).decode_columns(ANGLES * 2 + FLAG, "reply")
-    other = codecs.load(alike, codec.name)
+    other = codecs.load(changed, codec.name)
     request = other.encode("get_angles", "request", ())
     assert len(other.decode_columns(request, "both", out=out)) == 1
 
@@ -93,7 +91,7 @@ def _without_reply(table: Table) -> Any:
 
 
 def test_views_and_reuse_in_several_threads_never_change_a_viewed_column(codec: Codec) -> None:
-    """A view shows the three rows there were, or none if the memory was taken before."""
+    # A view shows the three rows of the earlier columns, or none if their memory was taken before.
     stream = ANGLES * 3 + FLAG
     shared = codec.decode_columns(stream, "reply")
     seen: list[Any] = []
@@ -120,10 +118,11 @@ def test_views_and_reuse_in_several_threads_never_change_a_viewed_column(codec: 
 
 
 @pytest.mark.skipif(
-    not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="this interpreter always has its lock"
+    not sysconfig.get_config_var("Py_GIL_DISABLED"),
+    reason="this interpreter always holds its global lock",
 )
 def test_free_threaded_interpreter_takes_its_lock_again() -> None:
-    """Nothing shows yet that the native codec is sound without it, so it does not claim that."""
+    # The native codec does not claim to be safe without the lock, since no test shows that.
     import cobotwire._native
 
     assert cobotwire._native

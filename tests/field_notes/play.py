@@ -35,7 +35,7 @@ def open_blocking(url: str) -> Any:
 
 
 def open_asyncio(url: str) -> Any:
-    """Open our asyncio client, in an event loop of its own thread."""
+    """Open our asyncio client, with its event loop in a separate thread."""
     return InLoop(AsyncMyCobot280, url)
 
 

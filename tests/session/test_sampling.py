@@ -123,7 +123,7 @@ def test_second_consumer_of_a_stream_is_rejected() -> None:
 @pytest.mark.parametrize("rate", [0, -1, 1001, float("nan"), "10", True, None])
 def test_rate_that_is_not_a_positive_number_is_rejected(rate: object) -> None:
     with pytest.raises(UsageError, match="rate is"):
-        Sampler((), rate)  # type: ignore[arg-type]  # what the test is about
+        Sampler((), rate)  # type: ignore[arg-type]  # the wrong type is intended
 
 
 def test_sample_holds_the_result_of_each_request() -> None:

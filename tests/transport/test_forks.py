@@ -1,4 +1,4 @@
-"""A forked child cannot use what its parent opened; closing it there leaves the parent alone."""
+"""A forked child cannot use the transports of its parent; closing them there does not affect it."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 
 
 def in_child(work: Callable[[], object]) -> str:
-    """Run ``work`` in a forked child and return the text of its failure; empty: it passed."""
+    """Run ``work`` in a forked child; return the text of its failure, empty if it passed."""
     reading, writing = os.pipe()
     with warnings.catch_warnings():
-        # Python 3.12 warns of a fork beside threads, which is what is tested.
+        # Python 3.12 warns of a fork in a process with threads, which these tests need.
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if not child:
@@ -61,7 +61,7 @@ def in_child(work: Callable[[], object]) -> str:
 
 
 def fails_clearly(*calls: Callable[[], object]) -> None:
-    """Check that each call raises the error that says whose transport it is, and what to do."""
+    """Check that each call raises the error that names the opening process and the remedy."""
     for call in calls:
         with pytest.raises(LinkError, match=OPENED_BY):
             call()
@@ -85,7 +85,7 @@ def test_child_that_closes_the_transport_leaves_it_to_the_parent(kind: str) -> N
 
         assert in_child(use_and_close) == ""
         used = time.process_time()
-        # A read that waits without spinning, and then bytes both ways.
+        # The parent's read waits without spinning, and bytes arrive in both directions.
         assert line.transport.read(0.3) == b""
         assert time.process_time() - used < 0.1
         line.end.send(b"abc")
@@ -95,7 +95,7 @@ def test_child_that_closes_the_transport_leaves_it_to_the_parent(kind: str) -> N
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_child_keeps_no_lock_of_the_port(kind: str) -> None:
+def test_child_that_lives_on_does_not_keep_the_port_locked(kind: str) -> None:
     with Line(kind) as line:
         ending, end = os.pipe()
         started, start = os.pipe()
@@ -155,7 +155,7 @@ def test_transport_of_pyserial_is_left_to_the_parent() -> None:
 
 
 class ShutsDown(io.RawIOBase):
-    """A port that ends the connection for everybody when it is closed, as that of rfc2217."""
+    """A port that shuts its connection down in all processes when it is closed, as with rfc2217."""
 
     def __init__(self, connection: socket.socket) -> None:
         self._socket = connection
@@ -166,7 +166,7 @@ class ShutsDown(io.RawIOBase):
             self._socket.close()
 
 
-def test_port_that_shuts_its_connection_down_is_not_closed_in_the_child() -> None:
+def test_port_that_shuts_its_connection_down_stays_open_if_the_child_closes_it() -> None:
     here, there = socket.socketpair()
     transport = UrlTransport("loop://", FAST)
     transport._port.close()
@@ -200,7 +200,7 @@ def test_client_fails_in_the_child_while_a_thread_of_the_parent_is_within_a_call
     with PEERS["pty"]() as peer, MyCobot(peer.url, timeout=1.0) as arm:
         connection = arm._connection
         with connection._state, connection._writing, connection._transport._reading:  # type: ignore[attr-defined]
-            # Held by this thread, they would be as free in the child as in the parent.
+            # Another thread forks; in its child, a thread that does not exist holds these locks.
             results: list[str] = []
 
             def fork() -> None:
@@ -242,7 +242,7 @@ class WithoutDescriptor(TappedTransport):
 
 
 def test_exit_of_the_child_leaves_the_clients_to_the_parent() -> None:
-    # The interpreter's end closes what is still open; here in a child that ends in the usual way.
+    # At its exit, the interpreter closes what is still open; this child exits in the usual way.
     program = """
 import asyncio, os, sys
 from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot

@@ -33,7 +33,7 @@ else:
     print("opened")
 """
 
-# Becomes `nobody` only after Python is loaded, since other users may not read Python's files.
+# Changes to the user `nobody` only after Python is loaded, since its files may be root's.
 OPEN_WITHOUT_LOCK = """
 import os, sys
 os.setuid(65534)

@@ -6,7 +6,6 @@ import math
 import os
 import signal
 import subprocess
-import sys
 import time
 from dataclasses import replace
 from itertools import pairwise
@@ -23,6 +22,7 @@ from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.inspect.plot import draw_pose
 from cobotwire.inspect.plot.pose import points
 from cobotwire.simulator.kinematics import coords_of, geometry_of
+from command_line import PROGRAM
 
 # The lengths of the arm's parts in millimetres, from kinematics.md.
 LENGTHS = [131.22, 110.4, 96.0, 64.62, 73.18, 48.6]
@@ -63,9 +63,8 @@ def test_pose_of_a_recording_without_joints_is_rejected(tmp_path: Path) -> None:
 
 def test_sim_view_keeps_the_picture_up_to_date(tmp_path: Path) -> None:
     path = tmp_path / "view.svg"
-    command = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
     process = subprocess.Popen(
-        [*command, "--edition", "mycobot280", "sim", "--quiet", "--view", str(path)],
+        [*PROGRAM, "--edition", "mycobot280", "sim", "--quiet", "--view", str(path)],
         stdout=subprocess.PIPE,
         text=True,
     )

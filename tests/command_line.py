@@ -1,0 +1,22 @@
+"""Run the command line in another process."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+PROGRAM = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
+
+
+def run_program(*words: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run the command line with these words and further environment variables."""
+    return subprocess.run(
+        [*PROGRAM, *map(str, words)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        env={**os.environ, **environment},
+    )
