@@ -119,7 +119,7 @@ def test_views_and_reuse_in_several_threads_never_change_a_viewed_column(codec: 
 
 @pytest.mark.skipif(
     not sysconfig.get_config_var("Py_GIL_DISABLED"),
-    reason="this interpreter always holds its global lock",
+    reason="this interpreter is not free-threaded",
 )
 def test_free_threaded_interpreter_takes_its_lock_again() -> None:
     # The native codec does not claim to be safe without the lock, since no test shows that.
