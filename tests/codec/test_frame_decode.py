@@ -79,5 +79,5 @@ def test_frame_is_not_decoded_as_an_unknown_command_or_direction(name: codecs.Co
 
 
 def test_frame_not_cut_by_a_framer_is_not_decoded() -> None:
-    with pytest.raises(UsageError, match="was not cut by a framer"):
+    with pytest.raises(UsageError, match="did not come from a framer"):
         Frame(0, b"", 0x20).decode()

@@ -106,7 +106,7 @@ class Fields:
             raise CaptureError(
                 self._name,
                 self._block.offset,
-                "damaged: a block is shorter than its content",
+                "damaged: a block is too short for its content",
             )
         data = self._block.body[self._at : end]
         self._at = min(end + -size % 4, len(self._block.body))

@@ -58,14 +58,14 @@ def open_bytes(
         if data is not None:
             if len(arguments) == 1 and os.path.exists(name):
                 message = (
-                    f"{name} is a file and also bytes in hex: "
+                    f"{name} is both a file and hex: "
                     f"use ./{name} for the file, 0x{name} for the bytes"
                 )
                 raise UsageError("FILE", name, message=message)
             return ByteSource(iter([(data, len(data))]), len(data), from_arguments=True)
     if len(arguments) > 1:
         text = " ".join(arguments)
-        message = f"{text} is not bytes in hex; give pairs of hex digits, one FILE, or -"
+        message = f"{text} is not hex; give pairs of hex digits, one FILE, or -"
         raise UsageError("HEX", text, message=message)
     stream = _open(name)
     status = os.fstat(stream.fileno())

@@ -80,7 +80,7 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a 
             UsageError: ``of`` names no command, or no framer returned the frame.
         """
         if self._read is None:
-            raise UsageError("frame", self, message=f"{self!r} was not cut by a framer")
+            raise UsageError("frame", self, message=f"{self!r} did not come from a framer")
         return self._read(self.data, direction, of)
 
     @property

@@ -6,9 +6,9 @@ from __future__ import annotations
 def printable(text: str) -> str:
     r"""Return the text with an escape, such as ``\x1b``, for each character that is not printable.
 
-    Shown raw, control characters could move the cursor or colour what follows, a line end could
-    begin a forged line, bidirectional overrides reverse the rest of a line, and lone surrogates
-    cannot be encoded at all.
+    Unescaped control characters could move the cursor or change the colour, a line end could start
+    a forged line, a bidirectional override could reverse the rest of a line, and a lone surrogate
+    cannot be encoded.
     """
     if text.isprintable():
         return text
