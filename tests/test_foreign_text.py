@@ -79,6 +79,7 @@ VALUES: dict[str, Any] = {
     "str": HOSTILE,
     "Any": HOSTILE,
     "int": 1,
+    "int | None": 1,
     "float": 1.0,
     "bool": False,
     "bytes": HOSTILE.encode("utf-8", "surrogatepass"),
