@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from cobotwire import codec as codecs
@@ -11,6 +13,7 @@ from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import AppliedFault
 from cobotwire.simulator.peer import Peer
+from cobotwire.simulator.state import ArmState
 from conformance.device.testing import bad, permissions, prepared, settings_of
 from mutation.device.suite import LIGHT_NOISE
 
@@ -57,3 +60,23 @@ def test_run_restores_what_it_changes(edition: str) -> None:
     prepared(editions.load(edition).TABLE, keep, permissions=allowed).run()
     [(arm, before)] = kept
     assert settings_of(arm) == before
+
+
+# A change of each kind of value: plain, in a row, in a dict of a list, in a dict of a dict.
+CHANGES: list[Callable[[ArmState], object]] = [
+    lambda state: setattr(state, "speed", state.speed + 1),
+    lambda state: setattr(state, "tool", (*state.tool[:5], 0.1)),
+    lambda state: state.minimum.append(state.minimum.pop() + 0.1),
+    lambda state: state.registers[3].update({21: state.registers[3][21] + 1}),
+    lambda state: state.pins.update({5: True}),
+    lambda state: state.backups.update({1: {20: 1}}),
+]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_changed_value_of_a_setting_is_noticed(change: Callable[[ArmState], object]) -> None:
+    arm = SimulatedArm(editions.load("mycobot280").TABLE)
+    before = settings_of(arm)
+    assert settings_of(arm) == before
+    change(arm.state)
+    assert settings_of(arm) != before

@@ -60,16 +60,14 @@ class Altered:
 
 # An interrupted run does not restore the power, since an arm without power would fall.
 HELD = ("powered", "stopped")
+# Not settings: where the arm is, what has happened to it, and what it is.
+NOT_SET = ("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry")
 
 
-def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> object:
-    """Return a copy of everything that can be set, except ``but``."""
-    state = arm.state
-    every = ("powered", "free", "stopped", "paused", "fresh_mode", "speed", "reference_frame")
-    names = [name for name in every if name not in but]
-    plain = {name: getattr(state, name) for name in names}
-    rows = (state.end_type, state.ssid, state.password, state.tool, state.world, state.registers)
-    limits = (state.minimum, state.maximum)
-    both = (state.pins, state.basic_pins)
-    high = [sorted(pin for pin, high in pins.items() if high) for pins in both]
-    return deepcopy((plain, rows, limits, high))
+def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> dict[str, object]:
+    """Return a copy of everything that can be set, except ``but``, by name."""
+    state = vars(arm.state).copy()
+    # A pin that is low is as a pin that was never set.
+    for name in ("pins", "basic_pins"):
+        state[name] = sorted(pin for pin, high in state[name].items() if high)
+    return deepcopy({name: state[name] for name in state if name not in (*NOT_SET, *but)})
