@@ -7,9 +7,9 @@ as far as the ranges allow, so that a wrong order, sign or scale shows.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import product
 from typing import Any, NamedTuple
 
+from cobotwire.conformance.places import Place, numbers_of, picks, places
 from cobotwire.protocol.table import Field, Number, Variant
 
 RawValues = tuple[tuple[int, ...], ...]
@@ -66,29 +66,6 @@ def plainest(variant: Variant, near: int = 0) -> RawValues:
     )
 
 
-def picks(variant: Variant) -> Iterator[dict[int, int]]:
-    """Yield every combination of values of the selectors, by their index in the variant."""
-    selectors = sorted({field.selector for field in variant.fields} - {-1})
-    for chosen in product(*(_selecting(variant, index) for index in selectors)):
-        yield dict(zip(selectors, chosen))
-
-
-def _selecting(variant: Variant, index: int) -> list[int]:
-    """Return the values of a selector that pick a case."""
-    field = variant.fields[index]
-    number = field.cases[0].numbers[0]
-    known = {raw for f in variant.fields if f.selector == index for c in f.cases for raw in c.when}
-    every = field.choices or range(number.minimum, number.maximum + 1)
-    return [raw for raw in every if raw in known]
-
-
-def numbers_of(field: Field, picked: Mapping[int, int]) -> tuple[Number, ...]:
-    """Return the numbers of a field while the selectors hold the values in ``picked``."""
-    case = field.case(picked.get(field.selector))
-    assert case is not None, "a pick has a case"
-    return case.numbers
-
-
 def samples(variant: Variant) -> Iterator[Sample]:
     """Yield a sample for every case of every selector, and for every corner value in it."""
     seen: set[RawValues] = set()
@@ -98,9 +75,9 @@ def samples(variant: Variant) -> Iterator[Sample]:
             Sample(f"{name}ordinary", base),
             Sample(f"{name}ordinary-again", ordinary(variant, picked, turn=7)),
         ]
-        for place in _places(variant, picked):
-            if place.at not in picked:
-                found += [place.sample(name, base, raw) for raw in legal(place.field, place.number)]
+        for place in places(variant, picked):
+            if place.index not in picked:
+                found += [_with(base, place, raw, name) for raw in legal(place.field, place.number)]
         for sample in found:
             if sample.raw_values not in seen:
                 seen.add(sample.raw_values)
@@ -111,30 +88,13 @@ def illegal_samples(variant: Variant) -> Iterator[Sample]:
     """Yield ordinary samples with one raw value that fits the wire but is illegal in its field."""
     for picked in picks(variant):
         name, base = _prefix(variant, picked), ordinary(variant, picked)
-        for place in _places(variant, picked):
+        for place in places(variant, picked):
             for raw in beyond(place.field, place.number):
-                yield place.sample(name, base, raw)
+                yield _with(base, place, raw, name)
 
 
-class _Place(NamedTuple):
-    """One number of a variant."""
-
-    field: Field
-    number: Number
-    at: int
-    element: int
-
-    def sample(self, prefix: str, base: RawValues, raw: int) -> Sample:
-        """Return a sample with another raw value in this place."""
-        part = f".{self.number.name or self.element}" if self.field.many else ""
-        name = f"{prefix}{self.field.name}{part}={raw}"
-        return Sample(name, with_one(base, self.at, self.element, raw))
-
-
-def _places(variant: Variant, picked: Mapping[int, int]) -> Iterator[_Place]:
-    for index, field in enumerate(variant.fields):
-        for element, number in enumerate(numbers_of(field, picked)):
-            yield _Place(field, number, index, element)
+def _with(base: RawValues, place: Place, raw: int, prefix: str) -> Sample:
+    return Sample(f"{prefix}{place.name}={raw}", with_one(base, place.index, place.element, raw))
 
 
 def _prefix(variant: Variant, picked: Mapping[int, int]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec
 from cobotwire.codec.reference import ReferenceCodec
-from cobotwire.conformance.codec.named import encode_named, plain_fields
+from cobotwire.conformance.codec.adapter.ours import encode_named, plain_fields
 from cobotwire.conformance.codec.questions.frames import frame_of
 from cobotwire.conformance.samples import (
     RawValues,

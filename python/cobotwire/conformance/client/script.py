@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.client.history import Received
+from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
-from cobotwire.protocol.table import Command, Number, Variant
+from cobotwire.protocol.table import Command
 
 SOURCE = "the script"
 SCALE = TestCase("sent-scale", "Values are sent in the scale of their field.", SOURCE)
@@ -113,19 +114,20 @@ def difference(codec: Codec, line: ScriptLine, right: bytes, given: bytes) -> tu
     frames = f"expected {right.hex(' ').upper()}, got {given.hex(' ').upper()}"
     if len(right) != len(given):
         return VARIANT, frames
+    data, sent = right[codec.table.frame.overhead + 1 :], given[codec.table.frame.overhead + 1 :]
     wrong = [
-        (name, number, right[at : at + number.width], given[at : at + number.width])
-        for name, number, at in _numbers(codec, line, right)
-        if right[at : at + number.width] != given[at : at + number.width]
+        (place, place.bytes_of(data), place.bytes_of(sent))
+        for place in _places(codec, line, right)
+        if place.bytes_of(data) != place.bytes_of(sent)
     ]
     if not wrong:
         return VALUE, frames
-    name, number, a, b = wrong[0]
-    expected, got = number.unpack(a), number.unpack(b)
-    words = f"{name}: expected {_shown(number, expected)}, got {_shown(number, got)}"
-    if all(theirs == ours[::-1] for _, _, ours, theirs in wrong):
+    place, a, b = wrong[0]
+    expected, got = place.number.unpack(a), place.number.unpack(b)
+    words = f"{place.name}: expected {_shown(place, expected)}, got {_shown(place, got)}"
+    if all(theirs == ours[::-1] for _, ours, theirs in wrong):
         return BYTE_ORDER, f"{words}, with its bytes swapped"
-    if len(wrong) > 1 and sorted(w[2] for w in wrong) == sorted(w[3] for w in wrong):
+    if len(wrong) > 1 and sorted(ours for _, ours, _ in wrong) == sorted(w[2] for w in wrong):
         return ORDER, f"{words}, which belongs to another field"
     return _of_number(expected, got), words
 
@@ -142,23 +144,12 @@ def _of_number(expected: int, got: int) -> TestCase:
     return VALUE
 
 
-def _numbers(codec: Codec, line: ScriptLine, frame: bytes) -> list[tuple[str, Number, int]]:
-    """Return every number of a line with its name and its place in the frame."""
-    message = codec.decode("request", frame, of=line.command.name)
-    found: list[tuple[str, Number, int]] = []
-    at = codec.table.frame.overhead + 1
-    for index, field in enumerate(message.variant.fields):
-        for element, number in enumerate(_case(message.variant, index, message.values)):
-            part = f".{number.name or element}" if field.many else ""
-            found.append((field.name + part, number, at))
-            at += number.width
-    return found
+def _places(codec: Codec, line: ScriptLine, frame: bytes) -> Iterator[Place]:
+    """Yield every number of the right frame of a line."""
+    variant = codec.decode("request", frame, of=line.command.name).variant
+    rows = variant.unpack(frame[codec.table.frame.overhead + 1 :])
+    return places(variant, {index: row[0] for index, row in enumerate(rows)})
 
 
-def _case(variant: Variant, index: int, values: Sequence[Any]) -> tuple[Number, ...]:
-    field = variant.fields[index]
-    return variant.case(field, values).numbers
-
-
-def _shown(number: Number, raw: int) -> str:
-    return f"{number.physical(raw):g} {number.unit}".rstrip()
+def _shown(place: Place, raw: int) -> str:
+    return f"{place.number.physical(raw):g} {place.number.unit}".rstrip()

@@ -32,7 +32,7 @@ def judge(
     expect = question.expect
     if "events" in expect:
         yield from _stream(expect["events"], answer, can)
-    elif "rejected" in expect:
+    elif "error" in expect:
         yield from _rejection(question, answer, can)
     elif "bytes" in expect:
         yield Observation(question.case, _bytes(expect["bytes"], answer))
@@ -49,7 +49,7 @@ def _bytes(right: str, answer: Json) -> str:
 
 
 def _rejection(question: Question, answer: Json, can: Collection[str]) -> Iterator[Observation]:
-    right, why = question.expect["rejected"], question.expect.get("why", "")
+    right, why = question.expect["error"], question.expect["why"]
     if "error" not in answer:
         yield Observation(
             question.case, f"expected a rejection ({why}), but the answer was {_shown(answer)}"

@@ -13,7 +13,7 @@ from cobotwire.conformance.device.requests import (
     requests,
     revealing,
 )
-from cobotwire.conformance.samples import numbers_of
+from cobotwire.conformance.places import numbers_of
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Field, Number, Table, Variant
 

@@ -7,14 +7,8 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Any
 
-from cobotwire.conformance.samples import (
-    RawValues,
-    named_values,
-    numbers_of,
-    picks,
-    plainest,
-    with_row,
-)
+from cobotwire.conformance.places import numbers_of, picks
+from cobotwire.conformance.samples import RawValues, named_values, plainest, with_row
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Field, Number, Variant
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cobotwire.conformance.client.history import History, Received
+from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
 from cobotwire.protocol.table import Field, Table
@@ -30,11 +31,9 @@ def _field_at(table: Table, data: bytes, offset: int) -> Field | None:
     size = len(data) - frame.overhead - 1 - frame.check_size
     for command in table.commands:
         for variant in command.request if command.id == data[frame.overhead] else ():
-            at = frame.overhead + 1
-            for field in variant.fields if variant.size == size else ():
-                if at <= offset < at + field.size:
-                    return field
-                at += field.size
+            for place in places(variant) if variant.size == size else ():
+                if 0 <= offset - frame.overhead - 1 - place.start < place.number.width:
+                    return place.field
     return None
 
 

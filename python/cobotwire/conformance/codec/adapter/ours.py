@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from cobotwire.codec.interface import Codec, Framer, Noise
-from cobotwire.conformance.codec.named import encode_named, plain_fields
-from cobotwire.conformance.codec.questions.question import Json
+from collections.abc import Mapping
+from typing import Any
+
+from cobotwire.codec.interface import Codec, DecodedMessage, Framer, Noise
+from cobotwire.conformance.codec.questions.question import Json, hexed
 from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.table import Direction
 
 ABILITIES = [
     *(f"{do} {direction}" for do in ("encode", "decode") for direction in ("request", "reply")),
@@ -42,7 +45,7 @@ class OurCodec:
         try:
             command, direction = question["command"], question["direction"]
             return {
-                "bytes": encode_named(self._codec, command, direction, question["fields"]).hex()
+                "bytes": hexed(encode_named(self._codec, command, direction, question["fields"]))
             }
         except UsageError as error:
             return {"error": "bad-value", "why": str(error)}
@@ -64,8 +67,47 @@ def events_of(framer: Framer, chunk: str | None) -> list[Json]:
     """Return the events that a chunk, or a silence, makes certain."""
     events = framer.flush() if chunk is None else framer.feed(bytes.fromhex(chunk))
     return [
-        {"noise": event.data.hex(), "offset": event.offset, "reason": event.reason}
+        {"noise": hexed(event.data), "offset": event.offset, "reason": event.reason}
         if isinstance(event, Noise)
-        else {"frame": event.data.hex(), "offset": event.offset}
+        else {"frame": hexed(event.data), "offset": event.offset}
         for event in events
     ]
+
+
+def encode_named(
+    codec: Codec, command: str, direction: Direction, fields: Mapping[str, Any]
+) -> bytes:
+    """Return the frame of the first variant with exactly these fields that allows the values.
+
+    Raises:
+        UsageError: no variant has these fields, or none allows the values.
+    """
+    rejection: UsageError | None = None
+    for index, variant in enumerate(codec.table.command(command).variants(direction)):
+        names = [field.name for field in variant.fields]
+        if set(names) != set(fields):
+            continue
+        values = [
+            bool(fields[field.name])
+            if field.kind == "flag" and fields[field.name] in (0, 1)
+            else fields[field.name]
+            for field in variant.fields
+        ]
+        try:
+            return codec.encode(command, direction, values, variant=index)
+        except UsageError as error:
+            rejection = rejection or error
+    raise rejection or UsageError(
+        f"{command} {direction}: fields", sorted(fields), "those of a variant"
+    )
+
+
+def plain_fields(message: DecodedMessage) -> dict[str, Any]:
+    """Return the values of a message by name, as JSON values: flags and enums as integers."""
+    return {name: _plain(value) for name, value in message.fields.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_plain(part) for part in value]
+    return value if isinstance(value, float) else int(value)

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec
-from cobotwire.conformance.codec.named import encode_named, plain_fields
-from cobotwire.conformance.codec.questions.question import Json, Question
+from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.question import Json, Question, hexed
 from cobotwire.conformance.samples import (
     Sample,
     illegal_samples,
@@ -16,7 +16,6 @@ from cobotwire.conformance.samples import (
     samples,
 )
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Command, Direction, Field, Number, Table, Variant
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
@@ -97,11 +96,8 @@ def _rejected_values(codec: Codec) -> Iterator[Question]:
 def _encode(codec: Codec, variant: CommandVariant, name: str, values: Json) -> Question:
     command, direction = variant.command.name, variant.direction
     ask = {"do": "encode", "direction": direction, "command": command, "fields": values}
-    try:
-        expect: Json = {"bytes": hexed(encode_named(codec, command, direction, values))}
-        case = ENCODE_BYTES
-    except UsageError as error:
-        expect, case = {"rejected": "bad-value", "why": str(error)}, ENCODE_REJECTS
+    expect = OurCodec(codec).ask(ask)
+    case = ENCODE_REJECTS if "error" in expect else ENCODE_BYTES
     return Question(f"{case.id}/{variant.label}/{name}", case, command, ask, expect)
 
 
@@ -166,19 +162,9 @@ def decode(codec: Codec, direction: Direction, of: str, name: str, data: bytes) 
     ask: Json = {"do": "decode", "direction": direction, "bytes": hexed(data)}
     if of:
         ask["command"] = of
-    try:
-        message = codec.decode(direction, data, of=of or None)
-        expect: Json = {"command": message.command.name, "fields": plain_fields(message)}
-        case = DECODE_VALUES
-    except ProtocolError as error:
-        expect = {"rejected": error.reason, "offset": error.offset, "why": str(error)}
-        case = DECODE_REJECTS
+    expect = OurCodec(codec).ask(ask)
+    case = DECODE_REJECTS if "error" in expect else DECODE_VALUES
     return Question(f"{case.id}/{name}", case, of, ask, expect)
-
-
-def hexed(data: bytes) -> str:
-    """Return bytes as the line protocol writes them."""
-    return data.hex().upper()
 
 
 ENCODING = Group("encoding", (ENCODE_BYTES, ENCODE_REJECTS), _encoding)

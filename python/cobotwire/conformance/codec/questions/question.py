@@ -10,13 +10,17 @@ from cobotwire.conformance.suite import TestCase
 Json = dict[str, Any]
 
 
+def hexed(data: bytes) -> str:
+    """Return bytes as the line protocol writes them."""
+    return data.hex().upper()
+
+
 @dataclass(frozen=True, slots=True)
 class Question:
-    """One question of ``docs/codec-protocol.md`` with the right answer.
+    """One question of ``docs/codec-protocol.md`` with the answer of the reference codec.
 
     ``name`` is unique and stable: files of expected failures use it. ``case`` is the test case
-    that the answer is judged by. ``ask`` lacks the ``id``. ``expect`` holds one of ``bytes``,
-    ``fields``, ``rejected``, ``events``.
+    that the answer is judged by. ``ask`` lacks the ``id``. ``expect`` is the right answer.
     """
 
     name: str

@@ -6,15 +6,15 @@ import random
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from cobotwire.codec.interface import Codec, Event, Listening, Noise
+from cobotwire.codec.interface import Codec, Listening
+from cobotwire.conformance.codec.adapter.ours import OurCodec
 from cobotwire.conformance.codec.questions.frames import (
     CommandVariant,
-    hexed,
     ordinary_frame,
     variants_of,
 )
 from cobotwire.conformance.codec.questions.malformed import damages
-from cobotwire.conformance.codec.questions.question import Json, Question
+from cobotwire.conformance.codec.questions.question import Json, Question, hexed
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Table
 
@@ -154,23 +154,12 @@ def cut(data: bytes, size: int) -> list[bytes]:
 def stream(codec: Codec, listening: Listening, command: str, name: str, chunks: Chunks) -> Question:
     """Return the question about a stream; it always ends with a silence."""
     chunks = [*chunks, None]
-    framer = codec.framer(listening)
-    events = [
-        [_event(event) for event in (framer.flush() if chunk is None else framer.feed(chunk))]
-        for chunk in chunks
-    ]
     ask: Json = {
         "do": "stream",
         "direction": listening,
         "chunks": [None if chunk is None else hexed(chunk) for chunk in chunks],
     }
-    return Question(f"stream/{name}", STREAM_FRAMES, command, ask, {"events": events})
-
-
-def _event(event: Event) -> Json:
-    kind = "noise" if isinstance(event, Noise) else "frame"
-    event_json: Json = {kind: hexed(event.data), "offset": event.offset}
-    return {**event_json, "reason": event.reason} if isinstance(event, Noise) else event_json
+    return Question(f"stream/{name}", STREAM_FRAMES, command, ask, OurCodec(codec).ask(ask))
 
 
 STREAMS = Group("streams", (STREAM_FRAMES, STREAM_CHUNKS, STREAM_NOISE, NOISE_REASON), _streams)

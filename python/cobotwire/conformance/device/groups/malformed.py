@@ -11,6 +11,7 @@ from cobotwire.conformance.device.groups.queries import is_query
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import requests
 from cobotwire.conformance.device.response import Response
+from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, FrameFormat, Table
 from cobotwire.session.request import EncodedRequest
@@ -90,11 +91,7 @@ def _expect_one_reply(probe: Probe, case: TestCase, response: Response, what: st
 
 def _can_be_out_of_range(table: Table, command: Command) -> bool:
     """Return whether bytes can express arguments that the edition does not allow."""
-    return _is_framed_query(table, command) and any(
-        _forbidden(field.choices, number.minimum, number.maximum, number.width)
-        for field in command.request[0].fields
-        for number in field.cases[0].numbers
-    )
+    return _is_framed_query(table, command) and any(map(_forbidden, places(command.request[0])))
 
 
 def _out_of_range(probe: Probe) -> None:
@@ -109,23 +106,21 @@ def _wrong_values(table: Table, command: Command, data: bytes) -> Iterator[tuple
     """Yield a request with a number outside each field's range or list, if bytes can hold it."""
     if table.frame.check != "footer":
         return
-    at = table.frame.length_at + 2
-    for field in command.request[0].fields:
-        for number in field.cases[0].numbers:
-            for value in _forbidden(field.choices, number.minimum, number.maximum, number.width):
-                wrong = value.to_bytes(number.width, number.order)
-                name = f"{field.name}.{number.name}" if number.name else field.name
-                yield f"{name} = {value}", data[:at] + wrong + data[at + number.width :]
-            at += number.width
+    for place in places(command.request[0]):
+        at, width = table.frame.overhead + 1 + place.start, place.number.width
+        for value in _forbidden(place):
+            wrong = value.to_bytes(width, place.number.order)
+            yield f"{place.name} = {value}", data[:at] + wrong + data[at + width :]
 
 
-def _forbidden(choices: tuple[int, ...], low: int, high: int, width: int) -> list[int]:
+def _forbidden(place: Place) -> list[int]:
     """Return unsigned values that are illegal, whichever way the firmware reads their sign."""
-    if low < 0:
+    choices, number = place.field.choices, place.number
+    if number.minimum < 0:
         return []
-    allowed = set(choices) or range(low, high + 1)
-    near = {low - 1, high + 1, 256**width - 1, *(choice + 1 for choice in choices)}
-    return sorted(value for value in near if 0 <= value < 256**width and value not in allowed)
+    top = 256**number.width
+    near = {number.minimum - 1, number.maximum + 1, top - 1, *(choice + 1 for choice in choices)}
+    return sorted(v for v in near if 0 <= v < top and not place.field.allows(number, v))
 
 
 def _crowded(probe: Probe) -> None:

@@ -1,0 +1,69 @@
+"""Where the numbers of a message stand, and which of them apply."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import product
+
+from cobotwire.protocol.table import Field, Number, Variant
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """One number of a variant: its field, the field's index, its own index in the field's row.
+
+    ``start`` is the offset of its first byte in the data bytes.
+    """
+
+    field: Field
+    number: Number
+    index: int
+    element: int
+    start: int
+
+    @property
+    def name(self) -> str:
+        """The name for people: ``speed``, ``coords.x``."""
+        part = f".{self.number.name or self.element}" if self.field.many else ""
+        return self.field.name + part
+
+    def bytes_of(self, data: bytes) -> bytes:
+        """Return the bytes of this number in the data bytes of a message."""
+        return data[self.start : self.start + self.number.width]
+
+
+def places(variant: Variant, picked: Mapping[int, int] | None = None) -> Iterator[Place]:
+    """Yield every number of a variant, while its selectors hold the raw values in ``picked``.
+
+    Without ``picked``, fields read as their first case.
+    """
+    start = 0
+    for index, field in enumerate(variant.fields):
+        numbers = field.cases[0].numbers if picked is None else numbers_of(field, picked)
+        for element, number in enumerate(numbers):
+            yield Place(field, number, index, element, start)
+            start += number.width
+
+
+def picks(variant: Variant) -> Iterator[dict[int, int]]:
+    """Yield every combination of values of the selectors, by their index in the variant."""
+    selectors = sorted({field.selector for field in variant.fields} - {-1})
+    for chosen in product(*(_selecting(variant, index) for index in selectors)):
+        yield dict(zip(selectors, chosen))
+
+
+def _selecting(variant: Variant, index: int) -> list[int]:
+    """Return the values of a selector that pick a case."""
+    field = variant.fields[index]
+    number = field.cases[0].numbers[0]
+    known = {raw for f in variant.fields if f.selector == index for c in f.cases for raw in c.when}
+    every = field.choices or range(number.minimum, number.maximum + 1)
+    return [raw for raw in every if raw in known]
+
+
+def numbers_of(field: Field, picked: Mapping[int, int]) -> tuple[Number, ...]:
+    """Return the numbers of a field while the selectors hold the values in ``picked``."""
+    case = field.case(picked.get(field.selector))
+    assert case is not None, "a pick has a case"
+    return case.numbers
