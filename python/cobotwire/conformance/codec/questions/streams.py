@@ -17,6 +17,7 @@ from cobotwire.conformance.codec.questions.malformed import damages
 from cobotwire.conformance.codec.questions.question import Json, Question, hexed
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Table
+from cobotwire.simulator.faults.noise import NOISE
 
 # None: the line is silent, and the framer must decide about the bytes that it still holds.
 Chunks = Sequence[bytes | None]
@@ -38,13 +39,16 @@ NOISE_REASON = TestCase(
 )
 
 LISTENING: tuple[Listening, ...] = ("request", "reply", "both")
-NOISES = (
-    bytes.fromhex("FF FF 01 04 02 38 02 BE"),  # a servo packet
-    bytes.fromhex("FF FF 01 04 00 BB 3D FE"),  # a checksum like the start of a header
-    b"cmd_len error\r\n",
-    bytes(9),
-    bytes.fromhex("78 80 78"),
-    bytes.fromhex("FA FA"),
+# Pieces of these classes of the simulator's catalogue, the same in each run.
+NOISE_CLASSES = (
+    "servo",
+    "servo FE",
+    "command error",
+    "nuls",
+    "other baud rate",
+    "garbage",
+    "false header",
+    "frame bytes",
 )
 RANDOM_STREAMS = 240
 
@@ -80,10 +84,20 @@ def _of_variant(codec: Codec, variant: CommandVariant) -> Iterator[Question]:
     yield question("silence-inside", [whole[:-1], None, whole[-1:], after])
     for name, broken in damages(codec.table, whole):
         yield question(f"{name}-then-whole", [broken + after])
-    for index, noise in enumerate(NOISES):
+    for index, noise in enumerate(_noises(codec.table)):
         yield question(f"noise-{index}", [noise + whole + noise + after + noise])
     for count in range(1, 5):
         yield question(f"header-bytes-{count}", [codec.table.frame.header[:1] * count + whole])
+
+
+def _noises(table: Table) -> list[bytes]:
+    """Return a piece of each class of noise."""
+    return [NOISE[name].draw(_chance(name), table) for name in NOISE_CLASSES]
+
+
+def _chance(seed: str) -> random.Random:
+    """Return random numbers that are the same in each run."""
+    return random.Random(seed)  # noqa: S311  (no secret; it must repeat)
 
 
 def _silences(codec: Codec, variant: CommandVariant) -> Iterator[Question]:
@@ -118,7 +132,7 @@ def _random(
     codec: Codec, listening: Listening, variants: Sequence[CommandVariant], seed: int
 ) -> Question:
     """Return a stream of pieces of all kinds, cut anywhere; the seed makes it repeatable."""
-    chance = random.Random(f"{listening} {seed}")  # noqa: S311  (no secret; it must repeat)
+    chance = _chance(f"{listening} {seed}")
     data = b"".join(_piece(codec.table, variants, chance) for _ in range(chance.randint(2, 9)))
     cuts = sorted(chance.randint(0, len(data)) for _ in range(chance.randint(0, 6)))
     chunks: list[bytes | None] = []
@@ -131,18 +145,14 @@ def _random(
 
 def _piece(table: Table, variants: Sequence[CommandVariant], chance: random.Random) -> bytes:
     whole = ordinary_frame(table, chance.choice(variants), chance.randint(0, 9))
-    kind = chance.randint(0, 6)
+    kind = chance.randint(0, 5)
     if kind == 0:
-        return chance.choice(NOISES)
+        return NOISE[chance.choice(NOISE_CLASSES)].draw(chance, table)
     if kind == 1:
         return whole[: chance.randint(1, len(whole))]
     if kind == 2:
         index = chance.randrange(len(whole))
         return whole[:index] + bytes([chance.randint(0, 255)]) + whole[index + 1 :]
-    if kind == 3:
-        return bytes(
-            chance.choice(b"\xfe\xfa\x02\x0e\x20\x00") for _ in range(chance.randint(1, 9))
-        )
     return whole
 
 

@@ -6,19 +6,21 @@ Only queries are damaged: whatever the firmware makes of them, nothing changes.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from random import Random
 
 from cobotwire.conformance.device.groups.queries import is_query
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import requests
-from cobotwire.conformance.device.response import Response
+from cobotwire.conformance.device.response import Response, shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, FrameFormat, Table
 from cobotwire.session.request import EncodedRequest
+from cobotwire.simulator.faults.noise import NOISE
 
 MALFORMED = frozenset({"malformed"})
-# A packet of the servo bus, a header that leads nowhere, text, and half a frame.
-NOISES = ("ff ff 01 04 02 38 02 be", "fe fe", "63 6d 64 0d 0a", "fe fe fe 30")
+# Classes of the simulator's catalogue: packets of the servo bus, text, and bytes of a header.
+NOISES = ("servo", "servo FE", "command error", "header bytes")
 
 WRONG_LENGTH = TestCase("wrong-length", "A request with a wrong LEN is not replied to.")
 WRONG_FOOTER = TestCase("wrong-footer", "A request with a wrong footer is not replied to.")
@@ -126,10 +128,12 @@ def _forbidden(place: Place) -> list[int]:
 def _crowded(probe: Probe) -> None:
     """Send legal requests after noise, in pieces, and several at once."""
     device, request = probe.device, _sample(probe)
-    for noise in NOISES:
-        data = bytes.fromhex(noise) + request.frame
-        response = device.count(device.requester.send_instead(request, data, "noise and a request"))
-        _expect_one_reply(probe, NOISE_BEFORE, response, f"the request after {noise.upper()}")
+    for name in NOISES:
+        # The same pieces in each run, so that reports can be compared.
+        noise = NOISE[name].draw(Random(name), device.table)  # noqa: S311
+        data, what = noise + request.frame, "noise and a request"
+        response = device.count(device.requester.send_instead(request, data, what))
+        _expect_one_reply(probe, NOISE_BEFORE, response, f"the request after {shown(noise)}")
     _in_pieces(probe, request)
     _together(probe, request)
 
