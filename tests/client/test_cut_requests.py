@@ -1,4 +1,4 @@
-"""A request of which the transport took only a part never becomes a part of another request."""
+"""A partly written request never becomes a part of another request."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
 from cobotwire.transport.aio import WRITE_TIMEOUT
 
 CODEC = codecs.load(TABLE)
-# -2.58 degrees are FE FE: half of this request and a stop were a legal motion.
+# -2.58 degrees are FE FE, so half of this request and a stop would be a legal motion.
 ANGLES = (0.0, 0.0, -2.58, 0.0, 0.0, 0.0)
 MOTION = CODEC.encode("send_angles", "request", [ANGLES, 50])
-# More than the buffer of a pseudo-terminal holds, which is 64 KiB.
+# More bytes than the buffer of a pseudo-terminal holds (64 KiB).
 REQUESTS = 4000
 STOP = CODEC.encode("stop", "request", [])
 
 
 def frames(received: bytes) -> list[bytes]:
-    """Return the requests that an arm finds in what it received."""
+    """Return the requests that an arm finds in the bytes it received."""
     framer = CODEC.framer("request")
     events = [*framer.feed(received), *framer.flush()]
     return [event.data for event in events if isinstance(event, Frame)]
@@ -86,14 +86,14 @@ class StuckPty:
         self.url = os.ttyname(self._slave)
 
     def drain(self) -> bytes:
-        """Return what was written until nothing more comes."""
+        """Return the written bytes, when no more arrive."""
         received = b""
         while select.select([self._master], [], [], 0.2)[0]:
             received += os.read(self._master, 65536)
         return received
 
     def read(self, size: int) -> bytes:
-        """Return up to ``size`` bytes; nothing if none are there."""
+        """Return up to ``size`` bytes, without waiting."""
         ready, _, _ = select.select([self._master], [], [], 0)
         return os.read(self._master, size) if ready else b""
 
@@ -111,7 +111,7 @@ def test_stop_arrives_first_once_a_stuck_port_recovers(
     whole = 0
     with who(pty.url) as arm:
         for _ in range(before):
-            # Five bytes each move the position at which the motion is cut.
+            # Each five bytes move the position at which the motion is cut.
             arm.stop()
         written = None
         while written is None:

@@ -1,4 +1,4 @@
-"""After a part of a request, no bytes of ours complete a legal frame but a request of its own."""
+"""After a partly written request, only whole requests of ours form legal frames."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _check_is_right(format: FrameFormat, frame: bytes) -> bool:
 
 
 def _by_len(format: FrameFormat, data: bytes, cost: Callable[[int], int]) -> Iterator[bytes]:
-    """Believe each LEN; a frame with a wrong check costs ``cost(its size)`` bytes."""
+    """Trust each LEN; discard ``cost(size)`` bytes of a frame with a wrong check."""
     at = 0
     while (at := data.find(format.header, at)) >= 0 and at + format.overhead <= len(data):
         size = format.overhead + data[at + format.length_at]
@@ -65,7 +65,7 @@ PARSERS = (by_the_law, by_any_len, by_any_len_skipping)
 
 
 def holds_a_frame(parser: Parser, codec: Codec, part: bytes) -> bool:
-    """Return whether a whole frame stands within the part of a frame."""
+    """Return whether the part of a frame contains a whole frame."""
     return any(parser(codec, part[start:]) for start in range(1, len(part)))
 
 
@@ -97,7 +97,7 @@ def test_next_request_is_the_only_frame_after_a_cut_at_any_position(
         received = cut[:written] + alignment.align + following
         [part] = alignment.held
         if alignment.align == part.rest:
-            # Fill bytes would expose a frame that stands within the part.
+            # Fill bytes would expose a frame inside the part.
             assert holds_a_frame(by_the_law, codec, cut[:written])
             assert by_the_law(codec, received) == [
                 cut,
