@@ -133,7 +133,7 @@ class ReplyTimeout(CobotwireError, TimeoutError):
 class MotionTimeout(CobotwireError, TimeoutError):
     """The arm did not reach its target in time, or it stopped short of the target.
 
-    Nothing stops the arm when this error is raised: call ``stop()`` if it must not move on.
+    This error does not stop the arm: call ``stop()`` if the arm must not continue.
 
     Attributes:
         target: the target of the motion.
