@@ -19,7 +19,8 @@ use crate::tally::Tally;
 pub struct Columns {
     /// One entry for each variant of the table in the reader's directions.
     pub rows: Vec<Rows>,
-    /// The positions of legal frames with a number that no variant allows.
+    /// The positions of legal frames with a number that no variant allows, in the order of the
+    /// stream.
     pub rejected: Vec<u64>,
     /// The noise between the frames.
     pub noise: Spans,
@@ -102,9 +103,12 @@ impl ColumnReader {
 
     /// Return everything found since the last call.
     pub fn take(&mut self) -> Columns {
+        let mut rejected = std::mem::take(&mut self.sorter.rejected);
+        // Within a block they were found group by group.
+        rejected.sort_unstable();
         Columns {
             rows: self.sorter.rows.iter_mut().map(Rows::take).collect(),
-            rejected: std::mem::take(&mut self.sorter.rejected),
+            rejected,
             noise: self.stream.take_noise(),
         }
     }

@@ -64,6 +64,7 @@ impl Scale {
 
     #[inline(always)]
     pub(crate) fn divided(self, raw: i32) -> f64 {
-        f64::from(raw) * self.multiply / self.divide
+        // Adding zero turns -0.0 into 0.0: the product of integers has no negative zero.
+        (f64::from(raw) * self.multiply + 0.0) / self.divide
     }
 }

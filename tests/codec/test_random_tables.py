@@ -1,0 +1,158 @@
+"""The codecs agree on random tables, to the sign of a zero and the order of every list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import random_tables
+import small_tables
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec, Columns, Frame, Listening
+from cobotwire.protocol.errors import CobotwireError, ProtocolError
+from cobotwire.protocol.table import Table, Variant
+
+LISTENING = st.sampled_from(["request", "reply", "both"])
+
+
+def outcome(action: Callable[[], Any]) -> Any:
+    """Return the result as text, or everything that a caller can see of the error.
+
+    As text, since 0.0 and -0.0 are equal, and a NaN is not equal to itself.
+    """
+    try:
+        return repr(action())
+    except CobotwireError as error:
+        return type(error), str(error), repr(vars(error))
+
+
+def contents(columns: Columns) -> Any:
+    """Return everything that columns hold, in their order."""
+    rows = [
+        (
+            each.command.name,
+            each.direction,
+            each.variant_index,
+            each.offset.tolist(),
+            {
+                name: (each[name].format, each[name].shape, each[name].tolist())
+                for name in each.names
+            },
+        )
+        for each in columns
+    ]
+    noise = columns.noise
+    places = columns.rejected.tolist(), noise.offset.tolist(), noise.size.tolist()
+    return repr((rows, places)), columns.counters
+
+
+def both(table: Table) -> tuple[Codec, Codec]:
+    return codecs.load(table, "reference"), codecs.load(table, "native")
+
+
+@given(LISTENING, st.booleans(), st.data())
+def test_columns_of_random_tables_are_the_same_in_the_same_order(
+    listening: Listening, raw: bool, data: st.DataObject
+) -> None:
+    table = data.draw(random_tables.tables())
+    stream = data.draw(random_tables.streams(table))
+    reference, native = (
+        contents(codec.decode_columns(stream, listening, raw=raw)) for codec in both(table)
+    )
+    assert reference == native
+
+
+@given(LISTENING, st.booleans(), st.data())
+def test_frames_of_random_tables_are_read_alike_in_every_direction_and_as_every_command(
+    listening: Listening, accept_unknown: bool, data: st.DataObject
+) -> None:
+    table = data.draw(random_tables.tables())
+    stream = data.draw(random_tables.streams(table))
+    results = [list(readings(codec, stream, listening, accept_unknown)) for codec in both(table)]
+    assert results[0] == results[1]
+
+
+def readings(
+    codec: Codec, stream: bytes, listening: Listening, accept_unknown: bool
+) -> Iterator[Any]:
+    """Yield all that can be read of a stream, frame by frame, with every error."""
+    framer = codec.framer(listening, accept_unknown=accept_unknown)
+    names: list[Any] = [None, *[command.name for command in codec.table.commands]]
+    ways: list[Any] = [None, "request", "reply"]
+    for event in framer.feed(stream) + framer.flush():
+        yield repr(event)
+        if not isinstance(event, Frame):
+            continue
+        yield outcome(lambda: event.message), outcome(lambda: event.values)  # noqa: B023
+        for way in ways:
+            for name in names:
+                yield way, name, outcome(lambda: event.decode(way, of=name))  # noqa: B023
+                if way:
+                    yield outcome(lambda: codec.decode(way, event.data, of=name))  # noqa: B023
+    yield framer.counters
+
+
+BOUNDED = small_tables.field("a", small_tables.number(1, 1, 1))
+SCALES = [(-1, 10), (1, -10), (-1, 1), (-7, 100), (-3, -20), (1, 10)]
+
+
+@pytest.mark.parametrize("frames", [2, 40_000])
+def test_rejected_frames_are_listed_in_the_order_of_the_stream(frames: int) -> None:
+    """Also where commands take turns, and where the native codec reads whole blocks."""
+    request = (Variant((BOUNDED,)),)
+    table = small_tables.table(*(small_tables.command(id, f"c{id}", request) for id in (9, 5, 7)))
+    each = [random_tables.frame(table.frame, id, b"\0") for id in (7, 9, 5, 9, 7)]
+    stream = b"".join(each[index % 5] for index in range(frames))
+    expected = list(range(0, 6 * frames, 6))
+    for codec in both(table):
+        if codec.name == "native" or frames < 100:
+            assert codec.decode_columns(stream, "request").rejected.tolist() == expected
+            reader = codec.column_reader("request")
+            parts = [reader.feed(stream[:7]), reader.feed(stream[7:]), reader.flush()]
+            assert [at for part in parts for at in part.rejected.tolist()] == expected
+
+
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize("width", [1, 2, 3, 4])
+@pytest.mark.parametrize("times", [1, 5_000])
+def test_zero_of_a_negative_scale_has_the_sign_that_the_reference_gives_it(
+    scale: tuple[int, int], width: int, times: int
+) -> None:
+    number = small_tables.number(width, -(256**width) // 2, scale=scale)
+    kinds = [
+        small_tables.field("one", number),
+        small_tables.field("row", number, number, many=True),
+        small_tables.field("chosen", number, choices=(0, 1)),
+    ]
+    for field in kinds:
+        table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
+        frame = random_tables.frame(table.frame, 1, bytes(field.size))
+        reference, native = both(table)
+        expected = repr(reference.decode_columns(frame)[0][field.name].tolist()[0])
+        assert repr(native.decode("request", frame).values[0]).strip("()") == expected.strip("[]")
+        column = native.decode_columns(frame * times)[0][field.name].tolist()
+        assert [repr(value) for value in column] == [expected] * times
+
+
+@pytest.mark.parametrize("listening", ["request", "reply", "both"])
+@pytest.mark.parametrize("way", [None, "request", "reply"])
+def test_frame_with_an_unknown_id_is_missed_in_the_direction_that_was_meant(
+    listening: Listening, way: Any
+) -> None:
+    empty = (Variant(()),)
+    table = small_tables.table(small_tables.command(1, "get", empty, empty))
+    stream = random_tables.frame(table.frame, 0x77, b"")
+    meant = way or ("request" if listening == "both" else listening)
+    for codec in both(table):
+        [frame] = codec.framer(listening, accept_unknown=True).feed(stream)
+        assert isinstance(frame, Frame)
+        actions: list[Callable[[], Any]] = [lambda: frame.decode(way)]  # noqa: B023
+        if way is None:
+            actions += [lambda: frame.message, lambda: frame.values]  # noqa: B023
+        for action in actions:
+            with pytest.raises(ProtocolError, match=f"small has no {meant} with id 77"):
+                action()

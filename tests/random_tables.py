@@ -1,0 +1,125 @@
+"""Random tables and streams of their frames, wider than the spec's language.
+
+Scales may be negative in their numerator or denominator, several commands share an id, fields lie
+under selectors, and the frames on the line hold any raw values, allowed or not.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from hypothesis import strategies as st
+
+from cobotwire.protocol.table import (
+    Case,
+    Check,
+    Command,
+    Direction,
+    Field,
+    FrameFormat,
+    Number,
+    Table,
+    Variant,
+)
+
+SCALES = [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
+
+
+@st.composite
+def frame_formats(draw: st.DrawFn) -> FrameFormat:
+    """Draw a footer, a CRC or a sum, with or without an address byte."""
+    check: Check = draw(st.sampled_from(["footer", "footer", "crc16-modbus", "sum"]))
+    footer = bytes([draw(st.sampled_from([0xFA, 0xFE, 0]))]) if check == "footer" else b""
+    addresses = draw(st.sampled_from([(), (), (1, 0), (0xFE,)]))
+    return FrameFormat(b"\xfe\xfe", footer, draw(st.integers(2, 40)), check, addresses)
+
+
+@st.composite
+def numbers(draw: st.DrawFn, width: int | None = None) -> Number:
+    """Draw a number with any sign rule, scale and bounds."""
+    width = width or draw(st.sampled_from([1, 1, 2, 2, 3, 4]))
+    top = 256**width - 1
+    signed_at = draw(st.sampled_from([top, top // 2, 0]) | st.integers(0, top))
+    lowest = 0 if signed_at == top else signed_at - top
+    low, high = lowest, signed_at
+    if draw(st.booleans()):
+        low, high = sorted([draw(st.integers(lowest, signed_at)) for _ in range(2)])
+    order: Literal["big", "little"] = draw(st.sampled_from(["big", "big", "little"]))
+    scale = draw(st.sampled_from(SCALES))
+    return Number("", width, order, signed_at, *scale, low, high, "")
+
+
+@st.composite
+def fields(draw: st.DrawFn, name: str, selector: int = -1) -> Field:
+    """Draw a field of one number or a row of them, under a selector if it is given."""
+    many = draw(st.booleans())
+    widths = [
+        draw(st.sampled_from([1, 2, 4])) for _ in range(draw(st.integers(1, 4)) if many else 1)
+    ]
+    whens: list[tuple[int, ...]] = [()] if selector < 0 else [(0,), (1, 2)]
+    cases = tuple(Case(when, tuple(draw(numbers(width)) for width in widths)) for when in whens)
+    choices: tuple[int, ...] = ()
+    if not many and draw(st.integers(0, 3)) == 0:
+        legal = st.integers(cases[0].numbers[0].minimum, cases[0].numbers[0].maximum)
+        choices = tuple(draw(st.lists(legal, min_size=1, max_size=3, unique=True)))
+    return Field(name, "number", cases, "", many, choices, (), selector)
+
+
+@st.composite
+def variants(draw: st.DrawFn) -> Variant:
+    """Draw up to three fields; a field may be the selector of the next one."""
+    found: list[Field] = []
+    for index in range(draw(st.integers(0, 3))):
+        plain = index > 0 and not found[-1].many and found[-1].selector < 0
+        selector = index - 1 if plain and draw(st.booleans()) else -1
+        found.append(draw(fields(f"f{index}", selector)))
+    return Variant(tuple(found))
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> Table:
+    """Draw a table of up to four commands on up to three ids."""
+    commands = [
+        Command(
+            draw(st.sampled_from([0, 0x20, 0xFE])),
+            f"call{index}",
+            "",
+            "",
+            "test",
+            "query",
+            100,
+            tuple(draw(st.lists(variants(), min_size=1, max_size=2))),
+            tuple(draw(st.lists(variants(), max_size=2))),
+        )
+        for index in range(draw(st.integers(1, 4)))
+    ]
+    return Table("random", "A random table", 6, 115200, draw(frame_formats()), tuple(commands))
+
+
+def frame(format: FrameFormat, id: int, data: bytes) -> bytes:
+    """Return a frame with these data bytes."""
+    body = (
+        format.header + bytes(format.addresses[:1]) + bytes([format.length(len(data)), id]) + data
+    )
+    return body + format.end(body)
+
+
+@st.composite
+def frames(draw: st.DrawFn, table: Table) -> bytes:
+    """Draw a frame of the table with any data bytes, or one with any id and size."""
+    command = draw(st.sampled_from(table.commands))
+    ways: list[Direction] = ["request", "reply"] if command.reply else ["request"]
+    variant = draw(st.sampled_from(command.variants(draw(st.sampled_from(ways)))))
+    id, size = command.id, variant.size
+    if draw(st.integers(0, 4)) == 0:
+        id, size = draw(st.integers(0, 255)), draw(st.integers(0, 40))
+    data = draw(
+        st.sampled_from([bytes(size), b"\xff" * size]) | st.binary(min_size=size, max_size=size)
+    )
+    return frame(table.frame, id, data)
+
+
+def streams(table: Table) -> st.SearchStrategy[bytes]:
+    """Draw frames with a little noise between them."""
+    pieces: Any = st.one_of(frames(table), frames(table), frames(table), st.binary(max_size=3))
+    return st.lists(pieces, max_size=8).map(b"".join)
