@@ -27,7 +27,7 @@ LARGEST = {
     "tables": 512,
     "linear": 256,
 }
-# Far more than any input needs: an input that takes longer hangs.
+# An input that takes longer is a hang: every correct run is much shorter.
 SECONDS_FOR_ONE_INPUT = 20
 SECONDS_TO_MINIMISE = 20
 MEGABYTES = 1024

@@ -16,7 +16,7 @@ pub enum DecodeError {
     Frame {
         /// The reason.
         reason: Reason,
-        /// The byte that shows it.
+        /// The index of the first byte that is not legal.
         offset: usize,
     },
     /// The frame is legal, but a number in it is not.
@@ -28,7 +28,7 @@ pub enum DecodeError {
 pub struct Decoded {
     /// Which message it is.
     pub variant: VariantId,
-    /// Its values: one for each field, and after a row its elements.
+    /// Its values: one for each field; the elements of a row follow the row.
     pub values: Vec<Value>,
     /// Its address byte, if the format has one.
     pub address: Option<u8>,
@@ -39,7 +39,7 @@ pub struct Decoded {
 ///
 /// # Errors
 /// The bytes are not one legal frame, or a number in it is not allowed. The error names the first
-/// such number; a selector precedes the fields whose case it picks. If several variants reject the
+/// such number; a selector precedes the fields that depend on it. If several variants reject the
 /// frame, the error is that of the first one.
 pub fn decode(
     table: &Table,
@@ -51,8 +51,8 @@ pub fn decode(
     read(table, rules, judged(table, rules, data, of)?, of)
 }
 
-/// Decode a frame that was judged before, without judging it again, as the first message of these
-/// rules that allows its values. With `of`, only messages of the command with that index count.
+/// Decode a frame that was already judged, as the first message of these rules that allows its
+/// values. With `of`, only messages of the command with that index count.
 ///
 /// # Errors
 /// No message allows the values, or these rules have no such message.

@@ -14,7 +14,7 @@ pub struct Choice {
     pub address: Option<u8>,
 }
 
-/// Build one frame, of the first variant with that number of fields that allows the values.
+/// Build one frame: the first variant that has as many fields as there are values and allows them.
 ///
 /// # Errors
 /// The format has no such address, the command has no such variant, or a value is not allowed. The

@@ -21,7 +21,7 @@ impl Case {
 /// One argument of a request or one part of a reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Whether it is a flag: then, and only then, a bool is a number.
+    /// Whether it is a flag; only flags accept a bool as a number.
     pub flag: bool,
     /// Whether its value is a row of numbers.
     pub many: bool,

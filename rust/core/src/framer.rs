@@ -3,8 +3,8 @@
 //! Either a frame starts at position i, or the byte at i is noise. The first byte that contradicts
 //! a candidate refutes it. The scan then continues at i + 1: it never skips the bytes that a false
 //! header claims. A candidate that more bytes could complete waits. Judging a position reads at
-//! most the longest frame once (for its CRC or sum, when all its bytes are there), and no position
-//! is refuted twice, so the work is linear in the size of any input.
+//! most the bytes of the longest frame, once (for a CRC or sum, when all its bytes have come), and
+//! no position is refuted twice. So the work is linear in the size of any input.
 
 use crate::frame::Frame;
 use crate::judge::Rules;
@@ -132,7 +132,7 @@ impl<'a, S: FnMut(Event<'_>)> Sink<'a> for Pass<'_, S> {
     fn noise(&mut self, from: usize, to: usize, reason: Reason) {
         let (from, to) = (self.base + from, self.base + to);
         match &mut self.run {
-            // This happens only across the seam, where each of the two scans reports its part.
+            // Only at the seam, two scans report parts of one run of noise.
             Some((_, end, current)) if *current == reason => *end = to,
             _ => {
                 self.close();

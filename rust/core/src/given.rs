@@ -40,8 +40,8 @@ pub enum Unread<E> {
     Foreign(E),
 }
 
-/// A value of the caller. It is converted only when the encoder reaches it, because conversions may
-/// run the caller's code, and the leftmost mistake is reported.
+/// A value of the caller. The encoder converts it only when it reaches it: a conversion may run the
+/// caller's code, and the leftmost mistake must be reported.
 pub trait Given: Sized {
     /// The error of a conversion, other than a wrong type.
     type Error;
@@ -60,7 +60,7 @@ pub trait Given: Sized {
     /// It is not a real number.
     fn real(&self) -> Result<f64, Unread<Self::Error>>;
 
-    /// Convert it to a row, which no longer changes.
+    /// Convert it to a row that does not change afterwards.
     ///
     /// # Errors
     /// It is not a row.

@@ -110,7 +110,7 @@ impl Rules {
         }
     }
 
-    /// Return the LEN and the id of a candidate; `None` if they are not there yet.
+    /// Return the LEN and the id of a candidate; `None` if they have not come yet.
     pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
         let [first, second] = self.frame.header;
         match rest {

@@ -34,7 +34,7 @@ pub(crate) struct Legal {
     /// The variants that share an id and a LEN; the first one that allows a frame's values counts.
     groups: Arc<[Vec<VariantId>]>,
     known: [bool; 256],
-    /// The LENs of all frames: any other LEN refutes a candidate before its id is there.
+    /// The LENs of all frames. Any other LEN refutes a candidate before its id has come.
     lengths: [bool; 256],
 }
 
@@ -68,8 +68,8 @@ impl Legal {
         }
     }
 
-    /// Return the same index, but accept an id that it lacks with any LEN that is legal for another
-    /// id or between `least` and `most`.
+    /// Return the same index, but accept ids that the table lacks. Their LEN must be legal for
+    /// another id, or lie between `least` and `most`.
     pub(crate) fn believing(mut self, least: usize, most: usize) -> Self {
         (least..=most).for_each(|length| mark(&mut self.lengths, length));
         let mut headings = *self.headings;
@@ -91,7 +91,7 @@ impl Legal {
         }
     }
 
-    /// Return all headings, for code that looks many up.
+    /// Return all headings, for code that looks up many of them.
     pub(crate) fn headings(&self) -> &Headings {
         &self.headings
     }

@@ -1,9 +1,9 @@
 //! The serial protocol of myCobot arms, as an interpreter of a table.
 //!
 //! A [`Table`] defines the messages; [`encode`] and [`decode`] turn values into bytes and back, and
-//! a [`Framer`] cuts frames out of a stream. Nothing here knows a command by name, does I/O, reads
-//! a clock or makes text: errors are a kind and a place. The Python reference in
-//! `python/cobotwire/codec/reference` is the specification; this crate has the same results.
+//! a [`Framer`] cuts frames out of a stream. This crate knows no command by name, does no I/O,
+//! reads no clock and writes no text: an error is a kind and a place. The Python reference in
+//! `python/cobotwire/codec/reference` is the specification; this crate returns the same results.
 
 mod bulk;
 mod check;

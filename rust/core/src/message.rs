@@ -28,7 +28,7 @@ pub struct Variant {
     fields: Vec<Field>,
     starts: Vec<usize>,
     size: usize,
-    /// The largest number of values in a message, rows and their elements counted.
+    /// The largest number of values in a message, including rows and their elements.
     values: usize,
 }
 
@@ -71,7 +71,7 @@ impl Variant {
         Some((index, selector, selector.numbers(0).first()?))
     }
 
-    /// Return the largest number of values in a message, rows and their elements counted.
+    /// Return the largest number of values in a message, including rows and their elements.
     pub(crate) fn values(&self) -> usize {
         self.values
     }

@@ -107,16 +107,16 @@ impl Number {
     /// same.
     pub(crate) fn raw(&self, physical: f64) -> Option<i64> {
         let scaled = physical * self.divide as f64;
-        let steps = match self.multiply {
+        let raw = match self.multiply {
             1 => scaled, // the same result without a slow division
             multiply => scaled / multiply as f64,
         };
         // Compare before rounding: a huge double would not fit the integer.
         let (below, above) = ((self.minimum - 1) as f64, (self.maximum + 1) as f64);
-        (below < steps && steps < above).then(|| nearest(steps) as i64)
+        (below < raw && raw < above).then(|| nearest(raw) as i64)
     }
 
-    /// Return whether all byte values lie between the bounds.
+    /// Return whether the bounds allow every raw value that the bytes can encode.
     pub(crate) fn takes_all_bytes(&self) -> bool {
         let values = 1 << (8 * self.width);
         let signed_at = self.signed_at.clamp(-1, values - 1);
@@ -153,9 +153,9 @@ fn join(unsigned: i64, byte: &u8) -> i64 {
 
 /// Return the nearest integer, ties to even, for a magnitude below 2^51, as all bounds are.
 ///
-/// A double of that size plus 2^52 has no bits left for halves, so that the addition rounds. The
-/// standard library's function is a call into the C library, unless the processor is known to have
-/// an instruction for it.
+/// The sum of such a double and 2^52 has no bits for fractions, so the addition rounds. The
+/// standard library's function calls the C library, unless the compiler knows that the processor
+/// has an instruction for it.
 fn nearest(real: f64) -> f64 {
     const NO_HALVES: f64 = (1_u64 << 52) as f64;
     let shift = NO_HALVES.copysign(real);

@@ -18,8 +18,9 @@ const LONG_RUN: usize = 8;
 /// The number of bytes that are then examined together.
 const STEP: usize = 16;
 
-/// Judge the positions from `at` to `stop`. Return the first position that waits for more bytes (at
-/// the end of the stream no position waits), else the end of the last frame, perhaps after `stop`.
+/// Judge the positions from `at` to `stop`. Return the first position that waits for more bytes,
+/// else the end of the last frame, which may be after `stop`. At the end of the stream no position
+/// waits.
 #[inline]
 pub(crate) fn scan<'a>(
     rules: &Rules,

@@ -11,7 +11,7 @@ pub(crate) struct Seam {
 
 /// The bytes around the seam between two calls. Positions count from the first kept byte.
 pub(crate) struct Crossing {
-    /// The kept bytes, and the part of the new chunk into which their frames can reach.
+    /// The kept bytes, and the bytes of the new chunk that frames from there can cover.
     pub(crate) data: Vec<u8>,
     /// The number of kept bytes; the new chunk starts there.
     pub(crate) seam: usize,

@@ -20,7 +20,7 @@ pub struct BadValue<V> {
     pub fault: ValueFault,
     /// The value, as the caller passed it.
     pub value: V,
-    /// Its raw value, if the fault is that it picks no case of a field.
+    /// The raw value of a selector that picks no case.
     pub picked: Option<i64>,
 }
 
@@ -29,8 +29,8 @@ pub struct BadValue<V> {
 pub enum EncodeError<V: Given> {
     /// The frame format has no such address.
     Address,
-    /// The command has no variant with that many fields in that direction, or the choice has
-    /// others.
+    /// The command has no variant with that many fields in that direction, or the chosen variant
+    /// has another number of fields.
     VariantId,
     /// A value is not allowed.
     Value(BadValue<V>),

@@ -208,7 +208,7 @@ fn bulk_reading_equals_framer_and_decoder() {
     }
 }
 
-/// A guess in the middle of a block can be wrong: here every frame contains a frame.
+/// Every frame contains frames here, so a guess in the middle of a block can be wrong.
 #[test]
 fn frames_that_hold_frames_do_not_mislead_the_lanes() {
     let edition = Edition::generated("mycobot");

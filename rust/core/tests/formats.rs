@@ -74,7 +74,7 @@ fn changed<const N: usize>(mut frame: [u8; N], place: usize) -> [u8; N] {
 }
 
 #[test]
-fn the_crc_is_that_of_modbus() {
+fn crc16_modbus_has_the_published_check_value() {
     assert_eq!(crc16_modbus(b"123456789"), 0x4B37);
     assert_eq!(crc16_modbus(b""), 0xFFFF);
 }
@@ -161,7 +161,8 @@ fn an_unknown_id_has_at_least_room_for_its_check() {
     assert_eq!(found[0].2, Some(Reason::BadLength));
 }
 
-/// 0x20 takes 0 to 4 in its first variant, 6 to 9 in its second; and so does a second command.
+/// 0x20 allows 0 to 4 in its first variant and 6 to 9 in its second; another command with this id
+/// allows 3 to 7.
 fn alike() -> Table {
     let of = |low, high| vec![field(vec![number(1, 1, low, high)], false)];
     let mut commands = table(vec![of(0, 4), vec![], of(3, 7)]).commands().to_vec();
@@ -188,7 +189,7 @@ fn values_decide_between_variants_that_share_an_id_and_a_size() {
             Err(DecodeError::Raw(bad)) => {
                 assert_eq!((bad.variant.command, bad.variant.variant), (blamed, 0))
             }
-            other => panic!("it was not rejected: {other:?}"),
+            other => panic!("the value was not rejected: {other:?}"),
         }
     }
 }

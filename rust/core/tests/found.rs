@@ -1,4 +1,4 @@
-//! Checks the inputs of `tests/found`, which fuzzing found or people wrote because they were hard.
+//! Checks the inputs of `tests/found`: fuzzing found them, or people wrote them as hard cases.
 
 // A failing test may panic.
 #![allow(

@@ -57,7 +57,7 @@ fn a_real_value_becomes_the_nearest_raw_value() {
     assert_eq!(data(&hundredths, Sample::Real(-2.58)), [0xFE, 0xFE]);
     assert_eq!(data(&hundredths, Sample::Integer(2)), [0, 200]);
     let halves = one(number(1, 2, 0, 255));
-    assert_eq!(data(&halves, Sample::Real(0.25)), [0]); // a tie goes to the even step
+    assert_eq!(data(&halves, Sample::Real(0.25)), [0]); // a tie goes to the even raw value
     assert_eq!(data(&halves, Sample::Real(0.75)), [2]);
 }
 
@@ -159,7 +159,8 @@ fn a_bool_is_accepted_only_for_a_flag() {
     );
 }
 
-/// Return a table in which a choice decides whether the word before it is in tenths or hundredths.
+/// Return a table in which a selector decides whether the word before it is in tenths or
+/// hundredths.
 fn selected() -> Table {
     let case = |when, divide| Case {
         when: vec![when],
@@ -198,7 +199,7 @@ fn a_selector_picks_the_case_and_is_checked_first() {
     );
     match decoded(2) {
         Err(DecodeError::Raw(bad)) => assert_eq!((bad.field, bad.raw, bad.offset), (1, 2, 6)),
-        other => panic!("it was not rejected: {other:?}"),
+        other => panic!("the frame was not rejected: {other:?}"),
     }
 }
 

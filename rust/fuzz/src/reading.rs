@@ -45,7 +45,7 @@ pub fn decoded(table: &Table, (variant, read): (VariantId, Vec<Read>), frame: &[
     }
 }
 
-/// Return the same result as a variant and its numbers.
+/// Return that result in another form: a variant and its numbers.
 pub fn numbers(
     table: &Table,
     direction: Direction,

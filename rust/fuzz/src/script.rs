@@ -1,7 +1,7 @@
 //! Makes streams from a byte script: legal frames, damaged frames, and other bytes of a transport.
 //!
 //! Random bytes rarely form a long legal frame, and never a noisy stream full of frames. A script
-//! of a few bytes does, so the fuzzer reaches the code that handles them.
+//! of a few bytes produces both, so the fuzzer reaches the code that handles them.
 
 use cobotwire_core::{
     Command, Direction, Field, FrameFormat, Number, Order, Table, Variant, VariantId,

@@ -35,7 +35,8 @@ pub const LISTENING: [Listening; 3] = [
     Listening::Both,
 ];
 
-/// A table and what was made of it beforehand, so that a run costs only its own bytes.
+/// A table, and everything that is derived from it once, so that a run only processes its own
+/// bytes.
 pub struct Subject {
     /// Its name in `tests/found`.
     pub name: &'static str,

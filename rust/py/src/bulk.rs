@@ -22,7 +22,7 @@ const LARGE: usize = 1 << 20;
 /// Bytes that another thread could change during the read are copied in pieces of this size.
 const PIECE: usize = 1 << 20;
 
-/// Something that a stream is fed to.
+/// A reader of a stream.
 trait Reader: Send {
     fn feed(&mut self, chunk: &[u8]);
     fn expect(&mut self, data: &[u8], advise: Advise);
@@ -48,7 +48,7 @@ impl Reader for OffsetReader {
     }
 }
 
-/// Feed all of a buffer.
+/// Feed a whole buffer.
 fn feed(reader: &mut impl Reader, data: &Bound<'_, PyAny>) -> PyResult<()> {
     if let Ok(bytes) = data.cast::<PyBytes>() {
         feed_bytes(reader, bytes, true);
@@ -68,7 +68,7 @@ fn feed(reader: &mut impl Reader, data: &Bound<'_, PyAny>) -> PyResult<()> {
     Ok(())
 }
 
-/// Feed immutable bytes; many are read without the lock.
+/// Feed immutable bytes; large input is read without the lock.
 fn feed_bytes(reader: &mut impl Reader, bytes: &Bound<'_, PyBytes>, all: bool) {
     let data = bytes.as_bytes();
     if data.len() < LARGE {
@@ -83,7 +83,7 @@ fn feed_bytes(reader: &mut impl Reader, bytes: &Bound<'_, PyBytes>, all: bool) {
     });
 }
 
-/// Where the frames of a whole stream are, as Python's `Scan`.
+/// Return the positions of the frames of a whole stream, as Python's `Scan`.
 pub fn scan<'py>(
     rules: Rules,
     data: &Bound<'py, PyAny>,
@@ -130,7 +130,7 @@ impl NativeColumnReader {
         ColumnReader::new(Arc::clone(&edition.core), plans, numbers, old)
     }
 
-    /// The columns of a whole stream.
+    /// Return the columns of a whole stream.
     pub fn all_of<'py>(
         mut self,
         data: &Bound<'py, PyAny>,
@@ -145,7 +145,7 @@ impl NativeColumnReader {
         self.given(data.py())
     }
 
-    /// What was found since the last call, as Python's `Columns`.
+    /// Return what was found since the last call, as Python's `Columns`.
     fn given<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let names = Names::get(py)?;
         let Columns {
@@ -154,7 +154,7 @@ impl NativeColumnReader {
             noise,
         } = self.core.take();
         rows.retain(|rows| !rows.offsets.is_empty());
-        // In the order of the table, as the reference gives them.
+        // Sort in the order of the table, as the reference does.
         rows.sort_by_key(|rows| {
             let variant = rows.variant;
             (variant.command, variant.direction as u8, variant.variant)
@@ -192,19 +192,19 @@ impl NativeColumnReader {
 
 #[pymethods]
 impl NativeColumnReader {
-    /// Take bytes; return what has become certain since the last call.
+    /// Feed bytes; return the rows and noise that are certain since the last call.
     fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         feed(&mut self.core, data)?;
         self.given(data.py())
     }
 
-    /// Refute what still waits; return the rest.
+    /// Refute the candidate that waits; return the remaining rows and noise.
     fn flush<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.core.flush();
         self.given(py)
     }
 
-    /// Bytes fed that are not accounted for yet.
+    /// The number of bytes fed that are not accounted for yet.
     #[getter]
     fn pending(&self) -> usize {
         self.core.pending()

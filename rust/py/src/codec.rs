@@ -1,4 +1,4 @@
-//! `NativeCodec`: the core behind `cobotwire.codec.interface.Codec`.
+//! `NativeCodec`: implements `cobotwire.codec.interface.Codec` with the core.
 
 use std::sync::Arc;
 
@@ -36,13 +36,13 @@ impl NativeCodec {
         self.edition.table.bind(py).clone()
     }
 
-    /// Which of the two codecs it is.
+    /// The name of this codec.
     #[getter]
     fn name(&self) -> &'static str {
         "native"
     }
 
-    /// Build one whole frame, of the first variant with that number of fields that takes `values`.
+    /// Build one frame: the first variant that has as many fields as `values` and allows them.
     #[pyo3(signature = (command, direction, values, *, variant = None, address = None))]
     fn encode<'py>(
         &self,
@@ -77,7 +77,7 @@ impl NativeCodec {
         match encoded {
             Ok(frame) => Ok(PyBytes::new(py, &frame)),
             Err(EncodeError::Foreign(error)) => Err(error),
-            // The address was looked at above.
+            // The address was checked above.
             Err(EncodeError::VariantId | EncodeError::Address) => Err(errors::bad_variant(
                 objects.object.bind(py),
                 direction,
@@ -90,7 +90,7 @@ impl NativeCodec {
         }
     }
 
-    /// Read `data`, which must be one whole frame and nothing else.
+    /// Decode `data`, which must be one whole frame and nothing else.
     #[pyo3(signature = (direction, data, *, of = None))]
     fn decode<'py>(
         &self,
@@ -130,7 +130,8 @@ impl NativeCodec {
         }
     }
 
-    /// A new framer; `accept_unknown` also takes ids that the edition lacks as frames.
+    /// Return a new framer; with `accept_unknown`, frames with ids that the edition lacks are
+    /// legal.
     #[pyo3(signature = (listening, *, accept_unknown = false))]
     fn framer(&self, listening: &Bound<'_, PyAny>, accept_unknown: bool) -> PyResult<NativeFramer> {
         let rules = self.rules(Some(listening), accept_unknown)?;
@@ -145,7 +146,7 @@ impl NativeCodec {
         }))
     }
 
-    /// Where the frames of a whole stream are.
+    /// Return the positions of the frames of a whole stream.
     #[pyo3(
         signature = (data, listening = None, *, accept_unknown = false, out = None),
         text_signature = "($self, data, listening='both', *, accept_unknown=False, out=None)"
@@ -160,7 +161,7 @@ impl NativeCodec {
         bulk::scan(self.rules(listening, accept_unknown)?, data, out)
     }
 
-    /// The values of a whole stream, as columns.
+    /// Return the values of a whole stream, as columns.
     #[pyo3(
         signature = (data, listening = None, *, raw = false, out = None),
         text_signature = "($self, data, listening='both', *, raw=False, out=None)"
@@ -176,7 +177,7 @@ impl NativeCodec {
         reader.all_of(data, out)
     }
 
-    /// A reader for a stream that comes in pieces, or is larger than memory.
+    /// Return a reader for a stream that comes in chunks, or is larger than memory.
     #[pyo3(
         signature = (listening = None, *, raw = false),
         text_signature = "($self, listening='both', *, raw=False)"
@@ -202,7 +203,7 @@ impl NativeCodec {
     }
 }
 
-/// The directions to listen to; both by default.
+/// Return the directions to listen to; both by default.
 fn listen(given: Option<&Bound<'_, PyAny>>) -> PyResult<Listening> {
     match given {
         None => Ok(Listening::Both),

@@ -1,17 +1,17 @@
-//! `Column`: the numbers behind a `Memory`.
+//! `Column`: the numbers of a `Memory`.
 
 use std::ffi::{CStr, c_void};
 
 use cobotwire_core::Cells;
 
-/// What a column holds: offsets, or the numbers of a field.
+/// The contents of a column: offsets, or the numbers of a field.
 pub enum Column {
     Offsets(Vec<u64>),
     Cells(Cells),
 }
 
 impl Column {
-    /// The numbers of a field.
+    /// Return the numbers of a field.
     pub fn into_cells(self) -> Cells {
         match self {
             Self::Cells(cells) => cells,
@@ -19,7 +19,7 @@ impl Column {
         }
     }
 
-    /// Whether it has no numbers.
+    /// Return whether it has no numbers.
     pub fn is_empty(&self) -> bool {
         match self {
             Self::Offsets(all) => all.is_empty(),
@@ -27,7 +27,7 @@ impl Column {
         }
     }
 
-    /// Where it starts, how many numbers it has, their size, and their type as `struct` has it.
+    /// Return its address, the number of its elements, their size, and their type for `struct`.
     pub fn parts(&mut self) -> (*mut c_void, usize, usize, &'static CStr) {
         fn of<T>(
             all: &mut Vec<T>,

@@ -1,4 +1,4 @@
-//! Reads a Python `Table`, attribute by attribute, into the core's.
+//! Converts a Python `Table`, attribute by attribute, to the core's.
 
 use cobotwire_core::{
     Case, Check, Command, Field, FrameFormat, Misfit, Number, Order, Table, Variant,
@@ -33,7 +33,7 @@ struct FieldRecord {
 }
 
 #[derive(FromPyObject)]
-struct LayoutRecord {
+struct VariantRecord {
     fields: Vec<FieldRecord>,
 }
 
@@ -41,8 +41,8 @@ struct LayoutRecord {
 struct CommandRecord {
     id: u8,
     name: String,
-    request: Vec<LayoutRecord>,
-    reply: Vec<LayoutRecord>,
+    request: Vec<VariantRecord>,
+    reply: Vec<VariantRecord>,
 }
 
 #[derive(FromPyObject)]
@@ -60,7 +60,7 @@ struct TableRecord {
     commands: Vec<CommandRecord>,
 }
 
-/// The core's table, and the names of its commands.
+/// Return the core's table, and the names of its commands.
 pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
     let TableRecord { frame, commands } = given.extract()?;
     let names: Vec<String> = commands.iter().map(|record| record.name.clone()).collect();
@@ -75,13 +75,13 @@ pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
 fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
     let rejected = |what: &str| Err(PyValueError::new_err(format!("table: {what}")));
     let &[first, second] = record.header.as_slice() else {
-        return rejected("the header is two bytes");
+        return rejected("the header must have two bytes");
     };
     let check = match (record.check.as_str(), record.footer.as_slice()) {
         ("footer", &[footer]) => Check::Footer(footer),
         ("crc16-modbus", []) => Check::Crc16Modbus,
         ("sum", []) => Check::Sum,
-        _ => return rejected("the check is a footer of one byte, crc16-modbus or sum"),
+        _ => return rejected("the check must be a footer of one byte, crc16-modbus or sum"),
     };
     Ok(FrameFormat {
         header: [first, second],
@@ -92,7 +92,7 @@ fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
 }
 
 fn command(record: CommandRecord) -> Command {
-    let variants = |records: Vec<LayoutRecord>| records.into_iter().map(variant).collect();
+    let variants = |records: Vec<VariantRecord>| records.into_iter().map(variant).collect();
     Command {
         id: record.id,
         request: variants(record.request),
@@ -100,7 +100,7 @@ fn command(record: CommandRecord) -> Command {
     }
 }
 
-fn variant(record: LayoutRecord) -> Variant {
+fn variant(record: VariantRecord) -> Variant {
     Variant::new(record.fields.into_iter().map(field).collect())
 }
 
@@ -139,11 +139,13 @@ fn number(record: NumberRecord) -> Number {
 
 fn misfit(misfit: Misfit) -> &'static str {
     match misfit {
-        Misfit::Width => "a number is one to four bytes wide",
-        Misfit::Scale => "a scale is neither zero nor too fine for an exact double",
-        Misfit::Bounds => "a bound is a whole number that a double holds exactly",
-        Misfit::Cases => "a field has cases of one size, each of one number unless it takes many",
-        Misfit::Selector => "a selector is the index of a field of one number",
-        Misfit::Length => "a variant is no longer than LEN can say",
+        Misfit::Width => "a number must have one to four bytes",
+        Misfit::Scale => "a scale is zero, or too fine for an exact double",
+        Misfit::Bounds => "a bound is an integer that a double cannot represent exactly",
+        Misfit::Cases => {
+            "all cases of a field must have one size, and one number unless it has many"
+        }
+        Misfit::Selector => "a selector must be the index of a field with one number",
+        Misfit::Length => "a variant is longer than LEN can express",
     }
 }

@@ -1,4 +1,4 @@
-//! A table as the core has it, beside the Python objects that stand for its parts.
+//! An edition: the core's table, and the Python objects of its commands.
 
 use std::sync::{Arc, OnceLock};
 
@@ -10,7 +10,7 @@ use crate::names::Names;
 use crate::objects::Commands;
 use crate::{convert, errors};
 
-/// One edition, as everything that was made from it shares it.
+/// One edition, which its codec, framers and frames share.
 pub struct Edition {
     pub table: Py<PyAny>,
     pub core: Arc<Table>,
@@ -29,7 +29,7 @@ impl Edition {
         })
     }
 
-    /// How columns are read; made when it is first asked for.
+    /// Return the plans for reading columns; they are made on first use.
     pub fn plans(&self, listening: Listening) -> &Arc<Plans> {
         let [request, reply, both] = &self.plans;
         let place = match listening {
@@ -40,7 +40,7 @@ impl Edition {
         place.get_or_init(|| Arc::new(Plans::new(&self.core, listening)))
     }
 
-    /// A decoded message, as Python's named tuple.
+    /// Return a decoded message, as Python's named tuple.
     pub fn message<'py>(
         &self,
         py: Python<'py>,
@@ -56,7 +56,7 @@ impl Edition {
         names.make(&names.message, items.into_pyobject(py)?)
     }
 
-    /// The error to raise for bytes that were not decoded.
+    /// Return the error to raise for bytes that were not decoded.
     pub fn rejected(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! The core's errors as Python's, which `cobotwire.protocol.rejection` makes from table objects.
+//! Converts the core's errors to Python's; `cobotwire.protocol.rejection` creates them.
 
 use cobotwire_core::{BadRaw, BadValue, Reason};
 use pyo3::prelude::*;
@@ -7,7 +7,7 @@ use pyo3::types::{PyAny, PyString};
 use crate::given::Object;
 use crate::names::Names;
 
-/// The error of a value that its field does not allow.
+/// Return the error of a value that its field does not allow.
 pub fn bad_value(variant: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr {
     let make = || {
         let (field, case) = field_and_case(variant, bad.field, bad.case)?;
@@ -16,7 +16,7 @@ pub fn bad_value(variant: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr
             .and_then(|index| isize::try_from(index).ok())
             .unwrap_or(-1);
         let reject = Names::get(variant.py())?.reject_value.bind(variant.py());
-        // Where no case was picked, the reference shows the raw value that picks none.
+        // If a selector picks no case, the reference shows its raw value.
         let value = match bad.picked {
             Some(picked) => picked.into_pyobject(variant.py())?.into_any(),
             None => bad.value.0,
@@ -26,7 +26,7 @@ pub fn bad_value(variant: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr
     raised(make())
 }
 
-/// The error of a number of values that no variant has.
+/// Return the error of a number of values that no variant has.
 pub fn bad_variant(
     command: &Bound<'_, PyAny>,
     direction: &Bound<'_, PyAny>,
@@ -41,19 +41,19 @@ pub fn bad_variant(
     }))
 }
 
-/// The error of a word that is no direction.
+/// Return the error of a word that is not a direction.
 pub fn bad_direction(given: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
     raised(Names::get(py).and_then(|names| names.reject_direction.bind(py).call1((given,))))
 }
 
-/// The error of an address that the frame format does not have.
+/// Return the error of an address that the frame format does not have.
 pub fn bad_address(given: &Bound<'_, PyAny>, addresses: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
     raised(Names::get(py).and_then(|names| names.reject_address.bind(py).call1((given, addresses))))
 }
 
-/// The error of a number on the wire that its field does not allow.
+/// Return the error of a raw value that its field does not allow.
 pub fn bad_raw(
     command: &Bound<'_, PyAny>,
     variant: &Bound<'_, PyAny>,
@@ -68,7 +68,7 @@ pub fn bad_raw(
     raised(make())
 }
 
-/// The error of bytes that are not one whole legal frame.
+/// Return the error of bytes that are not one whole legal frame.
 pub fn bad_frame(
     table: &Bound<'_, PyAny>,
     direction: &Bound<'_, PyAny>,
@@ -96,7 +96,7 @@ fn field_and_case<'py>(
     Ok((field, case))
 }
 
-/// The error that was made, or the one that making it met.
+/// Return the error that was created, or the error that prevented its creation.
 fn raised(made: PyResult<Bound<'_, PyAny>>) -> PyErr {
     made.map_or_else(|error| error, PyErr::from_value)
 }

@@ -1,4 +1,4 @@
-//! The core's events as Python's `Frame` and `Noise`.
+//! Converts the core's events to Python's `Frame` and `Noise`.
 
 use std::sync::Arc;
 
@@ -28,14 +28,14 @@ impl<'py, 'a> Events<'py, 'a> {
         })
     }
 
-    /// Take one more. A failure shows at the end, so that the framer always finishes its call.
+    /// Add an event. `finish` returns a failure, so that the framer always completes its call.
     pub fn add(&mut self, event: Event<'_>) {
         if let Err(error) = self.try_add(event) {
             self.failed.get_or_insert(error);
         }
     }
 
-    /// All of them.
+    /// Return all events, or the first failure.
     pub fn finish(self) -> PyResult<Bound<'py, PyList>> {
         self.failed.map_or(Ok(self.list), Err)
     }
@@ -54,7 +54,7 @@ impl<'py, 'a> Events<'py, 'a> {
     fn frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<Bound<'py, PyAny>> {
         let frame = NativeFrame::new(Arc::clone(self.origin), offset, frame);
         let frame = Bound::new(self.list.py(), frame)?;
-        // It holds numbers, in tuples, and nothing that could lead back to it.
+        // It holds only numbers in tuples, so it cannot be part of a cycle.
         untrack(&frame);
         Ok(frame.into_any())
     }

@@ -12,7 +12,7 @@ use crate::names::Names;
 use crate::values::objects;
 use crate::words::one_way;
 
-/// What the frames of one framer have in common.
+/// The data that all frames of one framer share.
 pub struct Origin {
     pub edition: Arc<Edition>,
     pub rules: Rules,
@@ -24,11 +24,11 @@ pub struct Origin {
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeFrame {
     origin: Arc<Origin>,
-    /// Where its first byte stands in the stream.
+    /// The position of its first byte in the stream.
     #[pyo3(get)]
     offset: u64,
     frame: OwnedFrame,
-    /// Its values, once they have been used.
+    /// Its values, after their first use.
     values: PyOnceLock<Py<PyTuple>>,
 }
 
@@ -46,8 +46,8 @@ impl NativeFrame {
         self.frame.get(self.origin.edition.core.frame())
     }
 
-    /// What it says: in one direction, or in any that the framer listens to; perhaps only as the
-    /// command with index `of`.
+    /// Decode it in one direction, or in those that the framer listens to. With `of`, only messages
+    /// of the command with that index count.
     fn read(
         &self,
         py: Python<'_>,
@@ -69,7 +69,7 @@ impl NativeFrame {
         })
     }
 
-    /// The message, as Python's named tuple; `values` are those of `decoded`.
+    /// Return the message, as Python's named tuple; `values` are those of `decoded`.
     fn message_of<'py>(
         &self,
         decoded: &Decoded,
@@ -82,7 +82,7 @@ impl NativeFrame {
 
 #[pymethods]
 impl NativeFrame {
-    /// All of it, from header to check.
+    /// Its bytes, from header to check.
     #[getter]
     fn data<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, self.frame.bytes())
@@ -104,7 +104,7 @@ impl NativeFrame {
         self.message_of(&decoded, values.bind(py))
     }
 
-    /// What `codec.decode(direction, frame.data, of=of)` returns, without judging the frame again.
+    /// Return what `codec.decode(direction, frame.data, of=of)` returns, without judging it again.
     #[pyo3(signature = (direction = None, *, of = None))]
     fn decode<'py>(
         &self,
@@ -120,14 +120,14 @@ impl NativeFrame {
         self.message_of(&decoded, &objects(py, &decoded.values)?)
     }
 
-    /// The values of its message, one a field.
+    /// The values of its message, one for each field.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         if let Some(values) = self.values.get(py) {
             return Ok(values.bind(py).clone());
         }
         let values = objects(py, &self.read(py, None, None)?.values)?;
-        // If another thread was faster, both have the same values.
+        // Another thread may have stored its values first; they are the same.
         let _ = self.values.set(py, values.clone().unbind());
         Ok(values)
     }
@@ -137,7 +137,7 @@ impl NativeFrame {
     }
 
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-        // As Python's own class has it, since they can be equal.
+        // Equal to the hash of Python's own class, because the frames can be equal.
         (self.offset, self.command(), self.data(py))
             .into_pyobject(py)?
             .hash()

@@ -1,4 +1,4 @@
-//! `NativeFramer`: the core's framer behind `cobotwire.codec.interface.Framer`.
+//! `NativeFramer`: implements `cobotwire.codec.interface.Framer` with the core.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ impl NativeFramer {
 
 #[pymethods]
 impl NativeFramer {
-    /// Take bytes; return what is certain by now, in the order of the stream.
+    /// Feed bytes; return the events that are certain, in the order of the stream.
     fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
         let mut events = Events::new(data.py(), &self.origin)?;
         match data.cast::<PyBytes>() {
@@ -38,33 +38,33 @@ impl NativeFramer {
         events.finish()
     }
 
-    /// Refute what still waits; return it and what follows it.
+    /// Refute the candidate that waits; return the events of all remaining bytes.
     fn flush<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let mut events = Events::new(py, &self.origin)?;
         self.core.flush(|event| events.add(event));
         events.finish()
     }
 
-    /// Bytes fed that no event covers yet.
+    /// The number of bytes fed that no event covers yet.
     #[getter]
     fn pending(&self) -> usize {
         self.core.pending()
     }
 
-    /// How many bytes were fed since the framer was made.
+    /// The number of bytes fed since the start of the stream.
     #[getter]
     fn fed(&self) -> u64 {
         self.core.tally().bytes
     }
 
-    /// The counts since the framer was made.
+    /// The counts since the start of the stream.
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         counters(py, self.core.tally())
     }
 }
 
-/// A tally as Python's `Counters`.
+/// Return a tally as Python's `Counters`.
 pub fn counters<'py>(py: Python<'py>, tally: &Tally) -> PyResult<Bound<'py, PyAny>> {
     let names = Names::get(py)?;
     let (frames, noise) = (PyDict::new(py), PyDict::new(py));
@@ -85,7 +85,7 @@ pub fn counters<'py>(py: Python<'py>, tally: &Tally) -> PyResult<Bound<'py, PyAn
     names.make(&names.counters, items.into_pyobject(py)?)
 }
 
-/// The bytes of any buffer, accepted or rejected as by the reference.
+/// Return the bytes of any object that the reference accepts as a buffer.
 pub fn copied(data: &Bound<'_, PyAny>) -> PyResult<Vec<u8>> {
     let all = PyByteArray::new(data.py(), &[]).call_method1("__iadd__", (data,))?;
     Ok(all.cast_into::<PyByteArray>()?.to_vec())

@@ -1,7 +1,7 @@
-//! Python values as the core's encoder takes them.
+//! Converts Python values for the core's encoder.
 //!
-//! Common types are converted directly. All others go through the functions that the reference
-//! uses, so that an object behaves alike in both codecs.
+//! Common types are converted directly. All other types go through the functions that the reference
+//! uses, so that an object has the same effect in both codecs.
 
 use cobotwire_core::{Given, Row, Unread, ValueFault};
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -13,7 +13,7 @@ use crate::names::Names;
 /// One value.
 pub struct Object<'py>(pub Bound<'py, PyAny>);
 
-/// A row of them.
+/// A row of values.
 pub struct Objects<'py>(pub Bound<'py, PyTuple>);
 
 impl<'py> Given for Object<'py> {
@@ -77,7 +77,7 @@ impl Object<'_> {
         Names::get(self.0.py()).map_err(Unread::Foreign)
     }
 
-    /// `isinstance`, which also asks the object's `__class__`.
+    /// Return the result of `isinstance`, which also reads the object's `__class__`.
     fn is(&self, class: &Py<PyAny>) -> Result<bool, Unread<PyErr>> {
         self.0
             .is_instance(class.bind(self.0.py()))
@@ -90,13 +90,13 @@ impl Object<'_> {
         Ok(!self.is(&names.bool)? && (float || self.is(names.float_like.as_any())?))
     }
 
-    /// An exact `int`, if it fits.
+    /// Convert an exact `int`, if it fits.
     fn small(&self) -> Result<i64, Unread<PyErr>> {
-        // It can only be too large.
+        // The only possible error is that it is too large.
         self.0.extract().map_err(|_: PyErr| Unread::Beyond)
     }
 
-    /// What a failed conversion means.
+    /// Return the fault that a failed conversion means.
     fn sorted(&self, error: PyErr, overflow: Option<ValueFault>) -> Unread<PyErr> {
         let py = self.0.py();
         match overflow {
@@ -124,7 +124,7 @@ impl<'py> Row for Objects<'py> {
     }
 }
 
-/// `tuple(iterable)`
+/// Return `tuple(iterable)`.
 pub fn tuple<'py>(names: &Names, iterable: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyTuple>> {
     let made = names.tuple.bind(iterable.py()).call1((iterable,))?;
     Ok(made.cast_into()?)

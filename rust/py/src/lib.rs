@@ -1,7 +1,7 @@
-//! `cobotwire._native`: the codec of `cobotwire-core` behind Python's codec interface.
+//! `cobotwire._native`: implements Python's codec interface with `cobotwire-core`.
 //!
-//! It only converts: the core decides what is legal, and `cobotwire.protocol.rejection` makes the
-//! sentences of the errors.
+//! It only converts: the core decides what is legal, and `cobotwire.protocol.rejection` writes the
+//! error messages.
 
 use pyo3::prelude::*;
 
@@ -22,7 +22,8 @@ mod parts;
 mod values;
 mod words;
 
-// A free-threaded interpreter takes its lock while this module is loaded: no test has run on one.
+// A free-threaded interpreter enables its lock when it loads this module, which is not tested
+// there.
 #[pymodule(gil_used = true)]
 mod _native {
     #[pymodule_export]

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 
 use crate::column::Column;
 
-/// Numbers in memory that NumPy, Arrow and memoryviews use as it is.
+/// Numbers in memory that NumPy, Arrow and memoryviews use without a copy.
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct Memory {
     held: Mutex<Held>,
@@ -21,25 +21,26 @@ pub struct Memory {
 
 struct Held {
     column: Column,
-    /// How many there are in a row; 0: the column has one dimension.
+    /// The number of elements in a row; 0: the column has one dimension.
     across: isize,
-    /// How many views there are. While there is one, the column neither moves nor changes.
+    /// The number of views. While there is a view, the column neither moves nor changes.
     views: usize,
 }
 
-/// What a view needs as long as it lives.
+/// The arrays that a view refers to while it exists.
 struct Shape {
     shape: [isize; 2],
     strides: [isize; 2],
 }
 
 impl Memory {
-    /// Offsets in a stream, or sizes.
+    /// Return a column of offsets in a stream, or of sizes.
     pub fn offsets(all: Vec<u64>) -> Self {
         Self::new(Column::Offsets(all), 0)
     }
 
-    /// The numbers of a field: of two dimensions, where it has several.
+    /// Return a column of a field's numbers; it has two dimensions if the field has several
+    /// numbers.
     pub fn cells(cells: Cells, field: &Field) -> Self {
         let numbers = field.cases.first().map_or(0, |case| case.numbers.len());
         let across = if field.many { numbers as isize } else { 0 };
@@ -74,7 +75,7 @@ impl Memory {
 
     fn put_back(&self, column: Column) {
         let mut held = self.held();
-        // Any view of an empty column is of no bytes, so they may be replaced under it.
+        // A view of an empty column refers to no bytes, so the column may be replaced meanwhile.
         if held.column.is_empty() {
             held.column = column;
         }
@@ -109,7 +110,7 @@ impl Memory {
         if view.is_null() {
             return refused("a column needs a view to fill");
         }
-        // SAFETY: the caller gives a view to fill. A view that is refused has no owner.
+        // SAFETY: the caller passes a view to fill. A view that is rejected has no owner.
         unsafe { (*view).obj = ptr::null_mut() };
         let wanted = |flag: c_int| flags & flag == flag;
         if wanted(ffi::PyBUF_WRITABLE) {
@@ -128,7 +129,7 @@ impl Memory {
         } else {
             (count / across, 2)
         };
-        // One row, or one number in each, is in both orders.
+        // A column with one row, or with one number in each row, is contiguous in both orders.
         if wanted(ffi::PyBUF_F_CONTIGUOUS) && across > 1 && rows > 1 {
             return refused("the column is in C order, not in Fortran order");
         }
@@ -138,8 +139,8 @@ impl Memory {
         });
         held.views += 1;
         drop(held);
-        // SAFETY: the caller gives a view to fill. The column's memory stays where it is while
-        // `views` counts this one, and the shape is freed with the view, which holds this object.
+        // SAFETY: the caller passes a view to fill. The column's memory does not move while `views`
+        // counts this view. The shape is freed with the view, which keeps this object alive.
         unsafe {
             let shape = Box::into_raw(shape);
             (*view).buf = start;
@@ -172,22 +173,22 @@ impl Memory {
 
     unsafe fn __releasebuffer__(&self, view: *mut ffi::Py_buffer) {
         self.held().views -= 1;
-        // SAFETY: `__getbuffer__` put it there, and a view is released once.
+        // SAFETY: `__getbuffer__` stored it, and a view is released once.
         drop(unsafe { Box::from_raw((*view).internal.cast::<Shape>()) });
     }
 }
 
-/// Smaller pieces of memory gain nothing.
+/// Large pages do not speed up smaller memory.
 const LARGE: usize = 4 << 20;
 
-/// Ask for large pages for memory that is about to be filled: the first touch of a small page costs
-/// more than all the decoding of what goes into it.
+/// Request large pages for memory that is about to be filled: the first access to a small page
+/// costs more than decoding its contents.
 pub fn large_pages(start: *const u8, size: usize) {
     #[cfg(target_os = "linux")]
     if size >= LARGE {
         const PAGE: usize = 4096;
         let inside = start.align_offset(PAGE);
-        // SAFETY: advice on pages that lie within memory of ours changes none of its contents.
+        // SAFETY: the pages lie within our memory, and the advice does not change their contents.
         unsafe {
             libc::madvise(
                 start.wrapping_add(inside).cast_mut().cast(),
@@ -200,10 +201,10 @@ pub fn large_pages(start: *const u8, size: usize) {
     let _ = (start, size);
 }
 
-/// Have the garbage collector forget an object that can be part of no cycle: a million of them would
-/// be walked over again and again.
+/// Untrack an object that cannot be part of a cycle: otherwise the garbage collector would visit
+/// millions of such objects again and again.
 pub fn untrack<T>(object: &Bound<'_, T>) {
-    // SAFETY: it is a whole object of a class that the collector knows, as all of PyO3's are; one
-    // that is not tracked may be freed as any other.
+    // SAFETY: the object is complete, and its class supports the collector, as all classes of PyO3
+    // do. An untracked object is freed like any other.
     unsafe { ffi::PyObject_GC_UnTrack(object.as_ptr().cast()) }
 }

@@ -25,9 +25,9 @@ pub struct Names {
     pub float: Py<PyAny>,
     pub bool: Py<PyAny>,
     pub tuple: Py<PyAny>,
-    /// What `isinstance` is asked, before `float()` is.
+    /// The types that `float()` accepts; values are checked with `isinstance` first.
     pub float_like: Py<PyTuple>,
-    /// Iterable, but never meant as a row of numbers.
+    /// Types that are iterable, but never a row of numbers.
     pub not_sequences: Py<PyTuple>,
     new_tuple: Py<PyAny>,
     reasons: Vec<Py<PyString>>,
@@ -36,7 +36,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// The one set of them.
+    /// Return the names; they are loaded on first use.
     pub fn get(py: Python<'_>) -> PyResult<&'static Self> {
         NAMES.get_or_try_init(py, || Self::load(py))
     }
@@ -86,7 +86,7 @@ impl Names {
         })
     }
 
-    /// An instance of a named tuple class, made as its own `_make` does, but several times faster.
+    /// Create an instance of a named tuple class, as `_make` does, but several times faster.
     pub fn make<'py>(
         &self,
         class: &Py<PyAny>,
@@ -96,7 +96,7 @@ impl Names {
         self.new_tuple.bind(py).call1((class.bind(py), items))
     }
 
-    /// A direction's word.
+    /// Return the word for a direction.
     pub fn direction<'py>(&self, py: Python<'py>, direction: Direction) -> &Bound<'py, PyString> {
         match direction {
             Direction::Request => self.request.bind(py),
@@ -104,7 +104,7 @@ impl Names {
         }
     }
 
-    /// A reason's word.
+    /// Return the word for a reason.
     pub fn reason<'py>(&self, py: Python<'py>, reason: Reason) -> Option<&Bound<'py, PyString>> {
         self.reasons.get(reason as usize).map(|word| word.bind(py))
     }

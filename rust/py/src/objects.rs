@@ -8,13 +8,13 @@ use pyo3::prelude::*;
 
 use crate::words::word;
 
-/// Those of all commands, by index.
+/// The objects of all commands, by index.
 pub struct Commands {
     all: Vec<Command>,
     by_name: HashMap<String, usize>,
 }
 
-/// Those of one.
+/// The objects of one command: itself and its variants.
 pub struct Command {
     pub object: Py<PyAny>,
     request: Vec<Py<PyAny>>,
@@ -22,7 +22,7 @@ pub struct Command {
 }
 
 impl Commands {
-    /// Those of a table, whose commands have these names.
+    /// Return the objects of a table; `names` are those of its commands.
     pub fn new(table: &Bound<'_, PyAny>, names: Vec<String>) -> PyResult<Self> {
         let mut by_name = HashMap::new();
         for (index, name) in names.into_iter().enumerate() {
@@ -35,8 +35,8 @@ impl Commands {
         Ok(Self { all, by_name })
     }
 
-    /// The index of the command with that name. For an unknown name the table raises the error that
-    /// suggests the nearest one.
+    /// Return the index of the command with that name. For an unknown name, the table raises the
+    /// error, which suggests the nearest name.
     pub fn find(&self, table: &Py<PyAny>, name: &Bound<'_, PyAny>) -> PyResult<usize> {
         if let Some(index) = self.known(name) {
             return Ok(index);
@@ -70,7 +70,7 @@ impl Command {
         })
     }
 
-    /// The variants in one direction.
+    /// Return the variants in one direction.
     pub fn variants(&self, direction: Direction) -> &[Py<PyAny>] {
         match direction {
             Direction::Request => &self.request,
@@ -78,7 +78,7 @@ impl Command {
         }
     }
 
-    /// One of them.
+    /// Return one variant.
     pub fn variant<'py>(
         &self,
         py: Python<'py>,

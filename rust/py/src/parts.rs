@@ -1,4 +1,4 @@
-//! The core's results in parts, as Python's objects hold them, and back again for `out=`.
+//! Converts parts of the core's results to Python objects, and back to reuse their memory (`out=`).
 
 use cobotwire_core::{Columns, Direction, Offsets, Rows, Spans, VariantId};
 use pyo3::prelude::*;
@@ -8,13 +8,13 @@ use crate::column::Column;
 use crate::edition::Edition;
 use crate::memory::Memory;
 
-/// Spans of noise: where they start, and their sizes.
+/// Return spans of noise: their positions, and their sizes.
 pub fn spans<'py>(py: Python<'py>, noise: Spans) -> PyResult<Bound<'py, PyTuple>> {
     let Spans { offsets, sizes } = noise;
     (Memory::offsets(offsets), Memory::offsets(sizes)).into_pyobject(py)
 }
 
-/// The memory of an earlier `Scan`, which is empty from then on.
+/// Take the memory of an earlier `Scan`, which is empty afterwards.
 pub fn old_offsets(out: &Bound<'_, PyAny>) -> PyResult<Offsets> {
     let memory: Bound<'_, Memory> = out.getattr("_offset")?.extract()?;
     Ok(Offsets {
@@ -23,7 +23,7 @@ pub fn old_offsets(out: &Bound<'_, PyAny>) -> PyResult<Offsets> {
     })
 }
 
-/// The memory of an earlier `Columns`, which is empty from then on.
+/// Take the memory of an earlier `Columns`, which is empty afterwards.
 pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Columns> {
     let rows: Vec<Bound<'_, PyAny>> = out.getattr("_rows")?.extract()?;
     // Attributes are read first, since that runs Python code: another thread, or an error.
@@ -31,7 +31,7 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
     let variants = variants.collect::<PyResult<Vec<_>>>()?;
     let memories = rows.iter().map(memories).collect::<PyResult<Vec<_>>>()?;
     let all: Vec<&Memory> = memories.iter().flatten().map(Bound::get).collect();
-    // All or none: after an error the old columns are still complete.
+    // Check all of them first, so that the old columns stay complete after an error.
     let mut taken = Memory::take_all(&all)?.into_iter();
     let mut old = Columns::default();
     for (variant, memories) in variants.into_iter().zip(&memories) {
@@ -50,7 +50,7 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
     Ok(old)
 }
 
-/// The offsets, then the fields.
+/// Return the memories of some rows: the offsets, then the fields.
 fn memories<'py>(rows: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, Memory>>> {
     let mut all: Vec<Bound<'py, Memory>> = vec![rows.getattr("_offset")?.extract()?];
     let columns: Vec<Bound<'py, Memory>> = rows.getattr("_columns")?.extract()?;

@@ -1,4 +1,4 @@
-//! Rows of values, between Python's tuples and the core's.
+//! Converts rows of values between Python's tuples and the core's.
 
 use cobotwire_core::Value;
 use pyo3::prelude::*;
@@ -8,7 +8,7 @@ use crate::given::{Objects, tuple};
 use crate::memory::untrack;
 use crate::names::Names;
 
-/// The values of a message, as a tuple.
+/// Return the values of a message, as a tuple.
 pub fn row<'py>(values: &Bound<'py, PyAny>) -> PyResult<Objects<'py>> {
     if let Ok(all) = values.cast_exact::<PyTuple>() {
         return Ok(Objects(all.clone()));
@@ -19,7 +19,7 @@ pub fn row<'py>(values: &Bound<'py, PyAny>) -> PyResult<Objects<'py>> {
     tuple(Names::get(values.py())?, values).map(Objects)
 }
 
-/// Decoded values, as the tuple that a message holds.
+/// Return decoded values, as the tuple that a message holds.
 pub fn objects<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, PyTuple>> {
     match values {
         // A message of one field, as most are.
@@ -33,15 +33,15 @@ pub fn objects<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, Py
     }
 }
 
-/// Numbers without rows among them.
+/// Return a tuple of numbers; the values contain no row.
 fn numbers<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, PyTuple>> {
     let all = PyTuple::new(py, values.iter().map(|value| Number(*value)))?;
-    // Numbers lead nowhere; the collector would find that out by itself, later.
+    // Numbers refer to nothing; the collector would untrack the tuple itself, but later.
     untrack(&all);
     Ok(all)
 }
 
-/// Numbers and rows.
+/// Return a tuple of numbers and rows.
 fn mixed<'py>(py: Python<'py>, mut values: &[Value]) -> PyResult<Bound<'py, PyTuple>> {
     let mut all = Vec::with_capacity(values.len());
     while let Some((value, rest)) = values.split_first() {

@@ -1,6 +1,6 @@
-//! Arguments besides values and bytes: directions, a variant, an address.
+//! Converts the arguments other than values and bytes: directions, variants, addresses.
 //!
-//! Unusual types are compared as the reference does, so that `True` and `1.0` count alike.
+//! Unusual types are compared as in the reference, so that `True` and `1.0` are both equal to 1.
 
 use cobotwire_core::Direction;
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ pub fn one_way(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
     }
 }
 
-/// The index of the chosen variant; `count` if there is no such variant.
+/// Return the index of the chosen variant; `count` if the command lacks it.
 pub fn variant(given: &Bound<'_, PyAny>, count: usize) -> PyResult<usize> {
     for index in 0..count {
         if given.eq(index)? {
@@ -30,7 +30,7 @@ pub fn variant(given: &Bound<'_, PyAny>, count: usize) -> PyResult<usize> {
     Ok(count)
 }
 
-/// The chosen address byte, which `table` must have.
+/// Return the chosen address byte, which the table must contain.
 pub fn address(given: &Bound<'_, PyAny>, table: &Py<PyAny>, legal: &[u8]) -> PyResult<u8> {
     let py = given.py();
     if given.is_exact_instance_of::<PyInt>() {

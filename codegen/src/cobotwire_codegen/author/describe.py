@@ -67,7 +67,7 @@ def _reply(edition: Edition, command: Command) -> Iterator[str]:
         yield "  An acknowledgement: it may come, come late or never; clients do not wait for it."
     if command.text is not None:
         yield f"\nReply, text outside any frame: {markdown.pattern(command.text)}"
-    if command.answers:
+    if command.awaits_reply:
         yield f"  Deadline of the reply: {command.deadline_ms} ms."
     elif not command.replies:
         yield "\nReply: none."
@@ -91,7 +91,7 @@ def _vectors(edition: Edition, command: Command) -> Iterator[str]:
 
 def _vector(vector: Vector) -> str:
     shown = vector.text if vector.frame is None else markdown.hexed(vector.frame)
-    values = f": {markdown.spoken(vector)}" if vector.values else ""
+    values = f": {markdown.values_in_words(vector)}" if vector.values else ""
     line = f" (line {vector.line})" if vector.line else ""
     stray = "no frame of its own; see the errata"
     return f"  {vector.name}{line}, {vector.direction}: {shown or stray}{values}"

@@ -112,7 +112,7 @@ class Command:
         return self.requests if direction == "request" else self.replies
 
     @property
-    def answers(self) -> bool:
+    def awaits_reply(self) -> bool:
         """Whether a client waits for a reply."""
         return (bool(self.replies) and not self.ack) or self.text is not None
 

@@ -104,7 +104,7 @@ def text_vector(edition: Edition, command: Command) -> Vector | None:
     return next((vector for vector in fitting if vector.text is not None), None)
 
 
-def spoken(vector: Vector) -> str:
+def values_in_words(vector: Vector) -> str:
     """Return a vector's values in words."""
     return ", ".join(f"{name} = {_value(value)}" for name, value in vector.values)
 

@@ -45,7 +45,7 @@ def call(command: Command, family: Family, way: Way) -> str:
     arguments = parameters(command)
     given = [a.name for a in arguments if not a.optional]
     given += [*_text_arguments(command), *(a.name for a in arguments if a.optional)]
-    head = f"return {way.await_}self._call(" if command.answers else f"{way.await_}self._send("
+    head = f"return {way.await_}self._call(" if command.awaits_reply else f"{way.await_}self._send("
     opening = f"messages.{family.name}.{message_class(command.name)}("
     request = f"{opening}{', '.join(given)})"
     if 12 + len(request) + len(",") > WIDTH:

@@ -11,12 +11,12 @@ use crate::reason::Reason;
 
 /// Positions of a block.
 pub(crate) const BLOCK: usize = 1 << 16;
-/// More than the longest frame that LEN can express.
+/// The bytes after the last position: more than the longest frame that LEN can express has.
 pub(crate) const MARGIN: usize = 260;
-/// More than the frames that can start in it: the shortest has header, LEN, id and check.
+/// More than the number of frames that can start in a block; the shortest has more than four bytes.
 pub(crate) const MOST: usize = BLOCK / 4;
-/// The number of places in which a block is scanned at once. Two are 1.4 times as fast as one,
-/// three 1.5 times; for four there are not enough registers.
+/// The number of places in which a block is scanned at once. Two are 1.4 times as fast as one, and
+/// three 1.5 times; four need more registers than there are.
 pub(crate) const LANES: usize = 3;
 /// The bytes of a block.
 pub(crate) type Block = [u8; BLOCK + MARGIN];
@@ -37,7 +37,7 @@ impl Found {
         self.0 as u16
     }
 
-    /// Return the index of the group of messages that it can be; of no group if its id is unknown.
+    /// Return the index of its group of messages; no group has this index if the id is unknown.
     #[inline]
     pub(crate) fn group(self) -> u16 {
         (self.0 >> 16) as u16

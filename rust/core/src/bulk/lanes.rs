@@ -3,9 +3,9 @@
 //! A scan has no memory: the verdict on a position depends only on the bytes from there on. But the
 //! start of the next frame depends on this frame's LEN, and the processor waits for that. Therefore
 //! a block is scanned in lanes. All lanes but the first start at a guess: a position at which a
-//! frame seems to start. If a lane ends exactly where the next one started, the guess was right,
-//! and both found the same as one scan. If a guess was wrong, the lanes after it do not count, and
-//! the next block starts there.
+//! frame seems to start. If a lane ends exactly where the next lane started, the guess was right,
+//! and the two lanes found what one scan finds. If a guess was wrong, the lanes from there on are
+//! discarded, and the next block starts at the end of the last lane that counts.
 
 use super::block::{BLOCK, Block, Found, LANES, Look, MOST, Quick};
 use super::spans::Runs;
@@ -15,7 +15,7 @@ use crate::reason::Reason;
 /// The number of bytes that a guess may examine.
 const GUESSING: usize = 512;
 
-/// One lane's finds.
+/// What one lane found.
 #[derive(Clone)]
 pub(crate) struct Lane {
     found: Box<[Found; MOST]>,
@@ -42,7 +42,7 @@ impl Lane {
     }
 }
 
-/// Memory for the finds in a block.
+/// Memory for what the lanes find in a block.
 #[derive(Clone)]
 pub(crate) struct Lanes {
     lanes: [Lane; LANES],
@@ -138,8 +138,8 @@ fn pass_noise(quick: Quick<'_>, data: &Block, from: usize, end: usize, runs: &mu
     at
 }
 
-/// Return the first position from `at` on where a frame starts. If the search takes long, the lane
-/// is not worth its cost.
+/// Return the first position from `at` on where a frame starts, or the end of the block if the
+/// search takes too long: then the lane would cost more than it saves.
 fn guess(quick: Quick<'_>, data: &Block, at: usize) -> usize {
     let enough = at + GUESSING;
     match pass_noise(quick, data, at, enough, &mut Runs::default()) {

@@ -14,7 +14,8 @@ pub struct Plans {
 }
 
 impl Plans {
-    /// Return the plans for a table. They are expensive to make and serve any number of readers.
+    /// Return the plans for a table. Making them is expensive; any number of readers can share
+    /// them.
     #[must_use]
     pub fn new(table: &Table, listening: Listening) -> Self {
         let mut rows = 0;

@@ -5,13 +5,13 @@ use super::stream::{Collect, Stream};
 use crate::judge::Rules;
 use crate::tally::Tally;
 
-/// Smaller input is not worth an estimate.
+/// For smaller input, an estimate costs more than it saves.
 const WORTH: usize = 1 << 20;
 /// The number of parts that are read, and their size.
 const LOOKS: usize = 16;
 const LOOK: usize = 1 << 14;
 
-/// Estimate the number of frames of each group in `data`, rather too high than too low.
+/// Estimate the number of frames of each group in `data`; the estimate is rarely too low.
 pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> {
     if data.len() < WORTH {
         return Vec::new();
@@ -24,7 +24,7 @@ pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> 
     }
     let looked_at = (LOOKS * LOOK) as u64;
     let estimate = |count: u64| {
-        // Add a sixteenth, so that the estimate is rarely too low.
+        // The added sixteenth makes a low estimate rare.
         let all = (count + count / 16) * data.len() as u64 / looked_at;
         usize::try_from(all).unwrap_or_default()
     };

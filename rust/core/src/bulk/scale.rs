@@ -19,7 +19,7 @@ pub(crate) struct Scale {
     pub(crate) exact: bool,
 }
 
-/// The unused bits of the high part: as many as a two-byte number with its sign has.
+/// The bits that the high part leaves unused, so that its product with a two-byte number is exact.
 const SPARE: u64 = (1 << 17) - 1;
 
 impl Scale {

@@ -1,5 +1,5 @@
-//! Checks several positions together: most bytes of noise do not start a header, or start one with
-//! a LEN that no frame has, and need no check of their own.
+//! Checks several positions together. Most bytes of noise do not start a header, or start one with
+//! a LEN that no frame has, so they need no separate check.
 //!
 //! Each byte of a 64-bit word represents a position, the lowest byte the first; its highest bit
 //! means yes.

@@ -5,10 +5,10 @@ use super::cells::Cell;
 use super::scale::Scale;
 use crate::number::{Number, Order};
 
-/// The limit on the numbers of such a field.
+/// The largest number of numbers in a field that this reader handles.
 const MOST: usize = 6;
 
-/// The rules of such a field: up to six numbers of one width.
+/// The rules of one field: up to six numbers of one width.
 #[derive(Clone, Debug)]
 pub(crate) struct Words {
     width: usize,
@@ -20,7 +20,7 @@ pub(crate) struct Words {
 }
 
 impl Words {
-    /// Return the rules, if these numbers form such a field.
+    /// Return the rules, if this reader can handle a field of these numbers.
     pub(crate) fn new(numbers: &[Number]) -> Option<Self> {
         let width = numbers.first()?.width;
         let alike = |number: &Number| {

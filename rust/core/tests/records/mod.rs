@@ -58,7 +58,7 @@ fn vector(json: &Value) -> Vector {
         direction: match string(&json["direction"]).as_str() {
             "request" => Direction::Request,
             "reply" => Direction::Reply,
-            other => panic!("{other} is no direction"),
+            other => panic!("{other} is not a direction"),
         },
         frame: json["frame"].as_str().map(bytes),
         values: json["values"]
@@ -98,7 +98,7 @@ fn frame(json: &Value) -> FrameFormat {
         "footer" => Check::Footer(bytes(&json["footer"])[0]),
         "crc16-modbus" => Check::Crc16Modbus,
         "sum" => Check::Sum,
-        other => panic!("{other} is no check"),
+        other => panic!("{other} is not a check"),
     };
     let addresses = &json["addresses"];
     FrameFormat {
@@ -162,7 +162,7 @@ fn number(json: &Value) -> Number {
 
 fn all<T>(json: &Value, read: impl Fn(&Value) -> T) -> Vec<T> {
     json.as_array()
-        .unwrap_or_else(|| panic!("{json} is no array"))
+        .unwrap_or_else(|| panic!("{json} is not an array"))
         .iter()
         .map(read)
         .collect()
@@ -175,7 +175,7 @@ fn integer(json: &Value) -> i64 {
 
 fn string(json: &Value) -> String {
     json.as_str()
-        .unwrap_or_else(|| panic!("{json} is no string"))
+        .unwrap_or_else(|| panic!("{json} is not a string"))
         .to_owned()
 }
 

@@ -1,5 +1,5 @@
-//! Reads `tests/found`: inputs that were hard once, each with its expected result. Python's tests
-//! read the same files, which explain their format at the top.
+//! Reads `tests/found`: inputs that once failed, each with its expected result. Python's tests read
+//! the same files; the top of each file explains its format.
 
 use cobotwire_core::{Direction, Listening, Reason};
 
@@ -69,7 +69,10 @@ fn chunk(text: &str) -> (Vec<u8>, bool) {
 fn event(text: &str) -> Option<(usize, Option<Reason>)> {
     let (word, size) = text.trim().split_once(' ')?;
     let reason = Reason::ALL.into_iter().find(|reason| reason.word() == word);
-    assert!(reason.is_some() || word == "frame", "{word} is no event");
+    assert!(
+        reason.is_some() || word == "frame",
+        "{word} is not an event"
+    );
     Some((size.parse().expect("a size"), reason))
 }
 
@@ -93,7 +96,7 @@ fn listening(word: &str) -> Listening {
         "request" => Listening::To(Direction::Request),
         "reply" => Listening::To(Direction::Reply),
         "both" => Listening::Both,
-        other => panic!("{other} is no way to listen"),
+        other => panic!("{other} is not a direction"),
     }
 }
 

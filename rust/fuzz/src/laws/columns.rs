@@ -1,5 +1,5 @@
-//! Bulk reading finds the same rows, noise and counts as the oracle does frame by frame: at once
-//! and in batches, with new and with reused memory.
+//! Checks that bulk reading finds the same rows, noise and counts as the oracle finds frame by
+//! frame: at once and in batches, with new and with reused memory.
 
 use std::sync::Arc;
 

@@ -90,12 +90,12 @@ pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
     }
 }
 
-/// Check that, read as a given command, the frame has the first variant of it that allows the
-/// values.
+/// Check that a frame that is decoded as a given command has the command's first variant that
+/// allows the values.
 fn each_call(table: &Table, direction: Direction, data: &[u8]) {
     let id = data[table.frame().overhead()];
     for (of, command) in table.commands().iter().enumerate() {
-        // One command with another id represents all of them.
+        // One command with another id represents all commands with other ids.
         if command.id == id || of == data.len() {
             one_call(table, direction, data, of);
         }

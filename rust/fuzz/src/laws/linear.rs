@@ -7,12 +7,12 @@ use rustix::time::{ClockId, clock_gettime};
 
 use crate::input::{Chunk, Input};
 
-/// The short stream for the framer and, since its blocks are longer, for bulk reading.
+/// The size of the short stream: for the framer, and for bulk reading, which reads longer blocks.
 const SHORT: [usize; 2] = [8 << 10, 128 << 10];
 const TIMES: usize = 8;
 /// Quadratic work would take `TIMES` times as long.
 const MOST: u32 = 3;
-/// Other processes use the caches as well: they slow down some measurements, but not all.
+/// Other processes slow down some measurements, but not all, because they use the same caches.
 const ATTEMPTS: usize = 12;
 
 /// Check that a byte takes at most three times as long in a stream of eight times the length; both

@@ -35,7 +35,7 @@ impl Count {
         self.in_noise = reason.is_some();
     }
 
-    /// Return all bytes fed are in events by now.
+    /// Check a tally; all bytes that were fed must be in events by now.
     pub fn check(&self, tally: &Tally) {
         let numbers = |tally: &Tally| (tally.bytes, tally.noise, tally.resyncs);
         assert_eq!(numbers(tally), numbers(&self.tally), "the oracle's counts");

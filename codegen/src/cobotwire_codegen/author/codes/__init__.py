@@ -1,4 +1,4 @@
-"""What every problem code means: the registry behind ``cobotwire-gen explain CODE``.
+"""Explains every problem code; ``cobotwire-gen explain CODE`` prints these explanations.
 
 A test fails if the sources emit a code that is not explained here, or if an explained code is never
 emitted. It also fails if the wrong lines of an example do not cause the code, or the right ones do.

@@ -121,7 +121,7 @@ EXPLANATIONS = (
     Explanation(
         "bad-range",
         "A range is not [lowest, highest], or is given for a type that is not a quantity.",
-        "A range whose ends are swapped is empty; flags, enums and value types have no range.",
+        "A range with swapped ends is empty; flags, enums and value types have no range.",
         "Write two numbers, the lower one first; remove the range if the type is not a quantity.",
         "range: [2, 1]",
         "range: [1, 2]",

@@ -146,9 +146,9 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-selector",
-        "`selector` does not name a field of the message that can decide a type.",
+        "`selector` names no field of the message, or a field that cannot select a type.",
         "A selector must be an enum, or have at most 64 whole numbers.",
-        "Name such a field of the same message.",
+        "Name an enum, or a quantity with few whole numbers, of the same message.",
         "selector: axs",
         "selector: axis",
     ),

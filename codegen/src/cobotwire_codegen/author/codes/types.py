@@ -40,7 +40,7 @@ EXPLANATIONS = (
     Explanation(
         "bad-sign",
         "`signed_at` is larger than any number of that many bytes.",
-        "Unsigned numbers above `signed_at` are negative, so `signed_at` must be such a number.",
+        "Unsigned numbers above `signed_at` are negative; no number is above this one.",
         "Write 127 or 32767 for two's complement; remove it if no raw value is negative.",
         "signed_at: 70000",
         "signed_at: 32767",

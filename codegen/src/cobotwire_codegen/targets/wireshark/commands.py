@@ -30,7 +30,7 @@ class Commands:
         for direction in ("request", "reply"):
             variants = command.variants(direction)
             made[direction] = [self._variant(command, variant) for variant in variants]
-        flags = {"answers": command.answers, "ack": command.ack}
+        flags = {"awaits_reply": command.awaits_reply, "ack": command.ack}
         made |= {name: True for name, given in flags.items() if given}
         texts = {"reply_text": command.text, "request_text": command.request_text}
         return made | {name: self._text(text) for name, text in texts.items() if text}
