@@ -112,7 +112,7 @@ def test_incomplete_request_to_a_recording_is_given_up() -> None:
 
 
 @pytest.mark.parametrize("cut", range(1, len(POWER)))
-def test_request_in_pieces_is_recognized(cut: int) -> None:
+def test_request_in_pieces_is_recognised(cut: int) -> None:
     arm, _ = replayed(Packet(0, "sent", POWER), Packet(0, "received", ON))
     assert arm.receive(POWER[:cut]) + arm.receive(POWER[cut:]) == ON
 

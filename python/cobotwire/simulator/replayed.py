@@ -53,7 +53,7 @@ class ReplayedArm:
 
         Args:
             packets: those of one line, in any order.
-            codec: of the edition by which requests are recognized.
+            codec: of the edition by which requests are recognised.
             speed: 2 halves the delays.
             clock: returns the time in seconds.
             on_request: called with every request.

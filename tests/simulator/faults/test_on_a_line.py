@@ -119,7 +119,7 @@ SHOWN = {
 
 
 @pytest.mark.parametrize("name", SHOWN)
-def test_diagnosis_recognizes_the_fault_of_a_scenario(name: str) -> None:
+def test_diagnosis_recognises_the_fault_of_a_scenario(name: str) -> None:
     expected = SHOWN[name]
     with session(find(name, TABLE)) as played:
         assert played.send_requests(expected.requests) == expected.right

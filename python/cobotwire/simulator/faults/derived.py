@@ -39,7 +39,7 @@ def derived(packets: Iterable[Packet], codec: Codec, name: str = "derived") -> S
 
     Args:
         packets: those of one line, in any order.
-        codec: of the edition by which requests and replies are recognized.
+        codec: of the edition by which requests and replies are recognised.
         name: the name of the scenario.
 
     Raises:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from random import Random
 from typing import ClassVar, Literal
 
@@ -31,6 +31,7 @@ ONLY = ("requests", "replies", "acknowledgements", "malformed input")
 COUNT = integer(1, 1_000_000)
 
 
+@dataclass(slots=True)
 class Moment:
     """A request to which a fault is applied, and what the fault may use.
 
@@ -39,26 +40,18 @@ class Moment:
         random: the source of random numbers, repeatable by the seed.
         connection: the state that outlasts the request.
         table: the edition.
-        delay: the delay of the reply, in seconds.
         number: the number of the request, if its reply is reported when it has been sent.
+        delay: the delay of the reply, in seconds.
     """
 
-    def __init__(
-        self,
-        request: Request,
-        random: Random,
-        connection: FaultyConnection,
-        table: Table,
-        number: int | None = None,
-    ) -> None:
-        self.request = request
-        self.random = random
-        self.connection = connection
-        self.table = table
-        self.number = number
-        self.delay = 0.0
-        self._details: list[str] = []
-        self._moved = 0
+    request: Request
+    random: Random
+    connection: FaultyConnection
+    table: Table
+    number: int | None = None
+    delay: float = 0.0
+    _details: list[str] = field(default_factory=list)
+    _moved: int = 0
 
     @property
     def frame(self) -> FrameFormat:
@@ -131,13 +124,13 @@ class Fault:
     until_seconds: float | None = ruled(optional(SECONDS), None)
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
+        for one in fields(self):
+            value = getattr(self, one.name)
             try:
-                kept = field.metadata[RULE](value)
+                kept = one.metadata[RULE](value)
             except ValueError as error:
-                raise UsageError(f"{self.kind}.{field.name}", value, str(error)) from None
-            object.__setattr__(self, field.name, kept)
+                raise UsageError(f"{self.kind}.{one.name}", value, str(error)) from None
+            object.__setattr__(self, one.name, kept)
         if self.until_seconds is not None and self.until_seconds <= self.from_seconds:
             allowed = f"more than from_seconds, {self.from_seconds:g}, up to {LONGEST_SECONDS:g}"
             raise UsageError(f"{self.kind}.until_seconds", self.until_seconds, allowed)

@@ -23,7 +23,7 @@ class FaultyConnection:
         self.stalled_until = -math.inf
         self.gone_from = math.inf
         self._clock = clock
-        self._restart = restart
+        self.restart = restart
 
     @property
     def deaf(self) -> bool:
@@ -51,10 +51,6 @@ class FaultyConnection:
         """Let the port disappear after a while."""
         self.gone_from = min(self.gone_from, self._clock() + seconds)
 
-    def lose_state(self) -> None:
-        """Restart the controller."""
-        self._restart()
-
     def put(self, reply: Reply, delay: float = 0.0, number: int | None = None) -> None:
         """Send a reply after a delay, but not while the arm stalls; see :meth:`Outlet.put`."""
         self.outlet.put(max(self._clock() + delay, self.stalled_until), reply, number)
@@ -67,4 +63,4 @@ class FaultyConnection:
         """Forget everything, as after a power cycle."""
         self.deaf_until = self.stopped_until = self.stalled_until = -math.inf
         self.outlet.drop()
-        self._restart()
+        self.restart()

@@ -39,7 +39,7 @@ class Panic(Fault):
         moment.report(f"panic, {self.nuls} NULs, deaf for {self.deaf_seconds:g} s, state lost")
         moment.drop_unsent()
         moment.connection.deafen(self.deaf_seconds)
-        moment.connection.lose_state()
+        moment.connection.restart()
         half = self.deaf_seconds / 2
         pieces = (Piece(0.0, begun + PANIC), Piece(half, bytes(self.nuls)), Piece(half, boot))
         return tuple(piece for piece in pieces if piece.data)
