@@ -16,6 +16,7 @@ from cobotwire.conformance.device import (
     words,
 )
 from cobotwire.conformance.report import Cause, Result, Verdict
+from cobotwire.conformance.reports.evidence import evidence_lines
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.protocol.printable import printable
 from cobotwire.transport import open_transport
@@ -112,6 +113,5 @@ class ConformItem(pytest.Item):
 
 
 def _in_full(result: Result) -> str:
-    lines = [f"{result.case} ({result.source}): {result.reason}"]
-    lines += [f"  {e.at:9.4f} {e.direction:8} {e.data.hex(' ').upper()}" for e in result.evidence]
-    return "\n".join(map(printable, lines))
+    reason = printable(f"{result.case} ({result.source}): {result.reason}")
+    return "\n".join([reason, *evidence_lines("device", result)])

@@ -102,12 +102,12 @@ def _prefix(variant: Variant, picked: Mapping[int, int]) -> str:
 
 
 def with_row(raw_values: RawValues, index: int, row: tuple[int, ...]) -> RawValues:
-    """Return the same raw values with another row in one field."""
+    """Return the raw values with the row of one field replaced."""
     return (*raw_values[:index], row, *raw_values[index + 1 :])
 
 
 def with_one(raw_values: RawValues, index: int, element: int, raw: int) -> RawValues:
-    """Return the same raw values with another one in one place."""
+    """Return the raw values with one of them replaced."""
     row = raw_values[index]
     return with_row(raw_values, index, (*row[:element], raw, *row[element + 1 :]))
 

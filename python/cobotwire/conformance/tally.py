@@ -125,7 +125,8 @@ class Tally:
         if not count.observed:
             reason = count.otherwise or unobserved or NOTHING_OBSERVED
             return replace(result, reason=reason, cause=Cause.NOT_SUPPORTED)
-        reason = count.note or f"{case.purpose} Observed {count.observed} times."
+        often = "once" if count.observed == 1 else f"{count.observed} times"
+        reason = count.note or f"{case.purpose} Observed {often}."
         return replace(result, verdict=Verdict.PASS, reason=reason, evidence=evidence)
 
 

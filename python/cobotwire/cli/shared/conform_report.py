@@ -100,7 +100,7 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
         echo(f"{result.outcome.upper():8} {result.case:20} {result.command:24}")
         echo(f"         {printable(result.reason)}")
         for exchange in result.evidence:
-            data = printable(shown(report, exchange)[:SHOWN])
+            data = printable(shown(report.kind, exchange)[:SHOWN])
             echo(f"         {exchange.at:9.4f} {exchange.direction} {data}")
     counts = Counter(result.outcome for result in report.results)
     summary = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())

@@ -150,7 +150,7 @@ def _result(report: Report, result: Result) -> Iterator[Element]:
             "tr",
             element("td", f"{exchange.at:.4f} s"),
             element("td", exchange.direction, class_=exchange.direction),
-            element("td", shown(report, exchange), class_="bytes"),
+            element("td", shown(report.kind, exchange), class_="bytes"),
             element("td", exchange.note, class_="faint"),
         )
         for exchange in result.evidence

@@ -60,7 +60,7 @@ def _entry(report: Report, cell: Cell) -> ElementTree.Element:
 
 def _in_full(report: Report, result: Result) -> str:
     source = [f"required by {result.source}"] if result.source else []
-    lines = [result.reason, *source, *evidence_lines(report, result)]
+    lines = [result.reason, *source, *evidence_lines(report.kind, result)]
     # XML cannot express control characters at all.
     return "\n".join(map(printable, lines))
 

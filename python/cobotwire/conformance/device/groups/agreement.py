@@ -8,6 +8,7 @@ from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.mover import POSES, TICK_DEGREES, Mover
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, request_of, units
+from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 
@@ -50,11 +51,11 @@ def _reading(probe: Probe, query: Command, *values: Any) -> Reading:
     valid = probe.device.request(request_of(query, *values)).valid
     if valid is None or valid.decoded is None:
         raise NotSupported(f"{query.name} reports nothing")
+    fields = valid.decoded.fields
     return [
-        (f"{field.name}.{number.name}" if number.name else field.name, number.unit, value)
-        for field in valid.decoded.variant.fields
-        if not field.echo
-        for number, value in zip(field.cases[0].numbers, as_row(valid.decoded.fields[field.name]))
+        (place.name, place.number.unit, as_row(fields[place.field.name])[place.element])
+        for place in places(valid.decoded.variant)
+        if not place.field.echo
     ]
 
 
