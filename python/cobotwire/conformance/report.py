@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from enum import StrEnum
 from typing import Literal
 
@@ -66,6 +67,10 @@ class Result:
         return f"{self.verdict} ({self.cause})" if self.cause else str(self.verdict)
 
 
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
 @dataclass(slots=True)
 class Report:
     """The results of a run. ``finished`` is False until the run has reached its end."""
@@ -73,7 +78,7 @@ class Report:
     kind: Kind
     edition: str
     subject: str
-    started: str
+    started: str = field(default_factory=_now)
     firmware: str = ""
     finished: bool = False
     results: list[Result] = field(default_factory=list)

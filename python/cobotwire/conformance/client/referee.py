@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from datetime import UTC, datetime
 
 from cobotwire import codec as codecs
 from cobotwire.conformance.client.delivery import Delivery, faulty_replies
@@ -67,8 +66,7 @@ class Referee:
         self._last_byte: float | None = None
         self._arrival = 0.0
         self.requests = 0
-        started = datetime.now(UTC).isoformat(timespec="seconds")
-        self.report = Report("client", table.edition, subject, started)
+        self.report = Report("client", table.edition, subject)
 
     @property
     def silence(self) -> float | None:

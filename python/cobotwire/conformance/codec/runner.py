@@ -6,7 +6,6 @@ import json
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 
 from cobotwire.conformance.codec.expected import Expectation, expectation_of
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer
@@ -88,8 +87,7 @@ class Run:
         self._crashes = 0
         self._tally = Tally(sources)
         self.greeting = greet(implementation, table)
-        started = datetime.now(UTC).isoformat(timespec="seconds")
-        self.report = Report("codec", table.edition, self.greeting.name, started)
+        self.report = Report("codec", table.edition, self.greeting.name)
 
     def ask_all(self, questions: Iterable[Question], *, until_failure: bool = False) -> Report:
         """Ask every question; with ``until_failure`` stop after the first failure.

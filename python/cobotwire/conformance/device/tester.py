@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from datetime import UTC, datetime
 from typing import NamedTuple
 
 from cobotwire import codec as codecs
@@ -77,8 +76,7 @@ class Tester:
             timing=timing or Timing(),
             retries=retries,
         )
-        started = datetime.now(UTC).isoformat(timespec="seconds")
-        self.report = Report("device", table.edition, connection.name, started)
+        self.report = Report("device", table.edition, connection.name)
         self.report.reply_seconds = self.device.reply_seconds
         self.report.deadline_seconds = {c.name: c.deadline_ms / 1000 for c in table.commands}
 
