@@ -8,9 +8,10 @@ SIMULATING := $(addprefix tests/,conformance docs inspect peers simulator)
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
+ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests simulating-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform
+.PHONY: help demo test lint python-test computing-tests simulating-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -92,6 +93,9 @@ table: .venv/.tools .venv/.native ## compare our clients with pymycobot on bad l
 
 conform: .venv/.tools .venv/.native ## break subjects on purpose; count how many the conformance tests find
 	PYTHONPATH=tests $(BIN)/python -m mutation
+
+attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer
+	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(ATTACK)
 
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py

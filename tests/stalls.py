@@ -17,10 +17,12 @@ class StallMeter:
 
     Attributes:
         longest: the longest delay of a wake-up, in seconds.
+        late: the time of each delayed wake-up and its delay, if that is above 5 ms.
     """
 
     def __init__(self) -> None:
         self.longest = 0.0
+        self.late: list[tuple[float, float]] = []
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._measure, daemon=True)
 
@@ -38,7 +40,10 @@ class StallMeter:
         before = time.monotonic()
         while not self._over.wait(PERIOD):
             now = time.monotonic()
-            self.longest = max(self.longest, now - before - PERIOD)
+            too_late = now - before - PERIOD
+            self.longest = max(self.longest, too_late)
+            if too_late > PERIOD:
+                self.late.append((now, too_late))
             before = now
 
 

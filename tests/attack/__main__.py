@@ -1,0 +1,75 @@
+"""Attack the clients with a hostile peer; print what became of each call, a row a profile.
+
+PYTHONPATH=tests python -m attack                           every profile, 180 s
+PYTHONPATH=tests python -m attack --profile late --seed 7   one profile, from seed 7 on
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+from attack.profiles import PROFILES
+from attack.running import campaign
+from attack.table import limits, markdown, text
+from attack.tally import Tally
+
+
+def main() -> int:
+    """Run the campaign and print its table; return 1 if something forbidden happened."""
+    given = _arguments()
+    names = given.profile or list(PROFILES)
+    tallies = {name: Tally(name) for name in names}
+    began = time.monotonic()
+    runs = 0
+    for plan, tally in campaign(names, given.seed, given.seconds, given.calls, given.processes):
+        runs += 1
+        tallies[plan.profile.name].add(tally)
+        if given.verbose:
+            print(f"{plan}: {tally.calls} calls, {tally.forbidden} forbidden", file=sys.stderr)
+        for failure in tally.failures:
+            print(f"FAILED {failure}\n", file=sys.stderr, flush=True)
+    found = [tally for tally in tallies.values() if tally.calls]
+    seconds = time.monotonic() - began
+    summary = f"{runs} runs from seed {given.seed} in {seconds:.0f} s"
+    print(text(found))
+    print(f"limits: {limits(found)}")
+    print(summary)
+    if given.json:
+        rows = [tally.as_json() for tally in found]
+        given.json.write_text(json.dumps({"seed": given.seed, "rows": rows}, indent=1) + "\n")
+    if given.markdown:
+        _write(given.markdown, markdown(found) + f"\n{summary}.\n")
+    return 1 if any(tally.forbidden for tally in found) else 0
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="attack", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--profile", action="append", choices=list(PROFILES))
+    parser.add_argument("--seed", type=int, default=1, help="of the first run; 1")
+    parser.add_argument("--seconds", type=float, default=180.0, help="after which no run begins")
+    parser.add_argument("--calls", type=int, help="after which no run begins")
+    parser.add_argument("--processes", type=int, default=4)
+    parser.add_argument("--json", type=Path, help="write the counts to this file")
+    parser.add_argument("--markdown", type=Path, help="write the table into this page")
+    parser.add_argument("--verbose", action="store_true", help="print each run")
+    return parser.parse_args()
+
+
+BEGIN, END = "<!-- begin: make attack -->", "<!-- end -->"
+
+
+def _write(page: Path, table: str) -> None:
+    """Replace the table of a page, between its marks."""
+    before, _, rest = page.read_text().partition(BEGIN)
+    after = rest.partition(END)[2]
+    page.write_text(f"{before}{BEGIN}\n\n{table}\n{END}{after}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

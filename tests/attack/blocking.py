@@ -1,0 +1,164 @@
+"""Threads that share one blocking client."""
+
+from __future__ import annotations
+
+import _thread
+import signal
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from random import Random
+from types import FrameType
+from typing import Any
+
+from attack.record import open_observed
+from attack.setting import Setting
+from cobotwire import CobotwireError, LinkError
+
+JOIN_SECONDS = 1.0
+
+
+class Shared:
+    """The client that the threads share; after a break, one of them opens it again."""
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting = setting
+        self.age = 0
+        self._lock = threading.Lock()
+        self._transport: Any = None
+        self.client: Any = None
+        self._open()
+
+    def restore(self, age: int) -> None:
+        """Open it again, unless that has been done since ``age``, or the run is over."""
+        with self._lock:
+            if self.age != age or self.setting.over:
+                return
+            plan = self.setting.plan
+            while not self.setting.over:
+                with suppress(LinkError):
+                    if plan.reopens:
+                        self._transport.reopen()
+                    else:
+                        self.client.close()
+                        self._open()
+                    break
+                time.sleep(0.01)
+            self.age += 1
+
+    def close(self) -> None:
+        """Close it; calls in other threads end with an error."""
+        self.client.close()
+
+    def _open(self) -> None:
+        setting = self.setting
+        plan, small = setting.plan, setting.plan.profile.stalls
+        self._transport = open_observed(setting.url, setting.baudrate, setting.record, small=small)
+        self.client = setting.client(
+            self._transport, codec=plan.codec, timeout=plan.timeout, retry=setting.retry
+        )
+
+
+class Interrupts:
+    """Ctrl-C for the main thread, as often as there is a call that it can hit."""
+
+    def __init__(self, random: Random) -> None:
+        self.armed = False
+        self._random = random
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._interrupt, daemon=True)
+
+    def __enter__(self) -> Interrupts:
+        self._before = signal.signal(signal.SIGINT, self._handle)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._over.set()
+        self._thread.join()
+        signal.signal(signal.SIGINT, self._before)
+
+    def _handle(self, number: int, frame: FrameType | None) -> None:
+        if self.armed:
+            self.armed = False
+            raise KeyboardInterrupt
+
+    def _interrupt(self) -> None:
+        while not self._over.wait(self._random.expovariate(1 / 0.004)):
+            if self.armed:
+                _thread.interrupt_main()
+
+
+def run_threads(
+    setting: Setting, during: Callable[[Shared], None], settle: Callable[[], None]
+) -> None:
+    """Let the users of a run call until it is over.
+
+    ``during`` does what else happens; ``settle`` waits before the client is closed.
+    """
+    shared = Shared(setting)
+    plan = setting.plan
+    first = 1 if plan.profile.interrupts else 0
+    threads = [
+        threading.Thread(target=_user, args=(shared, user), daemon=True)
+        for user in range(first, plan.users)
+    ]
+    happening = threading.Thread(target=during, args=(shared,), daemon=True)
+    for thread in (*threads, happening):
+        thread.start()
+    if plan.profile.interrupts:
+        with Interrupts(Random(f"{plan.seed} interrupts")) as interrupts:
+            _user(shared, 0, interrupts)
+    happening.join()
+    setting.over = True
+    until = time.monotonic() + setting.longest
+    for thread in threads:
+        thread.join(max(0.0, until - time.monotonic()))
+    setting.record.give_up()
+    settle()
+    shared.close()
+    for thread in threads:
+        thread.join(JOIN_SECONDS)
+
+
+def _user(shared: Shared, user: int, interrupts: Interrupts | None = None) -> None:
+    setting = shared.setting
+    random = Random(f"{setting.plan.seed} {user}")
+    while not setting.over:
+        age = shared.age
+        if not _call(shared, user, random, interrupts):
+            # A broken line is opened again; one that only stalls is used as it is.
+            if not setting.plan.profile.keeps_bytes:
+                shared.restore(age)
+            else:
+                time.sleep(0.01)
+
+
+def _call(shared: Shared, user: int, random: Random, interrupts: Interrupts | None) -> bool:
+    """Make one call and note how it ended; return False after a LinkError."""
+    setting, record = shared.setting, shared.setting.record
+    drawn = setting.draw(random)
+    method = getattr(shared.client, drawn.name)
+    options = {} if drawn.ack_within is None else {"ack_within": drawn.ack_within}
+    call = setting.begin(user, drawn)
+    try:
+        try:
+            if interrupts is not None:
+                interrupts.armed = True
+            value = method(*drawn.arguments, **options)
+        finally:
+            if interrupts is not None:
+                interrupts.armed = False
+    except KeyboardInterrupt:
+        record.end(call, "interrupted", None)
+    except LinkError as error:
+        record.end(call, "error", f"LinkError: {error}")
+        return False
+    except CobotwireError as error:
+        setting.note_error(call, error)
+    except BaseException as error:
+        record.end(call, "exception", f"{type(error).__name__}: {error}")
+    else:
+        record.end(call, "value", value)
+    return True

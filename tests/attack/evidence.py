@@ -1,0 +1,228 @@
+"""What the line delivered, and which documented limit of the protocol explains a wrong result."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from attack.arm import Made, Span, result_of
+from attack.line import Delivered
+from attack.record import Call, Record
+from cobotwire.codec.interface import Codec
+from cobotwire.protocol.errors import ProtocolError
+from cobotwire.session.policy import GRACE_SECONDS
+
+# The limits, by the names that the table's page explains.
+DAMAGE = "damage"
+ECHO = "echo"
+COPY = "copy"
+TOO_LATE = "too late"
+# A byte may be delivered this long before the client's clock says that the request was handed over.
+SLACK = 0.02
+# While no client is connected, bytes wait for the next one.
+KEPT_SECONDS = 3.0
+
+
+class Found(NamedTuple):
+    """A frame in the delivered bytes.
+
+    Attributes:
+        at: when its last byte was delivered.
+        spans: what its bytes are, each with whether it is a further copy of a reply.
+        torn: whether bytes between its own were lost when the line broke.
+    """
+
+    at: float
+    spans: list[tuple[Span, bool]]
+    torn: bool
+
+
+class Evidence:
+    """The bytes that the line delivered, each with its time and its origin."""
+
+    def __init__(
+        self,
+        codec: Codec,
+        spans: list[Span],
+        delivered: list[Delivered],
+        record: Record,
+        grace: float,
+    ) -> None:
+        self._codec = codec
+        self._grace = grace
+        self._limited: list[tuple[Call, str]] = []
+        self._record = record
+        self._spans: list[tuple[Span, bool]] = []
+        self._places: list[int] = []
+        place, seen = 0, set[int]()
+        for span in spans:
+            self._places.append(place)
+            copy = span.label == "reply" and id(span.made) in seen
+            self._spans.append((span, copy))
+            if span.label == "reply":
+                seen.add(id(span.made))
+            place += len(span.data)
+        sent = b"".join(span.data for span in spans)
+        self._chunks = delivered
+        self._starts: list[int] = []
+        size = 0
+        for chunk in delivered:
+            self._starts.append(size)
+            size += chunk.end - chunk.start
+        self._stream = b"".join(sent[chunk.start : chunk.end] for chunk in delivered)
+
+    def limit_of(self, call: Call, kept: bool) -> str:
+        """Return the limit that explains a wrong result; empty: none does.
+
+        Wrong calls must be given in the order in which they ended: one that took a copy leaves its
+        own reply to a later one.
+
+        ``kept``: whether bytes may have waited for a new connection.
+        """
+        limit = self._limit_of_query(call, kept) if call.query else self._limit_of_ack(call)
+        if limit:
+            self._limited.append((call, limit))
+        return limit
+
+    def _limit_of_query(self, call: Call, kept: bool) -> str:
+        # A call ends with the reply that it takes, so of several like ones that is the last one.
+        last = self._last_handed(call.request, call.ended)
+        for since in (last - SLACK, call.began - SLACK, call.began - (KEPT_SECONDS * kept)):
+            found = list(self._replies(call, since))
+            if found:
+                return self._limit(found[-1])
+        return ""
+
+    def explain(self, call: Call) -> list[str]:
+        """Return where the result of a call was delivered, and as what."""
+        return [
+            f"delivered at {found.at:.3f}{' torn' if found.torn else ''}: "
+            + ", ".join(self._origin(span, copy) for span, copy in found.spans)
+            for found in self._replies(call, call.began - KEPT_SECONDS)
+        ][-6:]
+
+    def handed_at(self, call: Call) -> float | None:
+        """Return when the call's request was first handed to the system; None: never."""
+        handed = self._record.handed
+        place = bisect_right(handed, (call.began, b""))
+        while place < len(handed) and handed[place][0] <= call.ended:
+            if handed[place][1] == call.request:
+                return handed[place][0]
+            place += 1
+        return None
+
+    def written_at(self, call: Call, handed: float) -> float | None:
+        """Return when the system had taken all of a request; None: never."""
+        taken = self._record.taken
+        place = bisect_right(taken, (handed, b""))
+        while place < len(taken) and taken[place][0] <= call.ended:
+            # Of a request that was taken in pieces, the last piece is its end.
+            if call.request.endswith(taken[place][1]):
+                return taken[place][0]
+            place += 1
+        return None
+
+    def _origin(self, span: Span, copy: bool) -> str:
+        what = "copy" if copy else span.label
+        made = span.made
+        if made is None:
+            return what
+        damaged = " damaged" if made.damaged else ""
+        handed = self._last_handed(made.request, made.at)
+        request = f"{damaged} {made.request.hex()}, sent {handed:.3f}, arrived {made.at:.3f}"
+        return f"{what} of the reply to{request}"
+
+    def _replies(self, call: Call, since: float) -> Iterator[Found]:
+        """Yield the delivered frames that give the result of a call, from a time on."""
+        for found, data in self._frames(since, call.ended):
+            try:
+                value = result_of(self._codec, call.name, data)
+            except ProtocolError:
+                continue
+            if value == call.value:
+                yield found
+
+    def _frames(self, since: float, until: float) -> Iterator[tuple[Found, bytes]]:
+        header = self._codec.table.frame.header
+        times = [chunk.at for chunk in self._chunks]
+        first = bisect_right(times, since)
+        last = bisect_right(times, until)
+        if first == last:
+            return
+        # A frame may have begun before the first of these bytes.
+        start = max(0, self._starts[first] - 40)
+        end = self._starts[last - 1] + self._chunks[last - 1].end - self._chunks[last - 1].start
+        while (start := self._stream.find(header, start, end)) >= 0:
+            size = len(header) + 1 + self._stream[start + len(header)] if start + 2 < end else 0
+            data = self._stream[start : start + size]
+            if size and start + size <= end and self._at(start + size - 1) >= since:
+                yield self._found(start, size), data
+            start += 1
+
+    def _chunk(self, index: int) -> tuple[Delivered, int]:
+        number = bisect_right(self._starts, index) - 1
+        return self._chunks[number], index - self._starts[number]
+
+    def _at(self, index: int) -> float:
+        return self._chunk(index)[0].at
+
+    def _found(self, start: int, size: int) -> Found:
+        places = []
+        for index in range(start, start + size):
+            chunk, inside = self._chunk(index)
+            places.append(chunk.start + inside)
+        numbers = sorted({bisect_right(self._places, place) - 1 for place in places})
+        torn = places[-1] - places[0] != size - 1
+        return Found(self._at(start + size - 1), [self._spans[n] for n in numbers], torn)
+
+    def _limit(self, found: Found) -> str:
+        for span, _ in found.spans:
+            if span.label == "damage":
+                return DAMAGE
+            if span.label == "echo":
+                return ECHO
+        [(span, copy), *others] = found.spans
+        made = span.made
+        if others or found.torn or made is None:
+            return ""
+        if made.damaged:
+            return DAMAGE
+        if found.at - self._last_handed(made.request, made.at) > self._grace:
+            return TOO_LATE
+        if copy:
+            return COPY if self._answered(made) else ""
+        # The call of this reply may have taken another one, by a limit.
+        for call, limit in self._limited:
+            if call.request == made.request and call.began <= made.at <= call.ended:
+                return limit
+        return ""
+
+    def _limit_of_ack(self, call: Call) -> str:
+        """Return the limit that explains an acknowledgement of a request that did not arrive."""
+        for found, data in self._frames(call.began - GRACE_SECONDS, call.ended):
+            try:
+                self._codec.decode("reply", data, of=call.name)
+            except ProtocolError:
+                continue
+            limit = self._limit(found)
+            if limit or any(copy for _, copy in found.spans):
+                return limit or COPY
+        return ""
+
+    def _last_handed(self, request: bytes, before: float) -> float:
+        """Return when a request was last handed to the system before a time; the time: never."""
+        handed = self._record.handed
+        for place in range(bisect_right(handed, (before, b"\xff")) - 1, -1, -1):
+            if handed[place][1] == request:
+                return handed[place][0]
+        return before
+
+    def _answered(self, made: Made) -> bool:
+        """Return whether the call that a reply belongs to got a value."""
+        return any(
+            call.request == made.request
+            and call.ending == "value"
+            and call.began <= made.at <= call.ended
+            for call in self._record.calls
+        )

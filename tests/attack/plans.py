@@ -1,0 +1,88 @@
+"""Plans: runs of a profile, drawn from a seed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from random import Random
+from typing import Literal
+
+from attack.profiles import Clients, Profile
+from cobotwire.simulator.faults import Duplicated, Fault, Late
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One run: everything that its seed decides.
+
+    Attributes:
+        profile: what happens.
+        seed: repeats the draws of the run, not its timing.
+        tcp: whether the line is TCP or a pty.
+        client: blocking or asyncio.
+        codec: native or reference.
+        edition: the edition's package.
+        users: how many threads or tasks share the client.
+        timeout: seconds that each request has.
+        attempts: how often a query is sent.
+        grace: seconds for which late replies are expected; the delays of the line fit into it.
+        seconds: how long users call.
+        calls: how many calls end the run earlier.
+        reopens: whether a broken transport is reopened; otherwise a new client is made.
+    """
+
+    profile: Profile
+    seed: int
+    tcp: bool
+    client: Clients
+    codec: Literal["native", "reference"]
+    edition: Literal["mycobot280", "mycobot"]
+    users: int
+    timeout: float
+    attempts: int
+    grace: float
+    seconds: float
+    calls: int
+    reopens: bool
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """The faults of the profile, with delays that fit into the grace."""
+        return tuple(_scaled(fault, self.grace) for fault in self.profile.faults)
+
+    def __str__(self) -> str:
+        kind = "tcp" if self.tcp else "pty"
+        return (
+            f"profile {self.profile.name}, seed {self.seed}: {kind}, {self.client}, {self.codec}, "
+            f"{self.edition}, {self.users} users, timeout {self.timeout} s x {self.attempts}, "
+            f"grace {self.grace} s" + (", reopens" if self.reopens else "")
+        )
+
+
+def _scaled(fault: Fault, grace: float) -> Fault:
+    if isinstance(fault, Late):
+        jitter = fault.jitter_seconds * grace
+        return replace(fault, seconds=fault.seconds * grace, jitter_seconds=jitter)
+    if isinstance(fault, Duplicated):
+        return replace(fault, seconds=fault.seconds * grace)
+    return fault
+
+
+def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int = 5000) -> Plan:
+    """Draw the plan of a run from its seed."""
+    random = Random(f"{profile.name} {seed}")
+    client = random.choice(profile.clients)
+    return Plan(
+        profile,
+        seed,
+        tcp=random.random() < 0.5,
+        client=client,
+        codec=random.choice(("native", "reference")),
+        edition=random.choice(("mycobot280", "mycobot280", "mycobot")),
+        users=random.randint(2, 8) if profile.interrupts else random.randint(1, 8),
+        timeout=random.choice((0.2, 0.3, 0.5)),
+        attempts=random.choice((1, 2, 3)),
+        grace=random.choice((0.3, 1.0)),
+        seconds=profile.seconds if seconds is None else seconds,
+        calls=calls,
+        reopens=client == "blocking" and random.random() < 0.5,
+    )

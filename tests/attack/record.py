@@ -1,0 +1,125 @@
+"""What users and transports write down during a run; the judge reads it afterwards."""
+
+from __future__ import annotations
+
+import itertools
+import socket
+import threading
+import time
+from typing import Any, Literal, NamedTuple
+
+from cobotwire.transport import OpenedTransport, open_transport
+from cobotwire.transport.descriptor import DescriptorTransport
+
+Ending = Literal["value", "error", "interrupted", "exception", "lost"]
+SMALL_BUFFER = 1024
+
+
+class Call(NamedTuple):
+    """A call that has ended, or was given up as lost.
+
+    Attributes:
+        number: the place in the order in which calls began.
+        user: the thread or task that called.
+        name: the command.
+        request: the bytes of its request.
+        ack_within: the seconds that it waits for an acknowledgement; None: it does not.
+        query: whether it has a reply.
+        began: when it began.
+        ended: when it ended.
+        ending: how it ended.
+        value: its result, or the text of the error.
+    """
+
+    number: int
+    user: int
+    name: str
+    request: bytes
+    ack_within: float | None
+    query: bool
+    began: float
+    ended: float
+    ending: Ending
+    value: Any
+
+    def __str__(self) -> str:
+        took = f"{self.began:.3f} to {self.ended:.3f}"
+        return f"#{self.number} user {self.user} {self.name} {took} s: {self.ending} {self.value!r}"
+
+
+class Record:
+    """Everything that the side of the client knows about a run. Threads may share it.
+
+    Attributes:
+        calls: the calls that have ended.
+        running: the calls that have not, by user.
+        handed: when which bytes were handed to the system.
+        taken: when the system took the rest of those bytes, and how many bytes it has taken.
+    """
+
+    def __init__(self) -> None:
+        self.calls: list[Call] = []
+        self.running: dict[int, Call] = {}
+        self.handed: list[tuple[float, bytes]] = []
+        self.taken: list[tuple[float, bytes]] = []
+        self.bytes_taken = 0
+        self.numbers = itertools.count(1)
+        self.lock = threading.Lock()
+
+    def begin(
+        self, user: int, name: str, request: bytes, ack_within: float | None, query: bool
+    ) -> Call:
+        """Note that a call begins."""
+        now = time.monotonic()
+        call = Call(
+            next(self.numbers), user, name, request, ack_within, query, now, now, "lost", None
+        )
+        self.running[user] = call
+        return call
+
+    def end(self, call: Call, ending: Ending, value: Any) -> None:
+        """Note that a call has ended, unless it was given up as lost."""
+        if self.running.pop(call.user, None) is not call:
+            return
+        self.calls.append(call._replace(ended=time.monotonic(), ending=ending, value=value))
+
+    def give_up(self) -> None:
+        """Count the calls that still run as lost."""
+        for call in tuple(self.running.values()):
+            self.end(call, "lost", None)
+
+
+def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> OpenedTransport:
+    """Open a real transport whose writes are recorded as they are handed to the system.
+
+    ``small``: give a socket the smallest buffer, so that a peer that reads nothing stalls it.
+    """
+    transport = open_transport(url, baudrate)
+    assert isinstance(transport, DescriptorTransport), "ports and sockets are"
+    send, connect = transport._send, transport._connect
+
+    def observed(data: bytes) -> int:
+        record.handed.append((time.monotonic(), data))
+        size = send(data)
+        record.bytes_taken += size
+        if size == len(data):
+            record.taken.append((time.monotonic(), data))
+        return size
+
+    def connected() -> int:
+        descriptor = connect()
+        _shrink(transport, descriptor)
+        return descriptor
+
+    own = vars(transport)
+    own["_send"] = observed
+    if small:
+        own["_connect"] = connected
+        _shrink(transport, transport.fileno() or -1)
+    return transport
+
+
+def _shrink(transport: OpenedTransport, descriptor: int) -> None:
+    if transport.kind == "socket":
+        with socket.socket(fileno=socket.dup(descriptor)) as end:
+            end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SMALL_BUFFER)

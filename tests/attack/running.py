@@ -1,0 +1,112 @@
+"""Run plans: one after another in this process, or in several processes for a limited time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from functools import partial
+from multiprocessing import get_context
+from random import Random
+from typing import Any, Protocol
+
+from attack.arm import HostilePeer
+from attack.blocking import run_threads
+from attack.judge import Judge, Scene
+from attack.line import HostileLine
+from attack.plans import Plan, plan
+from attack.profiles import PROFILES
+from attack.setting import Setting, table_of
+from attack.tally import Tally
+from attack.tasks import run_tasks
+from cobotwire import codec as codecs
+from stalls import StallMeter
+
+Event = tuple[Plan, Tally]
+
+
+class Closable(Protocol):
+    """The shared client of a run."""
+
+    def close(self) -> None:
+        """Close the client; calls end with an error."""
+
+
+def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
+    """Run a plan and judge it; ``change`` makes another client of the edition's."""
+    codec = codecs.load(table_of(chosen), "reference")
+    peer = HostilePeer(codec, chosen.faults, chosen.seed)
+    line = HostileLine(peer, codec, tcp=chosen.tcp, small=chosen.profile.stalls)
+    with StallMeter() as meter, line:
+        setting = Setting(chosen, line.url)
+        if change is not None:
+            setting.client = change(setting.client)
+        run: Callable[..., None] = run_threads if chosen.client == "blocking" else run_tasks
+        run(setting, partial(_happen, line, setting), partial(_settle, line, setting))
+    return Judge(Scene(setting, line, peer, meter.late)).judge()
+
+
+def _settle(line: HostileLine, setting: Setting) -> None:
+    """Wait for what was written; closing would lose it."""
+    if setting.plan.profile.keeps_bytes:
+        line.settle(setting.record.bytes_taken)
+
+
+def _happen(line: HostileLine, setting: Setting, shared: Closable) -> None:
+    """Break, stall or close until the time of the run is over."""
+    profile, random = setting.plan.profile, Random(f"{setting.plan.seed} line")
+    until = time.monotonic() + setting.plan.seconds
+    while not setting.over and time.monotonic() < until:
+        if profile.breaks:
+            time.sleep(profile.breaks * random.uniform(0.5, 1.5))
+            line.unplug(resets=random.random() < 0.3)
+            time.sleep(random.uniform(0.005, 0.1))
+            line.replug()
+        elif profile.closes:
+            time.sleep(profile.closes * random.uniform(0.5, 1.5))
+            shared.close()
+        elif profile.stalls:
+            time.sleep(random.uniform(0.1, 0.4))
+            line.stalled = True
+            line.fill(random.randint(10, 200))
+            setting.flooding = True
+            time.sleep(random.uniform(0.8, 2.2))
+            setting.flooding = line.stalled = False
+        else:
+            time.sleep(0.02)
+
+
+def campaign(
+    profiles: Sequence[str], seed: int, seconds: float, calls: int | None, processes: int
+) -> Iterator[Event]:
+    """Yield the tallies of plans until the seconds or the calls are over.
+
+    Profiles take turns by their weights, so that each gets its share of the time.
+    """
+    until, made = time.monotonic() + seconds, 0
+    plans = _plans(profiles, seed)
+    pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn"))
+    running: dict[Future[Tally], Plan] = {}
+    with pool:
+        while running or (time.monotonic() < until and (calls is None or made < calls)):
+            while len(running) < processes and time.monotonic() < until:
+                if calls is not None and made >= calls:
+                    break
+                chosen = next(plans)
+                running[pool.submit(attack, chosen)] = chosen
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                tally = future.result()
+                made += tally.calls
+                yield running.pop(future), tally
+
+
+def _plans(names: Sequence[str], seed: int) -> Iterator[Plan]:
+    """Yield plans: the profile that had the least time for its weight is next."""
+    had = dict.fromkeys(names, 0.0)
+    while True:
+        name = min(had, key=lambda name: had[name] / PROFILES[name].weight)
+        chosen = plan(PROFILES[name], seed)
+        had[name] += chosen.seconds
+        seed += 1
+        yield chosen

@@ -1,0 +1,80 @@
+"""What all users of a run share: the client's class, the record, and when the run is over."""
+
+from __future__ import annotations
+
+import itertools
+from importlib import import_module
+from random import Random
+from typing import Any
+
+from attack.calls import Drawn, draw
+from attack.plans import Plan
+from attack.record import Call, Record
+from cobotwire import CobotwireError, ProtocolError, ReplyTimeout, RetryPolicy
+from cobotwire import codec as codecs
+from cobotwire.protocol.table import Table
+from cobotwire.transport.descriptor import WRITE_SECONDS
+
+CLASSES = {
+    ("mycobot280", "blocking"): "MyCobot280",
+    ("mycobot280", "asyncio"): "AsyncMyCobot280",
+    ("mycobot", "blocking"): "MyCobot",
+    ("mycobot", "asyncio"): "AsyncMyCobot",
+}
+HONEST = (ReplyTimeout, ProtocolError)
+
+
+class Setting:
+    """The plan of a run, its record, and what users need to call.
+
+    Attributes:
+        over: whether users are to stop.
+        flooding: whether users send only one-way requests, to fill a line that nobody reads.
+        longest: seconds that a call can take by its rules, the wait for its turn included.
+    """
+
+    def __init__(self, plan: Plan, url: str) -> None:
+        self.plan = plan
+        self.url = url
+        self.record = Record()
+        self.over = False
+        self.flooding = False
+        edition = import_module(f"cobotwire.editions.{plan.edition}")
+        self.client: Any = getattr(edition, CLASSES[plan.edition, plan.client])
+        self.table = table_of(plan)
+        self.baudrate = self.table.baudrate
+        self.codec = codecs.load(self.table, "reference")
+        self.retry = RetryPolicy(attempts=plan.attempts, shortest_attempt=0.05, grace=plan.grace)
+        turn = plan.timeout + plan.grace
+        if plan.profile.stalls:
+            turn += WRITE_SECONDS
+        self.longest = plan.users * turn + 1.0
+        self._numbers = itertools.count(1)
+
+    def draw(self, random: Random) -> Drawn:
+        """Draw the next call of a user."""
+        drawn = draw(random, self.table, next(self._numbers), self._one_way)
+        return drawn._replace(ack_within=None) if self.flooding else drawn
+
+    @property
+    def _one_way(self) -> float:
+        return 1.0 if self.flooding else self.plan.profile.one_way
+
+    def begin(self, user: int, drawn: Drawn) -> Call:
+        """Note that a call begins; end the run if it is the last one."""
+        frame = self.codec.encode(drawn.name, "request", drawn.arguments)
+        query = self.table.command(drawn.name).answers
+        call = self.record.begin(user, drawn.name, frame, drawn.ack_within, query)
+        self.over |= call.number >= self.plan.calls
+        return call
+
+    def note_error(self, call: Call, error: CobotwireError) -> None:
+        """Note an error that is not of the transport."""
+        text = f"{type(error).__name__}: {error}"
+        self.record.end(call, "error" if isinstance(error, HONEST) else "exception", text)
+
+
+def table_of(plan: Plan) -> Table:
+    """Return the table of the plan's edition."""
+    table: Table = import_module(f"cobotwire.editions.{plan.edition}").TABLE
+    return table

@@ -1,0 +1,143 @@
+"""Each column counts what it says: broken clients show up in theirs, and a correct one in none."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from attack.plans import Plan, plan
+from attack.profiles import PROFILES
+from attack.running import attack
+from attack.tally import FORBIDDEN, Tally
+from cobotwire.session import exchange
+
+
+def chosen(profile: str = "benign", **changes: Any) -> Plan:
+    """Return the plan of a short run of the blocking client."""
+    usual: dict[str, Any] = {
+        "client": "blocking",
+        "codec": "native",
+        "edition": "mycobot280",
+        "users": 2,
+        "timeout": 0.3,
+        "attempts": 2,
+        "grace": 0.3,
+        "seconds": 0.4,
+        "calls": 150,
+    }
+    return replace(plan(PROFILES[profile], 1), **{**usual, **changes})
+
+
+def counts(tally: Tally) -> list[str]:
+    """Return the forbidden columns that are not 0."""
+    return [name for name in FORBIDDEN if getattr(tally, name)]
+
+
+@pytest.mark.parametrize("tcp", [False, True], ids=["pty", "tcp"])
+@pytest.mark.parametrize("client", ["blocking", "asyncio"])
+def test_correct_client_on_good_line_is_right_in_each_call(client: str, tcp: bool) -> None:
+    tally = attack(chosen(client=client, tcp=tcp))
+    assert tally.right == tally.calls >= 100
+    assert counts(tally) == []
+
+
+def test_value_of_another_request_is_silently_wrong() -> None:
+    def change(client: Any) -> Any:
+        class Stale(client):  # type: ignore[misc]
+            last = 0
+
+            def get_encoder(self, joint: int) -> int:
+                before, Stale.last = Stale.last, super().get_encoder(joint)
+                return before
+
+        return Stale
+
+    assert counts(attack(chosen(), change)) == ["wrong"]
+
+
+def test_late_reply_that_is_not_waited_for_is_silently_wrong(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(exchange.Exchange, "_free_at", lambda self, pending, now: now)
+    tally = attack(chosen("late", users=3, seconds=2.0, calls=500))
+    assert "wrong" in counts(tally)
+
+
+def test_setter_that_sends_nothing_is_silently_wrong() -> None:
+    def change(client: Any) -> Any:
+        class Mute(client):  # type: ignore[misc]
+            def set_color(self, *arguments: Any, **options: Any) -> None:
+                pass
+
+        return Mute
+
+    assert counts(attack(chosen(), change)) == ["wrong"]
+
+
+def test_motion_that_is_sent_twice_is_a_duplicate() -> None:
+    def change(client: Any) -> Any:
+        class Twice(client):  # type: ignore[misc]
+            def send_angle(self, *arguments: Any, **options: Any) -> None:
+                super().send_angle(*arguments)
+                super().send_angle(*arguments, **options)
+
+        return Twice
+
+    assert counts(attack(chosen(), change)) == ["duplicates"]
+
+
+def test_motion_that_nobody_called_is_merged() -> None:
+    def change(client: Any) -> Any:
+        class Own(client):  # type: ignore[misc]
+            def stop(self, **options: Any) -> None:
+                super().send_angles([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 77)
+                super().stop(**options)
+
+        return Own
+
+    assert counts(attack(chosen(), change)) == ["merged"]
+
+
+def test_undocumented_exception_is_counted() -> None:
+    def change(client: Any) -> Any:
+        class Raising(client):  # type: ignore[misc]
+            def is_power_on(self) -> bool:
+                raise AssertionError("not for users")
+
+        return Raising
+
+    assert counts(attack(chosen(), change)) == ["exceptions"]
+
+
+def test_call_that_ends_after_its_deadline_is_late() -> None:
+    def change(client: Any) -> Any:
+        class Slow(client):  # type: ignore[misc]
+            def get_joint_min_angle(self, joint: int) -> float:
+                value: float = super().get_joint_min_angle(joint)
+                time.sleep(0.6)
+                return value
+
+        return Slow
+
+    assert "late" in counts(attack(chosen(users=1, seconds=1.0), change))
+
+
+def test_call_that_never_ends_is_lost() -> None:
+    def change(client: Any) -> Any:
+        class Waiting(client):  # type: ignore[misc]
+            def get_servo_data(self, joint: int, register: int) -> int:
+                time.sleep(60.0)
+                return 0
+
+        return Waiting
+
+    assert counts(attack(chosen(users=1, seconds=0.3), change)) == ["lost"]
+
+
+def test_damaged_value_is_recognised_as_a_limit() -> None:
+    tally = attack(chosen("harsh", users=1, seconds=3.0, calls=1000, attempts=3))
+    assert tally.honest or tally.limited
+    assert tally.wrong == 0
