@@ -18,7 +18,7 @@ from attack.running import attack
 from attack.table import markdown, text
 from attack.tally import Tally
 
-SECONDS = 0.7
+SECONDS = 0.5
 PROCESSES = 4
 RUNS = [(name, client) for name, profile in PROFILES.items() for client in profile.clients]
 # A new asyncio client does not wait for late replies to the one before it.
