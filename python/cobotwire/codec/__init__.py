@@ -1,4 +1,6 @@
-"""Choose the codec: the Rust codec if its binary is installed, else the Python reference.
+"""Choose the codec: the Rust codec if its binary can be loaded, else the Python reference.
+
+The binary is not loaded in a subinterpreter, where the classes of its errors would be foreign.
 
 The environment variable ``COBOTWIRE_CODEC`` (``reference`` or ``native``) forces one.
 """
@@ -15,13 +17,14 @@ from cobotwire.protocol.table import Table
 
 VARIABLE = "COBOTWIRE_CODEC"
 CodecName = Literal["reference", "native"]
+NOT_INSTALLED = "the native codec is not installed"
 
 
 def chosen() -> CodecName:
     """Return the name of the codec in use.
 
     Raises:
-        UsageError: ``COBOTWIRE_CODEC`` names no codec, or its binary is not installed.
+        UsageError: ``COBOTWIRE_CODEC`` names no codec, or its binary cannot be loaded.
     """
     forced = os.environ.get(VARIABLE, "")
     if forced not in ("", "reference", "native"):
@@ -35,21 +38,28 @@ def chosen() -> CodecName:
     return "reference"
 
 
-@lru_cache(maxsize=1)
 def native_available() -> bool:
     """Return whether the Rust codec's binary can be loaded."""
+    return not _obstacle()
+
+
+@lru_cache(maxsize=1)
+def _obstacle() -> str:
+    """Return why the Rust codec's binary cannot be loaded; empty if it can."""
     try:
         import cobotwire.codec.native  # noqa: F401  (imported only to see whether it loads)
-    except ImportError:
-        return False
-    return True
+    except ModuleNotFoundError:
+        return NOT_INSTALLED
+    except ImportError as error:
+        return f"the native codec cannot be loaded ({error})"
+    return ""
 
 
 def load(table: Table, name: CodecName | None = None) -> Codec:
     """Return a codec for an edition: the named one, else the one in use.
 
     Raises:
-        UsageError: there is no codec of that name, or its binary is not installed.
+        UsageError: there is no codec of that name, or its binary cannot be loaded.
     """
     if name is None:
         name = chosen()
@@ -67,5 +77,5 @@ def load(table: Table, name: CodecName | None = None) -> Codec:
 
 
 def _no_binary(what: str) -> UsageError:
-    message = f"{what}: the native codec is not installed; use 'reference'"
+    message = f"{what}: {_obstacle() or NOT_INSTALLED}; use 'reference'"
     return UsageError(what, "native", "reference", message=message)

@@ -15,6 +15,7 @@ mod events;
 mod frame;
 mod framer;
 mod given;
+mod interpreter;
 mod memory;
 mod names;
 mod objects;
@@ -25,15 +26,12 @@ mod words;
 // A free-threaded interpreter enables its lock when it loads this module, which is not tested
 // there.
 #[pymodule(gil_used = true)]
-mod _native {
-    #[pymodule_export]
-    use crate::bulk::NativeColumnReader;
-    #[pymodule_export]
-    use crate::codec::NativeCodec;
-    #[pymodule_export]
-    use crate::frame::NativeFrame;
-    #[pymodule_export]
-    use crate::framer::NativeFramer;
-    #[pymodule_export]
-    use crate::memory::Memory;
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    // First, so that no class is made in a subinterpreter.
+    interpreter::check_main(module.py())?;
+    module.add_class::<memory::Memory>()?;
+    module.add_class::<codec::NativeCodec>()?;
+    module.add_class::<bulk::NativeColumnReader>()?;
+    module.add_class::<frame::NativeFrame>()?;
+    module.add_class::<framer::NativeFramer>()
 }
