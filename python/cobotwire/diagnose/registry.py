@@ -12,7 +12,7 @@ from cobotwire.diagnose.panic import Panic
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.servo import ServoBus, ServoPacket
 
-# The classes, the most important first: in this order they are summarized, and give advice.
+# The classes, the most important first: summaries and advice list them in this order.
 CLASSES: tuple[type[Finding], ...] = (
     Panic,
     Boot,
@@ -27,8 +27,8 @@ CLASSES: tuple[type[Finding], ...] = (
     Unrecognised,
 )
 
-# In this order they see a place; the first that finds something there, or waits, decides.
-# ``garbage.classify`` names the bytes in which none of them finds anything.
+# They are called in this order; the first that finds something, or needs more bytes, decides.
+# ``garbage.classify`` handles the bytes in which none of them finds anything.
 RECOGNISERS: tuple[type[Recogniser], ...] = (Frames, DamagedFrames, ServoBus, NulRuns, Firmware)
 
 __all__ = [

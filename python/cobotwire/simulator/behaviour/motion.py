@@ -88,7 +88,7 @@ def is_in_position(arm: ArmState, now: float, request: m.IsInPosition) -> m.IsIn
     return m.IsInPositionReply(reached=reached)
 
 
-# While the arm brakes, it moves.
+# A braking arm still moves.
 query(m.IsMoving, lambda arm, now, request: arm.angles.moving(now))
 
 
