@@ -181,7 +181,8 @@ class NativeFrame:
 class NativeColumnReader:
     """Decodes a stream into columns; see :class:`cobotwire.codec.interface.ColumnReader`.
 
-    Made by :meth:`NativeCodec.column_reader`. Not for use by two threads at once.
+    Made by :meth:`NativeCodec.column_reader`. While a thread uses it, every use by another one
+    raises UsageError and changes nothing.
     """
 
     def feed(self, data: Data) -> Columns:

@@ -64,7 +64,11 @@ class Framer(Protocol):
 
 
 class ColumnReader(Protocol):
-    """Decodes a stream into columns, chunk by chunk; the rows do not depend on the chunks."""
+    """Decodes a stream into columns, chunk by chunk; the rows do not depend on the chunks.
+
+    Several threads may use it one after another, for instance with a lock. While a thread uses it,
+    every use by another one raises UsageError and changes nothing.
+    """
 
     def feed(self, data: Data) -> Columns:
         """Take bytes; return the rows and noise that became certain since the last call.

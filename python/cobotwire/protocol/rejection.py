@@ -45,6 +45,12 @@ def reject_address(given: Any, addresses: tuple[int, ...]) -> UsageError:
     return UsageError("address", given, allowed)
 
 
+def reject_shared(what: str) -> UsageError:
+    """Return the error for an object that another thread uses at the same time."""
+    message = f"another thread uses this {what}; give each thread its own, or share a lock"
+    return UsageError(what.replace(" ", "_"), message=message)
+
+
 def reject_value(
     field: Field, case: Case, element: int, fault: ValueFault, value: Any
 ) -> UsageError:

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyMemoryView, PySlice, PyTuple};
 
 use crate::edition::Edition;
+use crate::exclusive::Exclusive;
 use crate::framer::{copied, counters};
 use crate::memory::{Memory, large_pages};
 use crate::names::Names;
@@ -101,19 +102,20 @@ pub fn scan<'py>(
 }
 
 /// Decodes a stream, chunk by chunk, into columns.
-#[pyclass(module = "cobotwire._native")]
+#[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeColumnReader {
     edition: Arc<Edition>,
     listening: Listening,
     numbers: Numbers,
-    core: ColumnReader,
+    core: Exclusive<ColumnReader>,
 }
 
 impl NativeColumnReader {
     pub fn new(edition: Arc<Edition>, listening: Listening, raw: bool) -> Self {
         let numbers = if raw { Numbers::Raw } else { Numbers::Physical };
+        let core = Self::reader(&edition, listening, numbers, None);
         Self {
-            core: Self::reader(&edition, listening, numbers, None),
+            core: Exclusive::new("column reader", core),
             edition,
             listening,
             numbers,
@@ -132,27 +134,28 @@ impl NativeColumnReader {
 
     /// Return the columns of a whole stream.
     pub fn all_of<'py>(
-        mut self,
+        &self,
         data: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let mut core = self.core.get(data.py())?;
         if let Some(out) = out {
             let old = old_columns(&self.edition, out)?;
-            self.core = Self::reader(&self.edition, self.listening, self.numbers, Some(old));
+            *core = Self::reader(&self.edition, self.listening, self.numbers, Some(old));
         }
-        feed(&mut self.core, data)?;
-        self.core.flush();
-        self.given(data.py())
+        feed(&mut *core, data)?;
+        core.flush();
+        self.given(data.py(), &mut core)
     }
 
     /// Return what was found since the last call, as Python's `Columns`.
-    fn given<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn given<'py>(&self, py: Python<'py>, core: &mut ColumnReader) -> PyResult<Bound<'py, PyAny>> {
         let names = Names::get(py)?;
         let Columns {
             mut rows,
             rejected,
             noise,
-        } = self.core.take();
+        } = core.take();
         rows.retain(|rows| !rows.offsets.is_empty());
         // Sort in the order of the table, as the reference does.
         rows.sort_by_key(|rows| {
@@ -165,7 +168,7 @@ impl NativeColumnReader {
         }
         let table = self.edition.table.bind(py);
         let rejected = Bound::new(py, Memory::offsets(rejected))?;
-        let tally = counters(py, self.core.tally())?;
+        let tally = counters(py, core.tally())?;
         names
             .columns
             .bind(py)
@@ -193,20 +196,22 @@ impl NativeColumnReader {
 #[pymethods]
 impl NativeColumnReader {
     /// Feed bytes; return the rows and noise that are certain since the last call.
-    fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        feed(&mut self.core, data)?;
-        self.given(data.py())
+    fn feed<'py>(&self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let mut core = self.core.get(data.py())?;
+        feed(&mut *core, data)?;
+        self.given(data.py(), &mut core)
     }
 
     /// Refute the candidate that waits; return the remaining rows and noise.
-    fn flush<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.core.flush();
-        self.given(py)
+    fn flush<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let mut core = self.core.get(py)?;
+        core.flush();
+        self.given(py, &mut core)
     }
 
     /// The number of bytes fed that are not accounted for yet.
     #[getter]
-    fn pending(&self) -> usize {
-        self.core.pending()
+    fn pending(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(self.core.get(py)?.pending())
     }
 }

@@ -47,6 +47,11 @@ pub fn bad_direction(given: &Bound<'_, PyAny>) -> PyErr {
     raised(Names::get(py).and_then(|names| names.reject_direction.bind(py).call1((given,))))
 }
 
+/// Return the error of an object that another thread uses.
+pub fn shared(py: Python<'_>, name: &str) -> PyErr {
+    raised(Names::get(py).and_then(|names| names.reject_shared.bind(py).call1((name,))))
+}
+
 /// Return the error of an address that the frame format does not have.
 pub fn bad_address(given: &Bound<'_, PyAny>, addresses: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();

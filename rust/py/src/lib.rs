@@ -12,6 +12,7 @@ mod convert;
 mod edition;
 mod errors;
 mod events;
+mod exclusive;
 mod frame;
 mod framer;
 mod given;

@@ -21,6 +21,7 @@ pub struct Names {
     pub reject_value: Py<PyAny>,
     pub reject_raw: Py<PyAny>,
     pub reject_frame: Py<PyAny>,
+    pub reject_shared: Py<PyAny>,
     /// `operator.index`
     pub index: Py<PyAny>,
     pub float: Py<PyAny>,
@@ -74,6 +75,7 @@ impl Names {
             reject_value: from("cobotwire.protocol.rejection", "reject_value")?,
             reject_raw: from("cobotwire.protocol.rejection", "reject_raw")?,
             reject_frame: from("cobotwire.protocol.rejection", "reject_frame")?,
+            reject_shared: from("cobotwire.protocol.rejection", "reject_shared")?,
             index: from("operator", "index")?,
             float: from("builtins", "float")?,
             bool: py.get_type::<PyBool>().into_any().unbind(),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from threading import RLock
 from typing import Any
 
 from cobotwire.codec.columns import Columns, Rows, Scan
@@ -11,6 +13,7 @@ from cobotwire.codec.events import Event, Frame, Noise
 from cobotwire.codec.interface import Data
 from cobotwire.codec.reference.framer import ReferenceFramer
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.rejection import reject_shared
 from cobotwire.protocol.table import Direction, Field, Table, Variant
 
 # The integer types of raw columns with their bounds: smaller before larger, unsigned before signed.
@@ -33,19 +36,38 @@ class ReferenceColumnReader:
         self._framer = framer
         self._raw = raw
         self._noise = Noises()
+        # Reentrant: a thread can go on even if an interrupt kept it from releasing the lock.
+        self._in_use = RLock()
 
     @property
     def pending(self) -> int:
         """The number of fed bytes that are not accounted for yet."""
-        return self._framer.pending
+        with self._exclusively():
+            return self._framer.pending
 
     def feed(self, data: Data) -> Columns:
         """Take bytes; return the rows and noise that became certain since the last call."""
-        return self._columns(self._framer.feed(data))
+        with self._exclusively():
+            return self._columns(self._framer.feed(data))
 
     def flush(self) -> Columns:
         """Stop waiting for more bytes; return the remaining rows and noise."""
-        return self._columns(self._framer.flush(), at_end=True)
+        with self._exclusively():
+            return self._columns(self._framer.flush(), at_end=True)
+
+    @contextmanager
+    def _exclusively(self) -> Iterator[None]:
+        """Hold the reader for one call.
+
+        Raises:
+            UsageError: another thread has it.
+        """
+        if not self._in_use.acquire(blocking=False):
+            raise reject_shared("column reader")
+        try:
+            yield
+        finally:
+            self._in_use.release()
 
     def all_of(self, data: Data) -> Columns:
         """Return the columns of a stream."""
