@@ -1,0 +1,182 @@
+"""Ctrl-C at any line of a call neither delays the calls of other threads nor those that follow."""
+
+from __future__ import annotations
+
+import linecache
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from types import FrameType
+from typing import Any
+
+import pytest
+
+from cobotwire import MyCobot
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.simulator import PtyServer, SimulatedArm
+from stalls import StallMeter
+
+ROOMS = ("client", "session", "transport", "codec/reference")
+TIMEOUT = 0.4
+# What the others may take besides: time to notice that the leader is gone, and to take over.
+LATE = TIMEOUT + 0.1
+
+
+class InterruptAt:
+    """A trace function that raises KeyboardInterrupt at the n-th line of our own code.
+
+    It leaves out the lines at which Python handles no signal, since nothing is called there: a
+    ``try``, and the line of a ``with`` statement that Python reports again before it leaves the
+    block. An exception there would skip ``__exit__``, which a signal cannot.
+    """
+
+    def __init__(self, number: int) -> None:
+        self._left = number
+        self._lines: dict[FrameType, int] = {}
+
+    @property
+    def reached(self) -> bool:
+        return self._left <= 0
+
+    def __call__(self, frame: FrameType, event: str, argument: Any) -> Any:
+        if not any(f"cobotwire/{room}/" in frame.f_code.co_filename for room in ROOMS):
+            return None
+        if event == "line" and not self._calls_nothing(frame):
+            self._left -= 1
+            if self._left == 0:
+                raise KeyboardInterrupt
+        return self
+
+    def _calls_nothing(self, frame: FrameType) -> bool:
+        line, before = frame.f_lineno, self._lines.get(frame, 0)
+        self._lines[frame] = line
+        text = linecache.getline(frame.f_code.co_filename, line).strip()
+        return text == "try:" or (before > line and text.startswith("with "))
+
+
+class OtherThreads:
+    """Threads that call all the time; ``slowest`` is the longest time of a call, in seconds."""
+
+    def __init__(self, arm: MyCobot, number: int) -> None:
+        self.slowest = 0.0
+        self.calls = 0
+        self.wrong: list[object] = []
+        self._over = False
+        self._threads = [
+            # Their replies repeat the joint, so no call is held for a late reply to another one.
+            threading.Thread(target=self._call, args=(arm, joint))
+            for joint in range(1, number + 1)
+        ]
+
+    def __enter__(self) -> OtherThreads:
+        for thread in self._threads:
+            thread.start()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._over = True
+        for thread in self._threads:
+            thread.join()
+
+    def _call(self, arm: MyCobot, joint: int) -> None:
+        while not self._over:
+            started = time.monotonic()
+            try:
+                value = arm.get_joint_max_angle(joint)
+            except Exception as error:
+                self.wrong.append(error)
+            else:
+                if value != 165.0:
+                    self.wrong.append(value)
+            self.slowest = max(self.slowest, time.monotonic() - started)
+            self.calls += 1
+            time.sleep(0.002)
+
+
+def interrupted(call: Callable[[], object], number: int) -> bool:
+    """Make a call with an interrupt at its n-th line; return whether it has that many lines."""
+    tracer = InterruptAt(number)
+    try:
+        sys.settrace(tracer)
+        call()
+        # An interrupt at the last line comes only now.
+        time.sleep(0)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        sys.settrace(None)
+    return tracer.reached
+
+
+CALLS: dict[str, Callable[[MyCobot], object]] = {
+    "a query": lambda arm: arm.get_joint_min_angle(6),
+    "a one-way request": lambda arm: arm.set_color(1, 2, 3),
+    "listening": lambda arm: arm.listen(0.001),
+}
+
+
+class Lines:
+    """The numbers of the lines to interrupt, until calls end before them.
+
+    Which lines a call runs depends on the other threads, so one short call is not the end.
+    """
+
+    def __init__(self) -> None:
+        self.reached = 0
+        self._missed = 0
+
+    def __iter__(self) -> Iterator[int]:
+        number = 0
+        while self._missed < 20:
+            number += 1
+            yield number
+
+    def note(self, reached: bool) -> None:
+        """Note whether the last call ran as far as its number."""
+        self.reached += reached
+        self._missed = 0 if reached else self._missed + 1
+
+
+@pytest.mark.parametrize("codec", ["native", "reference"])
+@pytest.mark.parametrize("name", CALLS)
+def test_interrupt_at_any_line_delays_no_other_call(name: str, codec: Any) -> None:
+    with (
+        PtyServer(SimulatedArm(TABLE)) as server,
+        MyCobot(server.url, timeout=TIMEOUT, codec=codec) as arm,
+        OtherThreads(arm, 3) as others,
+    ):
+        late: list[tuple[int, float]] = []
+        lines = Lines()
+        for number in lines:
+            others.slowest = 0.0
+            with StallMeter() as meter:
+                lines.note(interrupted(lambda: CALLS[name](arm), number))
+                before = others.calls
+                # Until each of them has ended the call that was under way, and made another one.
+                while others.calls < before + 6 and others.slowest < 5:
+                    time.sleep(0.001)
+            if others.slowest > LATE + meter.longest:
+                late.append((number, others.slowest))
+    assert lines.reached > 10, "the call has lines to interrupt"
+    assert not late, f"{len(late)} of {lines.reached} interrupts delayed others"
+    assert not others.wrong
+
+
+@pytest.mark.parametrize("codec", ["native", "reference"])
+def test_calls_after_an_interrupt_are_as_fast_as_before(codec: Any) -> None:
+    with (
+        PtyServer(SimulatedArm(TABLE)) as server,
+        MyCobot(server.url, timeout=TIMEOUT, codec=codec) as arm,
+    ):
+        lines, slow = Lines(), []
+        for number in lines:
+            lines.note(interrupted(lambda: arm.get_joint_min_angle(6), number))
+            with StallMeter() as meter:
+                started = time.monotonic()
+                assert arm.get_joint_max_angle(1) == 165.0
+                seconds = time.monotonic() - started
+            if seconds > 0.05 + meter.longest:
+                slow.append((number, seconds))
+    assert lines.reached > 20
+    assert not slow
