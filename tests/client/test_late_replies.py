@@ -71,7 +71,8 @@ def test_reply_50_ms_late_is_not_used_for_another_joint(slow_arm: SlowArm) -> No
             # On a busy machine the call may time out, but it never returns a wrong value.
             with suppress(ReplyTimeout):
                 assert arm.get_encoder(joint) == joint
-        assert time.monotonic() - started < 0.9, "the late reply ends the hold at once"
+        # It holds them as long as a copy of it could come: some lines double replies.
+        assert 0.9 < time.monotonic() - started < 1.9
     directions = [(t.direction, t.data) for t in traffic]
     assert directions.index(("received", _reply(1))) < directions.index(
         ("sent", bytes.fromhex("FE FE 03 3B 02 FA"))
