@@ -95,7 +95,8 @@ def run_threads(
 ) -> None:
     """Let the users of a run call until it is over.
 
-    ``during`` does what else happens; ``settle`` waits before the client is closed.
+    ``during`` does what else happens, and ends the run; ``settle`` waits for what was written
+    before the client is closed.
     """
     shared = Shared(setting)
     plan = setting.plan
@@ -111,7 +112,6 @@ def run_threads(
         with Interrupts(Random(f"{plan.seed} interrupts")) as interrupts:
             _user(shared, 0, interrupts)
     happening.join()
-    setting.over = True
     until = time.monotonic() + setting.longest
     for thread in threads:
         thread.join(max(0.0, until - time.monotonic()))
@@ -129,7 +129,7 @@ def _user(shared: Shared, user: int, interrupts: Interrupts | None = None) -> No
         age = shared.age
         if not _call(shared, user, random, interrupts):
             # A broken line is opened again; one that only stalls is used as it is.
-            if not setting.plan.profile.keeps_bytes:
+            if setting.plan.restores:
                 shared.restore(age)
             else:
                 time.sleep(0.01)

@@ -108,7 +108,7 @@ class Judge:
         return place < len(times) and times[place] <= call.ended
 
     def _judge_wrong(self, call: Call) -> None:
-        limit = self._evidence.limit_of(call, not self._plan.profile.keeps_bytes)
+        limit = self._evidence.limit_of(call, self._plan.restores)
         if limit:
             self.tally.limits[limit] = self.tally.limits.get(limit, 0) + 1
             return
@@ -159,7 +159,7 @@ class Judge:
             elif self._moves(frame) and count > called[frame]:
                 self.tally.duplicates += count - called[frame]
                 self._fail_frame(frame, f"{count} times at the arm for {called[frame]} calls")
-        if not self._plan.profile.keeps_bytes:
+        if self._plan.restores:
             return
         for frame, count in safe.items():
             if arrived[frame] < count:

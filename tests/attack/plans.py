@@ -27,7 +27,8 @@ class Plan:
         grace: seconds for which late replies are expected; the delays of the line fit into it.
         seconds: how long users call.
         calls: how many calls end the run earlier.
-        reopens: whether a broken transport is reopened; otherwise a new client is made.
+        restores: whether a client that got a LinkError is replaced.
+        reopens: whether its transport is reopened instead.
     """
 
     profile: Profile
@@ -42,6 +43,7 @@ class Plan:
     grace: float
     seconds: float
     calls: int
+    restores: bool
     reopens: bool
 
     @property
@@ -49,12 +51,18 @@ class Plan:
         """The faults of the profile, with delays that fit into the grace."""
         return tuple(_scaled(fault, self.grace) for fault in self.profile.faults)
 
+    @property
+    def _way(self) -> str:
+        if not self.restores:
+            return ""
+        return ", reopens" if self.reopens else ", new clients"
+
     def __str__(self) -> str:
         kind = "tcp" if self.tcp else "pty"
         return (
             f"profile {self.profile.name}, seed {self.seed}: {kind}, {self.client}, {self.codec}, "
             f"{self.edition}, {self.users} users, timeout {self.timeout} s x {self.attempts}, "
-            f"grace {self.grace} s" + (", reopens" if self.reopens else "")
+            f"grace {self.grace} s" + self._way
         )
 
 
@@ -84,5 +92,6 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
         grace=random.choice((0.3, 1.0)),
         seconds=profile.seconds if seconds is None else seconds,
         calls=calls,
+        restores=profile.parts or (profile.stalls and random.random() < 0.4),
         reopens=client == "blocking" and random.random() < 0.5,
     )

@@ -57,9 +57,9 @@ class Profile:
     clients: tuple[Clients, ...] = field(default=("blocking", "asyncio"))
 
     @property
-    def keeps_bytes(self) -> bool:
-        """Whether everything that is written arrives, if late."""
-        return not self.breaks and not self.closes
+    def parts(self) -> bool:
+        """Whether the connection ends during the run."""
+        return bool(self.breaks or self.closes)
 
 
 SOMETIMES_LATE = Late(seconds=0.05, jitter_seconds=0.7, probability=0.05)

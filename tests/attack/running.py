@@ -48,12 +48,12 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
 
 def _settle(line: HostileLine, setting: Setting) -> None:
     """Wait for what was written; closing would lose it."""
-    if setting.plan.profile.keeps_bytes:
+    if not setting.plan.restores:
         line.settle(setting.record.bytes_taken)
 
 
 def _happen(line: HostileLine, setting: Setting, shared: Closable) -> None:
-    """Break, stall or close until the time of the run is over."""
+    """Break, stall or close until the time of the run is over; then end the run."""
     profile, random = setting.plan.profile, Random(f"{setting.plan.seed} line")
     until = time.monotonic() + setting.plan.seconds
     while not setting.over and time.monotonic() < until:
@@ -74,6 +74,7 @@ def _happen(line: HostileLine, setting: Setting, shared: Closable) -> None:
             setting.flooding = line.stalled = False
         else:
             time.sleep(0.02)
+    setting.over = True
 
 
 def campaign(

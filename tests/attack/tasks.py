@@ -59,7 +59,8 @@ def run_tasks(
 ) -> None:
     """Let the users of a run call until it is over.
 
-    ``during`` does what else happens; ``settle`` waits before the client is closed.
+    ``during`` does what else happens, and ends the run; ``settle`` waits for what was written
+    before the client is closed.
     """
     asyncio.run(_run(setting, during, settle))
 
@@ -72,7 +73,6 @@ async def _run(
     tasks = [asyncio.create_task(_user(shared, user)) for user in range(setting.plan.users)]
     loop = asyncio.get_running_loop()
     await loop.run_in_executor(None, during, shared)
-    setting.over = True
     await asyncio.wait(tasks, timeout=setting.longest)
     setting.record.give_up()
     await loop.run_in_executor(None, settle)
@@ -89,7 +89,7 @@ async def _user(shared: SharedInLoop, user: int) -> None:
         age = shared.age
         began = time.monotonic()
         if not await _call(shared, user, random):
-            if not setting.plan.profile.keeps_bytes:
+            if setting.plan.restores:
                 await shared.restore(age)
             else:
                 await asyncio.sleep(0.01)
