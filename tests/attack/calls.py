@@ -98,6 +98,10 @@ ONE_WAY = (
 )
 
 
+# Short requests: the line may have taken half of a long one before.
+SHORT = ("stop", "set_color", "jog_increment")
+
+
 def reply_values(command: Command, number: int, arguments: dict[str, Any]) -> dict[str, Any]:
     """Return the fields of reply number ``number``.
 
@@ -128,3 +132,10 @@ def draw(random: Random, table: Table, number: int, one_way: float) -> Drawn:
     acknowledged = kinds is ONE_WAY and table.command(kind.name).ack and random.random() < 0.3
     wait = random.choice((0.15, 0.3, 0.5)) if acknowledged else None
     return Drawn(kind.name, kind.arguments(random, number), wait)
+
+
+def draw_flood(random: Random, number: int, name: str) -> Drawn:
+    """Draw a one-way request that waits for nothing: of the command, or of any if it is empty."""
+    kinds = [kind for kind in ONE_WAY if name in (kind.name, "")]
+    [kind] = random.choices(kinds, [kind.weight for kind in kinds])
+    return Drawn(kind.name, kind.arguments(random, number), None)

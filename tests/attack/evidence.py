@@ -107,7 +107,7 @@ class Evidence:
         handed = self._record.handed
         place = bisect_right(handed, (call.began, b""))
         while place < len(handed) and handed[place][0] <= call.ended:
-            if handed[place][1] == call.request:
+            if handed[place][1].endswith(call.request):
                 return handed[place][0]
             place += 1
         return None
@@ -214,7 +214,7 @@ class Evidence:
         """Return when a request was last handed to the system before a time; the time: never."""
         handed = self._record.handed
         for place in range(bisect_right(handed, (before, b"\xff")) - 1, -1, -1):
-            if handed[place][1] == request:
+            if handed[place][1].endswith(request):
                 return handed[place][0]
         return before
 

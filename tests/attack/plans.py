@@ -82,7 +82,8 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
     return Plan(
         profile,
         seed,
-        tcp=random.random() < 0.5,
+        # Only a pty takes half a frame.
+        tcp=random.random() < (0.2 if profile.stalls else 0.5),
         client=client,
         codec=random.choice(("native", "reference")),
         edition=random.choice(("mycobot280", "mycobot280", "mycobot")),

@@ -54,6 +54,7 @@ class Record:
         calls: the calls that have ended.
         running: the calls that have not, by user.
         handed: when which bytes were handed to the system.
+        filling: held while the run fills the line, which must not come between parts of a request.
         taken: when the system took the rest of those bytes, and how many bytes it has taken.
     """
 
@@ -64,7 +65,7 @@ class Record:
         self.taken: list[tuple[float, bytes]] = []
         self.bytes_taken = 0
         self.numbers = itertools.count(1)
-        self.lock = threading.Lock()
+        self.filling = threading.Lock()
 
     def begin(
         self, user: int, name: str, request: bytes, ack_within: float | None, query: bool
@@ -100,7 +101,8 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
 
     def observed(data: bytes) -> int:
         record.handed.append((time.monotonic(), data))
-        size = send(data)
+        with record.filling:
+            size = send(data)
         record.bytes_taken += size
         if size == len(data):
             record.taken.append((time.monotonic(), data))

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 from attack.arm import HostilePeer
 from attack.blocking import run_threads
+from attack.calls import SHORT
 from attack.judge import Judge, Scene
 from attack.line import HostileLine
 from attack.plans import Plan, plan
@@ -66,15 +67,26 @@ def _happen(line: HostileLine, setting: Setting, shared: Closable) -> None:
             time.sleep(profile.closes * random.uniform(0.5, 1.5))
             shared.close()
         elif profile.stalls:
-            time.sleep(random.uniform(0.1, 0.4))
-            line.stalled = True
-            line.fill(random.randint(10, 200))
-            setting.flooding = True
-            time.sleep(random.uniform(0.8, 2.2))
-            setting.flooding = line.stalled = False
+            time.sleep(random.uniform(0.05, 0.2))
+            _stall(line, setting, random)
         else:
             time.sleep(0.02)
     setting.over = True
+
+
+def _stall(line: HostileLine, setting: Setting, random: Random) -> None:
+    """Stop to read, mostly until writes fail; then read on while short requests come."""
+    line.stalled = True
+    with setting.record.filling:
+        line.fill(random.randint(10, 200))
+    setting.flood, setting.flooding = "", True
+    time.sleep(random.uniform(0.1, 1.0) if random.random() < 0.2 else random.uniform(1.05, 1.3))
+    # They may complete the one that was cut.
+    setting.flood = random.choice(SHORT)
+    time.sleep(0.02)
+    line.stalled = False
+    time.sleep(0.05)
+    setting.flooding = False
 
 
 def campaign(

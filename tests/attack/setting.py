@@ -7,7 +7,7 @@ from importlib import import_module
 from random import Random
 from typing import Any
 
-from attack.calls import Drawn, draw
+from attack.calls import Drawn, draw, draw_flood
 from attack.plans import Plan
 from attack.record import Call, Record
 from cobotwire import CobotwireError, ProtocolError, ReplyTimeout, RetryPolicy
@@ -30,6 +30,7 @@ class Setting:
     Attributes:
         over: whether users are to stop.
         flooding: whether users send only one-way requests, to fill a line that nobody reads.
+        flood: which ones; empty: any.
         longest: seconds that a call can take by its rules, the wait for its turn included.
     """
 
@@ -39,6 +40,7 @@ class Setting:
         self.record = Record()
         self.over = False
         self.flooding = False
+        self.flood = ""
         edition = import_module(f"cobotwire.editions.{plan.edition}")
         self.client: Any = getattr(edition, CLASSES[plan.edition, plan.client])
         self.table = table_of(plan)
@@ -53,12 +55,10 @@ class Setting:
 
     def draw(self, random: Random) -> Drawn:
         """Draw the next call of a user."""
-        drawn = draw(random, self.table, next(self._numbers), self._one_way)
-        return drawn._replace(ack_within=None) if self.flooding else drawn
-
-    @property
-    def _one_way(self) -> float:
-        return 1.0 if self.flooding else self.plan.profile.one_way
+        number = next(self._numbers)
+        if self.flooding:
+            return draw_flood(random, number, self.flood)
+        return draw(random, self.table, number, self.plan.profile.one_way)
 
     def begin(self, user: int, drawn: Drawn) -> Call:
         """Note that a call begins; end the run if it is the last one."""
