@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import select
 import threading
 import time
-import tty
 from collections.abc import Callable
 from typing import Any
 
@@ -15,25 +12,12 @@ import pytest
 
 from both_ways import InLoop
 from cobotwire import LinkError
-from cobotwire import codec as codecs
-from cobotwire.codec.interface import Frame
-from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
+from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 from cobotwire.transport.aio import WRITE_TIMEOUT
+from stuck_pty import ANGLES, MOTION, STOP, StuckPty, frames
 
-CODEC = codecs.load(TABLE)
-# -2.58 degrees are FE FE, so half of this request and a stop would be a legal motion.
-ANGLES = (0.0, 0.0, -2.58, 0.0, 0.0, 0.0)
-MOTION = CODEC.encode("send_angles", "request", [ANGLES, 50])
-# More bytes than the buffer of a pseudo-terminal holds (64 KiB).
+# More than the buffer of a pseudo-terminal holds, which is 64 KiB.
 REQUESTS = 4000
-STOP = CODEC.encode("stop", "request", [])
-
-
-def frames(received: bytes) -> list[bytes]:
-    """Return the requests that an arm finds in the bytes it received."""
-    framer = CODEC.framer("request")
-    events = [*framer.feed(received), *framer.flush()]
-    return [event.data for event in events if isinstance(event, Frame)]
 
 
 class StallingTransport:
@@ -75,31 +59,6 @@ def test_stop_after_a_cut_motion_arrives_and_nothing_else(
         arm.stop()
         arm.stop()
     assert frames(transport.received) == [STOP, STOP]
-
-
-class StuckPty:
-    """A pseudo-terminal that nothing reads until :meth:`drain`."""
-
-    def __init__(self) -> None:
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
-        self.url = os.ttyname(self._slave)
-
-    def drain(self) -> bytes:
-        """Return the written bytes, when no more arrive."""
-        received = b""
-        while select.select([self._master], [], [], 0.2)[0]:
-            received += os.read(self._master, 65536)
-        return received
-
-    def read(self, size: int) -> bytes:
-        """Return up to ``size`` bytes, without waiting."""
-        ready, _, _ = select.select([self._master], [], [], 0)
-        return os.read(self._master, size) if ready else b""
-
-    def close(self) -> None:
-        for descriptor in (self._master, self._slave):
-            os.close(descriptor)
 
 
 @pytest.mark.parametrize("who", [MyCobot280, lambda port: InLoop(AsyncMyCobot280, port)])

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import select
-import threading
 import time
-import tty
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -14,43 +10,9 @@ import pytest
 
 from cobotwire import MyCobot, ReplyTimeout
 from cobotwire.client import Traffic
+from slow_arm import SlowArm, encoder_reply
 
 TIMEOUT = 0.1
-
-
-def _reply(joint: int) -> bytes:
-    return bytes.fromhex("FE FE 04 3B 00") + bytes([joint]) + b"\xfa"
-
-
-class SlowArm:
-    """An arm that replies to get_encoder(joint) with the joint's number, after its delay."""
-
-    def __init__(self, delays: dict[int, float]) -> None:
-        self._delays = delays
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
-        self.url = os.ttyname(self._slave)
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._serve)
-        self._thread.start()
-
-    def _serve(self) -> None:
-        due: list[tuple[float, bytes]] = []
-        while not self._stop.is_set():
-            if select.select([self._master], [], [], 0.005)[0]:
-                request = os.read(self._master, 4096)
-                if request[3] == 0x3B:
-                    delay = self._delays.get(request[4], 0)
-                    due.append((time.monotonic() + delay, _reply(request[4])))
-            for entry in [entry for entry in due if entry[0] <= time.monotonic()]:
-                due.remove(entry)
-                os.write(self._master, entry[1])
-
-    def close(self) -> None:
-        self._stop.set()
-        self._thread.join()
-        os.close(self._master)
-        os.close(self._slave)
 
 
 @pytest.fixture
@@ -74,7 +36,7 @@ def test_reply_50_ms_late_is_not_used_for_another_joint(slow_arm: SlowArm) -> No
         # It holds them as long as a copy of it could come: some lines double replies.
         assert 0.9 < time.monotonic() - started < 1.9
     directions = [(t.direction, t.data) for t in traffic]
-    assert directions.index(("received", _reply(1))) < directions.index(
+    assert directions.index(("received", encoder_reply(1))) < directions.index(
         ("sent", bytes.fromhex("FE FE 03 3B 02 FA"))
     )
 

@@ -89,7 +89,7 @@ class Pairing(RuleBasedStateMachine):
     def outstanding_replies_are_bounded(self) -> None:
         """Check that there is at most one outstanding reply for each request."""
         if hasattr(self, "session"):
-            assert len(self.session.exchange._outstanding) <= self.count
+            assert len(self.session.exchange._outstanding.replies) <= self.count
 
 
 TestPairing = Pairing.TestCase

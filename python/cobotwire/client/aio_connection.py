@@ -8,6 +8,7 @@ from collections.abc import Callable
 from functools import partial
 
 from cobotwire.client.opening import check_port, open_port
+from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
@@ -70,6 +71,8 @@ class AsyncConnection:
         except asyncio.CancelledError:
             work.add_done_callback(_close_unwanted)
             raise
+        self._memory = PortMemory(transport)
+        self._exchange.take_over(self._memory.recall())
         self._attached = attach(transport, self._turn)
 
     async def send(self, request: EncodedRequest, ack_within: float | None) -> None:
@@ -123,12 +126,14 @@ class AsyncConnection:
         """Close the transport; calls that wait get a LinkError. Closing twice is harmless."""
         if self._attached is not None:
             self._attached.close()
+            self._memory.leave(self._exchange.leave(self.now()))
             self._lose(LinkError(self.url, "it is closed"))
 
     def leave_to_parent(self) -> None:
         """Let every call in a forked child fail: loop and transport are those of the parent."""
         if self._attached is not None and self._lost is None:
             self._lost = LinkError(self.url, f"cannot be used: {forks.opened_by_parent()}")
+            self._memory.leave_to_parent()
 
     def _transport(self) -> AsyncTransport:
         if self._attached is None:

@@ -17,6 +17,7 @@ import threading
 import time
 
 from cobotwire.client.opening import open_port
+from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
@@ -63,6 +64,8 @@ class Connection:
         # How often leaders have read; a leader that does not count on is gone.
         self._turns = 0
         self._followers: list[threading.Lock] = []
+        self._memory = PortMemory(self._transport)
+        exchange.take_over(self._memory.recall())
         forks.watch(self)
 
     def send(self, request: EncodedRequest, ack_within: float | None) -> None:
@@ -117,12 +120,16 @@ class Connection:
     def close(self) -> None:
         """Close the transport. The arm is sent nothing. Closing twice is harmless."""
         self._transport.close()
+        with self._state:
+            leftover = self._exchange.leave(self.now())
+        self._memory.leave(leftover)
 
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held; in a forked child the transport is closed."""
         self._state, self._writing = threading.Lock(), threading.Lock()
         self._reading = threading.RLock()
         self._leader, self._followers = None, []
+        self._memory.leave_to_parent()
 
     def _await(self, pending: Pending, longest: float, queued: bool = True) -> None:
         try:

@@ -30,7 +30,6 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame, Noise
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
-from cobotwire.session import outstanding
 from cobotwire.session.acks import Acks
 from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
@@ -45,10 +44,12 @@ from cobotwire.session.events import (
     SessionEvent,
     UnexpectedFrame,
 )
+from cobotwire.session.leftover import LateFrame, Leftover
 from cobotwire.session.matching import repeats_arguments
+from cobotwire.session.outstanding import OutstandingReplies, late_replies
 from cobotwire.session.pending import Pending, PendingAck, PendingRequest
 from cobotwire.session.policy import RetryPolicy
-from cobotwire.session.request import EncodedRequest, as_call
+from cobotwire.session.request import EncodedRequest, as_call, request_of
 
 # For how long received bytes are read before a request is sent, if they do not end.
 DRAIN_SECONDS = 0.05
@@ -68,7 +69,7 @@ class Exchange:
         # The request that was sent last; it waits for its reply unless it is done.
         self._last: PendingRequest | None = None
         self._pending_acks: list[PendingAck] = []
-        self._outstanding: list[outstanding.OutstandingReply] = []
+        self._outstanding = OutstandingReplies()
         self._acks = Acks()
         self._echo = EchoDetector()
 
@@ -100,7 +101,7 @@ class Exchange:
         if request.command.ack:
             ack = self._acks.expect(request, now, ack_within or 0.0, self._framer.fed)
             if request.command.id in self._replying_ids:
-                self._expect_late_reply(request, ack.until)
+                self._outstanding.expect(request, ack.until)
             if ack_within is not None:
                 pending = PendingAck(request, ack, now, now + ack_within)
                 self._pending_acks.append(pending)
@@ -111,7 +112,7 @@ class Exchange:
         if pending.done:
             return
         if isinstance(pending, PendingRequest):
-            self._expect_late_replies(pending, 0)
+            self._outstanding.expect_late(pending, 0)
         pending.cancel()
         self._drop_done()
 
@@ -137,8 +138,28 @@ class Exchange:
         """End the request that waits: the bytes that :meth:`outgoing` gave were not written."""
         waiting = self._waiting()
         if waiting is not None:
-            self._expect_late_replies(waiting, 0)
+            self._outstanding.expect_late(waiting, 0)
             waiting.fail(error)
+
+    # What one session leaves to the next one on its port.
+
+    def leave(self, now: float) -> Leftover:
+        """Return what the next session on this port must respect."""
+        waiting = self._waiting()
+        replies = [reply for reply in self._outstanding.replies if reply.until > now]
+        if waiting is not None:
+            replies += late_replies(waiting, 0)
+        late = (LateFrame(reply.request.frame, reply.until) for reply in replies)
+        return Leftover(tuple(late), self.alignment.held)
+
+    def take_over(self, leftover: Leftover) -> None:
+        """Respect what an earlier session left on this port."""
+        for late in leftover.late:
+            request = request_of(late.request, self._codec)
+            if request is not None:
+                self._outstanding.expect(request, late.until)
+        if leftover.parts:
+            self.alignment.hold(leftover.parts)
 
     # What the client's loop does.
 
@@ -196,11 +217,11 @@ class Exchange:
             # A line that brings more than can be read is never drained.
             if pending.undrained(now) < DRAIN_SECONDS:
                 return b""
-            if outstanding.held_until(self._outstanding, pending.request) is not None:
+            if self._outstanding.held_until(pending.request) is not None:
                 self._refuse_to_send(pending, now)
                 return b""
-        if self._outstanding:
-            self._outstanding = outstanding.without_expired(self._outstanding, now)
+        if self._outstanding.replies:
+            self._outstanding.drop_expired(now)
         self._echo.sent(pending.request, self._framer.fed)
         pending.begin(now, self._framer.fed)
         self._last, self._sent_last = pending, pending.request.frame
@@ -222,9 +243,9 @@ class Exchange:
 
     def _free_at(self, pending: PendingRequest, now: float) -> float:
         """Return from when on no late reply can be mistaken for the request's."""
-        if not self._outstanding:
+        if not self._outstanding.replies:
             return now
-        held_until = outstanding.held_until(self._outstanding, pending.request)
+        held_until = self._outstanding.held_until(pending.request)
         return now if held_until is None else held_until
 
     def _repeat_at(self, waiting: PendingRequest) -> float | None:
@@ -248,19 +269,11 @@ class Exchange:
         pending.fail(ReplyTimeout(request.command.name, waited, (NOT_SENT,), 0, call))
         self._drop_done()
 
-    def _expect_late_reply(self, request: EncodedRequest, until: float) -> None:
-        self._outstanding.append(outstanding.OutstandingReply(request, until))
-
-    def _expect_late_replies(self, pending: PendingRequest, replies: int) -> None:
-        """Expect a late reply to each attempt but as many as there were ``replies``."""
-        for sent_at in pending.attempt_times[replies:]:
-            self._expect_late_reply(pending.request, sent_at + pending.policy.grace)
-
     # What ends a request.
 
     def _reply(self, waiting: PendingRequest, fields: dict[str, Any], now: float) -> None:
         if len(waiting.attempt_times) > 1:
-            self._expect_late_replies(waiting, 1)
+            self._outstanding.expect_late(waiting, 1)
         waiting.reply(fields, now)
 
     def _end_wait(self, waiting: PendingRequest, now: float) -> list[SessionEvent]:
@@ -284,7 +297,7 @@ class Exchange:
             self._reply(waiting, candidate.fields, now)
             return [*events, ReplyMatched(request.command, candidate.fields, candidate)]
         attempts, requested_at = len(waiting.attempt_times), waiting.requested_at
-        self._expect_late_replies(waiting, 0)
+        self._outstanding.expect_late(waiting, 0)
         waiting.expire(self._codec, now - requested_at, attempts)
         return [*events, RequestExpired(request.command, requested_at, attempts)]
 
@@ -336,12 +349,12 @@ class Exchange:
 
     def _match_other(self, frame: Frame, now: float, is_copy: bool) -> SessionEvent:
         """Find out what a frame is that does not reply to the request that waits."""
-        late = outstanding.find(self._outstanding, frame, now)
+        late = self._outstanding.find(frame, now)
         if late is not None:
             if late.request.command.answers:
                 # It stays outstanding: this may be a copy, with the reply itself still to come.
                 return self._note(LateReply(late.request.command, frame))
-            self._outstanding.remove(late)
+            self._outstanding.settle(late)
         if is_copy:
             self._acks.note_copy(frame)
             return self._note(EchoReceived(frame))
@@ -372,10 +385,10 @@ class Exchange:
         if is_copy:
             self._echo.prove()
             return self._note(EchoReceived(frame))
-        if any(late.request.command.id == frame.command for late in self._outstanding):
+        if self._outstanding.has_id(frame.command):
             return self._note(UnexpectedFrame(frame))
         if len(waiting.attempt_times) > 1:
-            self._expect_late_replies(waiting, 1)
+            self._outstanding.expect_late(waiting, 1)
         waiting.fail(error)
         return ReplyRejected(waiting.request.command, error, frame)
 

@@ -2,16 +2,17 @@
 
 A late reply looks like the reply to the next request of the same command. So that request is held
 until the late reply is too late to come at all. It is not sent earlier, even if a late reply has
-come: some lines double replies, so the one that came may be a copy of another attempt's. The
-functions take a list of outstanding replies, oldest first, and change nothing.
+come: some lines double replies, so the one that came may be a copy of another attempt's.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from cobotwire.codec.interface import Frame
 from cobotwire.session.matching import can_reply_to, replies_differ
+from cobotwire.session.pending import PendingRequest
 from cobotwire.session.request import EncodedRequest
 
 
@@ -22,20 +23,56 @@ class OutstandingReply(NamedTuple):
     until: float
 
 
-def without_expired(outstanding: list[OutstandingReply], now: float) -> list[OutstandingReply]:
-    """Return those that can still come."""
-    return [reply for reply in outstanding if reply.until > now]
+class OutstandingReplies:
+    """The outstanding replies of one transport.
+
+    Attributes:
+        replies: oldest first; some may have expired.
+    """
+
+    def __init__(self) -> None:
+        self.replies: tuple[OutstandingReply, ...] = ()
+
+    def expect(self, request: EncodedRequest, until: float) -> None:
+        """Expect a reply to ``request`` until that second."""
+        self.replies = (*self.replies, OutstandingReply(request, until))
+
+    def expect_late(self, pending: PendingRequest, received: int) -> None:
+        """Expect a late reply to each attempt, except for the first ``received`` ones."""
+        self.add(late_replies(pending, received))
+
+    def add(self, replies: Iterable[OutstandingReply]) -> None:
+        """Expect these replies too."""
+        self.replies = (*self.replies, *replies)
+
+    def settle(self, reply: OutstandingReply) -> None:
+        """Expect a reply no longer."""
+        self.replies = tuple(other for other in self.replies if other is not reply)
+
+    def drop_expired(self, now: float) -> None:
+        """Forget the replies that are too late to come."""
+        self.replies = tuple(reply for reply in self.replies if reply.until > now)
+
+    def held_until(self, request: EncodedRequest) -> float | None:
+        """Return until when a late reply can be mistaken for this request's; None: no reply can."""
+        alike = (r.until for r in self.replies if not replies_differ(r.request, request))
+        return max(alike, default=None)
+
+    def find(self, frame: Frame, now: float) -> OutstandingReply | None:
+        """Return the oldest outstanding reply that a frame can be; None: it can be none of them."""
+        for reply in self.replies:
+            if reply.until > now and can_reply_to(frame, reply.request):
+                return reply
+        return None
+
+    def has_id(self, id: int) -> bool:
+        """Return whether a reply with this command id is outstanding."""
+        return any(reply.request.command.id == id for reply in self.replies)
 
 
-def held_until(outstanding: list[OutstandingReply], request: EncodedRequest) -> float | None:
-    """Return until when a late reply can be mistaken for this request's; None: no reply can."""
-    alike = (reply.until for reply in outstanding if not replies_differ(reply.request, request))
-    return max(alike, default=None)
-
-
-def find(outstanding: list[OutstandingReply], frame: Frame, now: float) -> OutstandingReply | None:
-    """Return the oldest outstanding reply that a frame can be; None: no such reply is expected."""
-    for reply in outstanding:
-        if reply.until > now and can_reply_to(frame, reply.request):
-            return reply
-    return None
+def late_replies(pending: PendingRequest, received: int) -> list[OutstandingReply]:
+    """Return the outstanding replies to a request's attempts after the first ``received`` ones."""
+    return [
+        OutstandingReply(pending.request, sent_at + pending.policy.grace)
+        for sent_at in pending.attempt_times[received:]
+    ]

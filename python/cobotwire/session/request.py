@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec
+from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Command
 from cobotwire.session import text
@@ -72,9 +73,23 @@ class RequestEncoder:
         found = self._commands.get(name)
         if found is None:
             command = self._codec.table.command(name)
-            can_repeat = any(field.echo for variant in command.reply for field in variant.fields)
-            found = self._commands[name] = command, can_repeat
+            found = self._commands[name] = command, _can_repeat(command)
         return found
+
+
+def request_of(frame: bytes, codec: Codec) -> EncodedRequest | None:
+    """Return the request that a frame is; None: the edition has no such request."""
+    try:
+        message = codec.decode("request", frame)
+    except ProtocolError:
+        return None
+    arguments = message.fields if _can_repeat(message.command) else {}
+    return EncodedRequest(message.command, frame, b"", arguments)
+
+
+def _can_repeat(command: Command) -> bool:
+    """Return whether a reply can repeat arguments of its request."""
+    return any(field.echo for variant in command.reply for field in variant.fields)
 
 
 def as_call(request: EncodedRequest, codec: Codec) -> str:
