@@ -45,3 +45,19 @@ def test_list_of_errors_holds_every_branch_of_the_root_error() -> None:
     found = CobotwireError.__subclasses__()
     branches = {kind for kind in found if kind.__module__ == "cobotwire.protocol.errors"}
     assert branches == {type(error) for error in ERRORS}
+
+
+def nested(depth: int) -> list[object]:
+    """Return a list that is nested more deeply than Python can write."""
+    found: list[object] = []
+    for _ in range(depth):
+        found = [found]
+    return found
+
+
+@pytest.mark.parametrize(
+    "value", [10**5000, [-(10**5000)], nested(100_000)], ids=["int", "list", "deep"]
+)
+def test_value_that_cannot_be_written_is_named_by_its_type(value: object) -> None:
+    with pytest.raises(ValueError, match="that is too long to be shown; allowed: few"):
+        raise UsageError("joint", value, "few")

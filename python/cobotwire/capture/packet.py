@@ -10,7 +10,8 @@ Direction = Literal["sent", "received", "unknown"]
 # "bytes" is a chunk as it was read or written, not cut into frames.
 Kind = Literal["frame", "noise", "bytes"]
 
-_PIECE = re.compile(r"(\d+) bytes at \+(\d+) ns")
+# Both numbers have at most 19 digits: the time stamps of a capture have 64 bits.
+_PIECE = re.compile(r"(?<!\d)(\d{1,19}) bytes at \+(\d{1,19}) ns")
 _MARK = "in pieces: "
 
 

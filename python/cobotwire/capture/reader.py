@@ -132,7 +132,7 @@ class CaptureReader:
                 elif block.kind == blocks.SECTION:
                     self._section(block, fields)
                 elif block.kind == blocks.INTERFACE:
-                    self._interface(fields)
+                    self._interface(block, fields)
                 elif block.kind == blocks.STATISTICS:
                     self._finished.add(self._format(block, fields).number)
                 elif block.kind in (blocks.SIMPLE_PACKET, blocks.OBSOLETE_PACKET):
@@ -153,9 +153,12 @@ class CaptureReader:
         options = dict(fields.options())
         self.application = _text(options.get(blocks.SECTION_APPLICATION, b""))
 
-    def _interface(self, fields: Fields) -> None:
+    def _interface(self, block: Block, fields: Fields) -> None:
         link_type, _, _ = fields.numbers("HHI")
         options = dict(fields.options())
+        for code in (blocks.INTERFACE_SPEED, blocks.INTERFACE_OFFSET):
+            if len(options.get(code, b"")) > blocks.NUMBER_SIZE:
+                self._reject(block, "damaged: a number of an interface is too long")
         description = _text(options.get(blocks.INTERFACE_DESCRIPTION, b""))
         key, _, edition = description.partition(" ")
         speed = int.from_bytes(options.get(blocks.INTERFACE_SPEED, b""), self._endian)

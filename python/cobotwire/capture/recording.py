@@ -49,8 +49,18 @@ class Recording:
         except (OSError, ValueError) as error:
             raise unusable_file("record", path, error) from None
         self._name = str(path)
-        self._writer = CaptureWriter(self._file, application)
-        self._recorder = Recorder(self._writer, codec, url=url, baudrate=baudrate, name=self._name)
+        try:
+            self._writer = CaptureWriter(self._file, application)
+            self._recorder = Recorder(
+                self._writer, codec, url=url, baudrate=baudrate, name=self._name
+            )
+        except OSError as error:
+            # On a full disk no empty file remains, which the next attempt would not overwrite.
+            with suppress(OSError):
+                self._file.close()
+            with suppress(OSError):
+                os.unlink(path)
+            raise unusable_file("record", path, error) from None
 
     def __call__(self, moment: Moment) -> None:
         """Record one item of a client's traffic."""

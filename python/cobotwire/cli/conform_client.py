@@ -158,13 +158,13 @@ def read_script(table: Table, path: str) -> Iterator[ScriptLine]:
     except (OSError, UnicodeError) as error:
         raise unusable_file("expect", path, error) from error
     for number, line in enumerate(lines, 1):
-        words = shlex.split(line, comments=True)
-        if words:
-            place = f"{path}:{number}"
-            try:
+        place = f"{path}:{number}"
+        try:
+            if words := shlex.split(line, comments=True):
                 yield _script_line(table, words, place)
-            except UsageError as error:
-                raise UsageError("expect", line, message=f"{place}: {error}") from None
+        # shlex raises a ValueError, and so does a wrong call: UsageError is one.
+        except ValueError as error:
+            raise UsageError("expect", line, message=f"{place}: {error}") from None
 
 
 def _script_line(table: Table, words: list[str], place: str) -> ScriptLine:

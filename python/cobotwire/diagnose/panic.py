@@ -21,6 +21,8 @@ READABLE = rb"\t\n\r\x1b -~"
 PANIC_LIMIT = 8192
 PANIC = b"Guru Meditation Error"
 REBOOTING = b"Rebooting..."
+# An ESP32 has two cores. A longer number is damaged, and may be too long for int().
+CORE_DIGITS = 2
 
 # Up to four damaged bytes do not end a dump, if six readable ones follow.
 _DAMAGED = rb"[^" + READABLE + rb"]{1,4}(?=[" + READABLE + rb"]{6})"
@@ -98,7 +100,7 @@ def _panic(residue: Residue, start: int, end: int) -> Panic:
     return Panic(
         spans=residue.spans(start, end),
         reason=residue.reason(start),
-        core=None if core is None else int(core),
+        core=None if core is None or len(core) > CORE_DIGITS else int(core),
         cause=cause or older_cause,
         pc=_hex(_PC, text),
         address=_hex(_ADDRESS, text),

@@ -176,5 +176,9 @@ class ScenarioError(CobotwireError, ValueError):
 
 
 def _short(value: Any, limit: int = 80) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    # Python writes no whole number of more than 4300 digits, and no list that is nested too deeply.
+    except (ValueError, RecursionError):
+        return f"{type(value).__name__} that is too long to be shown"
     return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -15,6 +15,8 @@ from cobotwire.simulator.peer import Peer, PeerDisconnected
 
 READ, WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 READ_SIZE = 4096
+# select() takes no time of some weeks, which a recorded pause may have.
+LONGEST_WAIT = 3600.0
 
 
 class Endpoint(NamedTuple):
@@ -107,7 +109,7 @@ class Server:
         real = [wait / self._clock.rate for wait in waits if wait is not None]
         if call_at is not None:
             real.append(max(0.0, call_at - time.monotonic()))
-        return min(real, default=None)
+        return min(*real, LONGEST_WAIT) if real else None
 
 
 class _Client:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec import (
@@ -21,6 +26,7 @@ from cobotwire.conformance.codec import (
 from cobotwire.conformance.codec.adapter.ours import OurCodec
 from cobotwire.conformance.codec.questions.question import Json
 from cobotwire.conformance.report import Cause, Report, Result, Verdict
+from cobotwire.conformance.reports import from_json, to_html, to_json, to_junit
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError, UsageError
 
@@ -250,3 +256,57 @@ def test_full_standard_error_does_not_stop_a_command(
     )
     with Program([sys.executable, str(script)]) as program:
         assert Run(TABLE, program).ask_all(questions[:60]).conforms
+
+
+JSON = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-(10**400), 10**400)
+    | st.floats()
+    | st.text(st.characters(exclude_categories=()), max_size=8)
+    | st.sampled_from(["\ud800", "get_angles", "FE FE", "unsupported", "\x1b[2J"]),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(
+            st.sampled_from(["bytes", "fields", "command", "error", "offset", "angles"])
+            | st.sampled_from(["events", "frame", "noise", "reason", "unsupported", "\udfff"]),
+            inner,
+        )
+    ),
+    max_leaves=12,
+)
+
+
+ONE_OF_EACH_CASE = list({q.case: q for q in derive_questions(TABLE)}.values())
+
+
+@given(st.lists(JSON, min_size=1, max_size=6))
+def test_answer_of_any_values_gets_a_verdict(answers: list[Any]) -> None:
+    rest = itertools.cycle(answers)
+
+    def babble(right: Json) -> Json:
+        wrong = next(rest)
+        if "can" in right:
+            return right
+        return wrong if isinstance(wrong, dict) else dict.fromkeys(right, wrong)
+
+    report = Run(TABLE, _Changed(babble)).ask_all(ONE_OF_EACH_CASE)
+    assert report.finished
+    # Each report can be written, too.
+    from_json(to_json(report))
+    to_html(report).encode()
+    ElementTree.fromstring(to_junit(report).encode())
+
+
+@pytest.mark.parametrize("depth", [17, 500, 990, 1000, 3000, 100_000])
+@pytest.mark.parametrize("brackets", ["[]", "{}"], ids=["lists", "objects"])
+def test_answer_that_is_nested_deeply_is_babbling(
+    decoding: list[Question], depth: int, brackets: str
+) -> None:
+    opening = "[" if brackets == "[]" else '{"a":'
+    nested = f"{opening!r} * {depth} + '1' + {brackets[1]!r} * {depth}"
+    answer = f"print('{{\"id\": %d, \"fields\": %s}}' % (asked['id'], {nested}), flush=True)\n"
+    with _program(ASKED + answer + "time.sleep(2)") as program:
+        report = Run(TABLE, program).ask_all(decoding[:1])
+    [failure] = [result for result in _failed(report) if "nested" in result.reason]
+    assert "is nested too deeply" in failure.reason

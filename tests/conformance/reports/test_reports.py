@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from html.parser import HTMLParser
 from xml.etree import ElementTree
 
@@ -91,6 +92,39 @@ def test_report_survives_json(report: Report) -> None:
 def test_text_that_is_not_a_report_is_rejected(text: str) -> None:
     with pytest.raises(UsageError, match="report"):
         from_json(text)
+
+
+WRONG = st.sampled_from([None, True, 1, 10**400, 0.5, "x", "\ud800", [], [1], {}, {"x": [None]}])
+
+
+@given(REPORTS, WRONG, st.data())
+def test_report_with_a_wrong_value_is_rejected_or_can_be_compared(
+    report: Report, wrong: object, data: st.DataObject
+) -> None:
+    document = json.loads(to_json(report))
+    place = document
+    while data.draw(st.booleans()):
+        inner = [place[key] for key in (place if isinstance(place, dict) else range(len(place)))]
+        places = [value for value in inner if isinstance(value, dict | list) and value]
+        if not places:
+            break
+        place = data.draw(st.sampled_from(places))
+    keys = sorted(place) if isinstance(place, dict) else range(len(place))
+    place[data.draw(st.sampled_from(keys))] = wrong
+    try:
+        found = from_json(json.dumps(document))
+    except UsageError:
+        return
+    found.kind = report.kind
+    compare(report, found)
+    compare(found, report)
+    to_html(found).encode()
+    to_junit(found).encode()
+
+
+def test_report_that_is_nested_deeply_is_rejected() -> None:
+    with pytest.raises(UsageError, match="not a report in JSON"):
+        from_json("[" * 100_000)
 
 
 @given(REPORTS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 
 WIDTH = 100
@@ -29,8 +30,9 @@ def import_line(module: str, names: list[str]) -> str:
 
 def escaped(text: str) -> str:
     """Return text escaped for a docstring, even right before the closing quotes."""
-    text = text.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
-    return f'{text[:-1]}\\"' if text.endswith('"') else text
+    text = text.replace("\\", "\\\\")
+    # Every quote before another one or before the end: no three remain in a row.
+    return re.sub(r'"(?="|\Z)', r'\\"', text)
 
 
 def docstring(text: str, indent: int) -> str:

@@ -18,6 +18,8 @@ from cobotwire.protocol.errors import CobotwireError, LinkError
 
 # A longer line is not an answer: real answers need less than a hundredth of it.
 LONGEST_LINE = 1 << 20
+# An answer nests four levels; json itself fails at about a thousand.
+DEEPEST = 16
 # The greeting may take this many times as long as an answer, because the command has to start.
 STARTING = 3
 
@@ -167,8 +169,13 @@ class Program:
     def _parse(self, line: bytes) -> Json:
         try:
             answer = json.loads(line)
+            too_deep = _is_deeper(answer, DEEPEST)
         except ValueError:
             raise NoAnswer("babbling", f"{line[:120]!r} is not JSON") from None
+        except RecursionError:
+            too_deep = True
+        if too_deep:
+            raise NoAnswer("babbling", f"{line[:120]!r}... is nested too deeply")
         if not isinstance(answer, dict) or answer.get("id") != self._count:
             raise NoAnswer("babbling", f"{line[:120]!r} is not an answer to question {self._count}")
         return answer
@@ -182,6 +189,17 @@ class Program:
         words = self._diagnostics.read().decode(errors="replace").strip().splitlines()
         last = f"; its last diagnostics: {words[-1][:200]}" if words else ""
         return f"it ended with code {code}{last}"
+
+
+def _is_deeper(value: Any, levels: int) -> bool:
+    """Return whether lists and objects are nested more deeply; later steps walk through them."""
+    inner = [value] if isinstance(value, dict | list) else []
+    for _ in range(levels):
+        parts = [part.values() if isinstance(part, dict) else part for part in inner]
+        inner = [p for part in parts for p in part if isinstance(p, dict | list)]
+        if not inner:
+            return False
+    return True
 
 
 def _close_quietly(stream: Any) -> None:

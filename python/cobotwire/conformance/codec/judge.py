@@ -102,7 +102,11 @@ def _alike(right: Any, given: Any, step: float) -> bool:
             and len(right) == len(given)
             and all(_alike(a, b, step) for a, b in zip(right, given))
         )
-    return isinstance(given, int | float) and abs(right - given) <= step / 10
+    try:
+        return isinstance(given, int | float) and abs(right - given) <= step / 10
+    # A whole number of more than 308 digits.
+    except OverflowError:
+        return False
 
 
 def _stream(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from math import isfinite
 from typing import Any
 
 from cobotwire.conformance.report import Cause, Exchange, Report, Result, Verdict
@@ -11,16 +12,16 @@ from cobotwire.protocol.errors import UsageError
 FORMAT = "cobotwire-conformance"
 # Counts up when a reader of the old version could misread the new one.
 VERSION = 2
-PLAIN = (
-    "kind",
-    "edition",
-    "subject",
-    "firmware",
-    "started",
-    "finished",
-    "reply_seconds",
-    "deadline_seconds",
-)
+PLAIN = {
+    "kind": str,
+    "edition": str,
+    "subject": str,
+    "firmware": str,
+    "started": str,
+    "finished": bool,
+    "reply_seconds": dict,
+    "deadline_seconds": dict,
+}
 
 
 def to_json(report: Report) -> str:
@@ -47,8 +48,16 @@ def from_json(text: str) -> Report:
             given = (data["format"], data["version"])
             raise UsageError("report", given, f"{FORMAT}, version {VERSION}")
         results = [_read_result(item) for item in data["results"]]
-        return Report(**{name: data[name] for name in PLAIN}, results=results)
-    except (ValueError, KeyError, TypeError) as error:
+        plain = {name: _checked(data[name], kind) for name, kind in PLAIN.items()}
+        plain["reply_seconds"] = {
+            command: [_seconds(each) for each in seconds]
+            for command, seconds in plain["reply_seconds"].items()
+        }
+        plain["deadline_seconds"] = {
+            command: _seconds(each) for command, each in plain["deadline_seconds"].items()
+        }
+        return Report(**plain, results=results)
+    except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
         if isinstance(error, UsageError):
             raise
         raise UsageError("report", message=f"this is not a report in JSON: {error!r}") from error
@@ -71,9 +80,30 @@ def _result(result: Result) -> dict[str, Any]:
 
 def _read_result(item: dict[str, Any]) -> Result:
     evidence = tuple(
-        Exchange(e["at"], e["direction"], bytes.fromhex(e["data"]), e["note"])
+        Exchange(
+            _seconds(e["at"]),
+            _checked(e["direction"], str),
+            bytes.fromhex(e["data"]),
+            _checked(e["note"], str),
+        )
         for e in item["evidence"]
     )
     verdict, cause = Verdict(item["verdict"]), Cause(item["cause"])
-    case, command, reason = item["case"], item["command"], item["reason"]
-    return Result(case, command, verdict, reason, evidence, item["source"], cause)
+    names = ("case", "command", "reason", "source")
+    case, command, reason, source = (_checked(item[name], str) for name in names)
+    return Result(case, command, verdict, reason, evidence, source, cause)
+
+
+def _seconds(value: Any) -> float:
+    """Return a finite number; raise an exception for anything else."""
+    seconds = float(_checked(value, int | float))
+    if not isfinite(seconds):
+        raise ValueError(f"{seconds} is not a time")
+    return seconds
+
+
+def _checked(value: Any, kind: Any) -> Any:
+    """Return a value if it is of its kind; raise a TypeError otherwise."""
+    if not isinstance(value, kind):
+        raise TypeError(f"{str(value)[:60]!r} has the wrong type")
+    return value

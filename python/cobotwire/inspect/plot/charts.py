@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from math import ceil, log10
 from pathlib import Path
 from typing import Any
@@ -63,6 +64,8 @@ def save(figure: Figure, path: str) -> None:
         # In one step, so that a viewer never sees half a picture.
         os.replace(part, path)
     except OSError as error:
+        with suppress(OSError):
+            os.unlink(part)
         raise unusable_file("output", path, error) from None
 
 

@@ -44,7 +44,8 @@ class Pairing:
     def received(self, at: float, id: int) -> None:
         """Take a reply that was received."""
         requested = self._open.pop(id, None)
-        if requested is None:
+        # A reply before its request: the recorder's clock was set back between the two.
+        if requested is None or at < requested:
             return
         self.times.all.append((requested, at - requested))
         if at - requested > self._deadlines[id]:

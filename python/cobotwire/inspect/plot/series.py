@@ -51,23 +51,24 @@ def series_of_packets(packets: Iterable[Packet], codec: Codec) -> Series:
     Raises:
         UsageError: there are no packets.
     """
+    packets = list(packets)
+    if not packets:
+        raise UsageError("FILE", message="the recording holds no packets")
+    # Not that of the first packet: the recorder's clock may have been set back meanwhile.
+    start_ns = min(packet.time_ns for packet in packets)
     collector = _Collector(Series("seconds"), codec)
     pairing = Pairing(codec.table)
     # Packets of unknown direction count as replies, because the charts show replies.
     for stream, events, _ in cut(packets, lambda interface: codec, "reply"):
-        if collector.start_ns is None:
-            collector.start_ns = stream.start_ns
         for event in events:
             time_ns = stream.time_of(event.offset + len(event.data) - 1)
-            at = (time_ns - collector.start_ns) / 1e9
+            at = (time_ns - start_ns) / 1e9
             collector.series.end = max(collector.series.end, at)
             if stream.direction != "sent":
                 collector.add(event, at)
             if isinstance(event, Frame):
                 pair = pairing.sent if stream.direction == "sent" else pairing.received
                 pair(at, event.command)
-    if collector.start_ns is None:
-        raise UsageError("FILE", message="the recording holds no packets")
     collector.series.reply_times = pairing.finish()
     return collector.series
 
@@ -96,7 +97,6 @@ class _Collector:
 
     def __init__(self, series: Series, codec: Codec) -> None:
         self.series = series
-        self.start_ns: int | None = None
         self._tracks = {
             command.id: series.tracks[command.role]
             for command in codec.table.commands

@@ -187,7 +187,7 @@ def _shown(node: Node) -> str:
     if isinstance(node.value, dict):
         return "a mapping"
     if isinstance(node.value, list):
-        return "a list"
+        return "a list" if node.value else "an empty list"
     if node.value is None:
         return "nothing"
     if isinstance(node.value, int) and abs(node.value) >= 10**SHOWN:

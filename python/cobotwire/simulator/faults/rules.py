@@ -68,13 +68,15 @@ def one_of(words: Iterable[str]) -> Rule:
 class Several:
     """Allows one value, or a list of values; keeps a tuple."""
 
-    def __init__(self, one: Rule) -> None:
-        """``one`` is the rule of each value."""
-        self.one = one
+    def __init__(self, one: Rule, *, empty: bool = True) -> None:
+        """``one`` is the rule of each value; ``empty`` allows a list without values."""
+        self.one, self.empty = one, empty
 
     def __call__(self, value: Any) -> tuple[Any, ...]:
         """Return each value as its rule keeps it."""
         values = value if isinstance(value, list | tuple) else [value]
+        if not values and not self.empty:
+            raise ValueError("at least one value")
         return tuple(self.one(item) for item in values)
 
 

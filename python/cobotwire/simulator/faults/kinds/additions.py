@@ -116,7 +116,7 @@ class ServoLeak(Addition):
         packets: which ones; of several, one is drawn each time.
     """
 
-    packets: tuple[str, ...] = ruled(Several(one_of(LEAKS)), tuple(LEAKS))
+    packets: tuple[str, ...] = ruled(Several(one_of(LEAKS), empty=False), tuple(LEAKS))
 
     def drawn(self, moment: Moment) -> bytes:
         """Draw one of the packets."""

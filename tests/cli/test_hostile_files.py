@@ -1,0 +1,185 @@
+"""A file or a peer that is hostile is a plain error, or is shown; it is never a traceback."""
+
+from __future__ import annotations
+
+import re
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from cobotwire import MyCobot
+from cobotwire import codec as codecs
+from cobotwire.capture import CaptureWriter, Interface, Packet, Piece, read
+from cobotwire.capture import block_encoding as blocks
+from cobotwire.cli.app import app
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.protocol.errors import ScenarioError
+from cobotwire.simulator import PtyServer, ReplayedArm
+from cobotwire.simulator.faults import load
+from scripted_peer import ScriptedPeer
+
+SECOND = 10**9
+REQUEST = bytes.fromhex("FE FE 02 20 FA")
+ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+DIGITS = "9" * 5000
+PANIC = f"Guru Meditation Error: Core  {DIGITS} panic'ed (LoadProhibited). \r\nRebooting...\r\n"
+
+
+def run(*words: str | Path) -> tuple[int, str]:
+    """Run the CLI in this process; return its exit code and output. A traceback is raised."""
+    result = CliRunner().invoke(app, list(map(str, words)))
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result.exit_code, result.output
+
+
+def write(path: Path, comment: str = "", options: list[tuple[int, bytes]] | None = None) -> Path:
+    """Write a recording of one frame with a comment, on an interface with options."""
+    interface = struct.pack("<HHI", blocks.LINK_TYPE, 0, 0) + blocks._options(options or [])
+    path.write_bytes(
+        blocks.section("cobotwire")
+        + blocks._block(blocks.INTERFACE, interface)
+        + blocks.packet(0, SECOND, ANGLES, blocks.INBOUND, comment)
+    )
+    return path
+
+
+VERBS = [["replay"], ["replay", "--json"], ["decode"], ["decode", "--json"], ["plot", "-o"]]
+
+
+def show(verb: list[str], recording: Path) -> tuple[int, str]:
+    """Run a verb on a recording."""
+    output = [recording.with_suffix(".png")] if verb[0] == "plot" else []
+    return run(*verb, *output, recording)
+
+
+@pytest.mark.parametrize("verb", VERBS, ids=" ".join)
+@pytest.mark.parametrize(
+    "comment",
+    [
+        f"in pieces: {DIGITS} bytes at +0 ns",
+        f"in pieces: 17 bytes at +{DIGITS} ns",
+        f"in pieces: 17 bytes at +{'9' * 400} ns",
+        f"in pieces: {'0' * 5000}17 bytes at +1 ns",
+    ],
+    ids=["size", "delay", "delay beyond a float", "zeros"],
+)
+def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
+    tmp_path: Path, verb: list[str], comment: str
+) -> None:
+    code, _ = show(verb, write(tmp_path / "arm.pcapng", comment))
+    assert code == 0
+    [packet] = read(tmp_path / "arm.pcapng")
+    assert packet.pieces in ((), (Piece(17, SECOND + 1),))
+
+
+@pytest.mark.parametrize("verb", VERBS, ids=" ".join)
+@pytest.mark.parametrize("option", [blocks.INTERFACE_SPEED, blocks.INTERFACE_OFFSET])
+def test_number_of_an_interface_with_thousands_of_bytes_is_damage(
+    tmp_path: Path, verb: list[str], option: int
+) -> None:
+    code, text = show(verb, write(tmp_path / "arm.pcapng", "", [(option, b"\x7f" * 5000)]))
+    assert code == 6
+    assert "a number of an interface is too long" in text
+
+
+@pytest.mark.parametrize(
+    "seconds", [(10, 9, 8, 7), (10, 11, 2, 3), (5, 5, 5, 5), (0, 2**34)], ids=str
+)
+@pytest.mark.parametrize("verb", [*VERBS, ["plot", "--pose", "-o"]], ids=" ".join)
+def test_times_that_run_backwards_are_shown(
+    tmp_path: Path, seconds: tuple[int, ...], verb: list[str]
+) -> None:
+    path = tmp_path / "arm.pcapng"
+    with path.open("wb") as file:
+        writer = CaptureWriter(file)
+        writer.interface(Interface("", "mycobot"))
+        for number, second in enumerate(seconds):
+            frame = (REQUEST, ANGLES)[number % 2]
+            direction = ("sent", "received")[number % 2]
+            writer.packet(Packet(second * SECOND, direction, frame))  # type: ignore[arg-type]
+        writer.finish()
+    assert show(verb, path)[0] == 0
+    if verb == ["plot", "-o"]:
+        assert path.with_suffix(".png").stat().st_size > 1000
+
+
+def test_recorded_pause_of_centuries_does_not_end_the_server() -> None:
+    packets = [Packet(0, "sent", REQUEST), Packet(2**63, "received", ANGLES)]
+    with PtyServer(ReplayedArm(packets, codecs.load(TABLE))) as server:
+        for _ in range(2):
+            with MyCobot(server.url, timeout=0.2) as arm, pytest.raises(TimeoutError):
+                arm.get_angles()
+        assert server._thread.is_alive()
+
+
+@pytest.mark.parametrize("words", [["--raw"], ["--raw", "--json"], ["--raw", "--summary"]])
+def test_panic_with_a_core_of_thousands_of_digits_is_decoded(
+    tmp_path: Path, words: list[str]
+) -> None:
+    file = tmp_path / "arm.bin"
+    file.write_bytes(PANIC.encode())
+    code, text = run("decode", file, *words)
+    assert code == 1
+    assert "LoadProhibited" in text
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["doctor", "--count", "1", "--timeout", "0.2"],
+        ["monitor", "--count", "1"],
+        ["call", "get_angles", "--timeout", "0.2", "--port"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_panic_with_a_core_of_thousands_of_digits_is_reported(words: list[str]) -> None:
+    with ScriptedPeer(*[[PANIC.encode()]] * 200) as peer:
+        _, text = run(*words, peer.url)
+    # Of two dumps the first is cut off, where only the start of what was received is kept.
+    assert re.search("panic (LoadProhibited|of unknown cause)", text)
+
+
+@pytest.mark.parametrize("line", ["get_angles 'x", 'send_angle 1 "', "get_angles \\"])
+def test_open_quote_in_expected_calls_names_its_line(tmp_path: Path, line: str) -> None:
+    file = tmp_path / "calls.txt"
+    file.write_text(f"get_angles\n{line}\n")
+    code, text = run("conform", "client", "--expect", file)
+    assert code == 2
+    assert f"{file}:2: " in text
+
+
+def test_scenario_without_packets_names_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "leaks.yaml"
+    file.write_text("faults:\n- {fault: servo-leak, packets: []}\n")
+    with pytest.raises(ScenarioError) as caught:
+        load(file)
+    assert str(caught.value) == (
+        f"{file}:2:32: packets is an empty list; allowed: at least one value"
+    )
+
+
+@pytest.mark.parametrize("value", [f"0x{'f' * 5000}", DIGITS, "9" * 400, "1e999", "nan"])
+def test_argument_with_thousands_of_digits_is_wrong_usage(server: PtyServer, value: str) -> None:
+    for words in (["send_angle", "1", value, "30"], ["get_encoder", value]):
+        code, text = run("call", *words, "--port", server.url)
+        assert code == 2
+        assert len(text) < 300
+
+
+def test_recording_that_cannot_be_begun_leaves_no_file(server: PtyServer, tmp_path: Path) -> None:
+    file = tmp_path / "arm.pcapng"
+    call = ["call", "get_angles", "--port", server.url, "--record", str(file)]
+    # No file may grow: each write fails, as on a full disk.
+    limited = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh", sys.executable, "-c"]
+    command = [*limited, "from cobotwire.cli import main; main()", *call]
+    for _ in range(2):
+        ended = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert (ended.returncode, ended.stdout) == (2, "")
+        assert ended.stderr == f"cobotwire: {file}: File too large\n"
+        # Nothing remains that would keep the next attempt from recording.
+        assert not file.exists()
