@@ -44,7 +44,7 @@ PASSAGES = [
     One-way requests are sent once and at once, also while another thread waits for a reply; their
     methods return when the bytes are written. Requests that have a reply take turns. Queries are
     sent again within their deadline, as ``retry`` says. After a request was given up, the next one
-    like it is held until the late reply has come or is too late to come, since the two look alike.
+    like it is held until its late reply can no longer come, since the two look alike.
 
     Many threads may share one arm. Ctrl-C leaves it usable.
     """''',

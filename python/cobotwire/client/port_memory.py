@@ -12,10 +12,10 @@ killed, or never closes its client, leaves no note.
 
 from __future__ import annotations
 
+import binascii
 import os
 import stat
 import time
-import zlib
 from contextlib import suppress
 from typing import Any
 
@@ -96,7 +96,7 @@ def _key(url: str) -> str:
 
 def _path(key: str, create: bool = False) -> str:
     return os.path.join(
-        _folder(create), f"{zlib.crc32(key.encode(errors='surrogateescape')):08x}.json"
+        _folder(create), f"{binascii.crc32(key.encode(errors='surrogateescape')):08x}.json"
     )
 
 
