@@ -51,7 +51,10 @@ class Evidence:
     ) -> None:
         self._codec = codec
         self._grace = grace
-        self._limited: list[tuple[Call, str]] = []
+        self._limits: dict[int, str] = {}
+        self._of_request: dict[bytes, list[Call]] = {}
+        for call in record.calls:
+            self._of_request.setdefault(call.request, []).append(call)
         self._record = record
         self._spans: list[tuple[Span, bool]] = []
         self._places: list[int] = []
@@ -75,15 +78,9 @@ class Evidence:
     def limit_of(self, call: Call, kept: bool) -> str:
         """Return the limit that explains a wrong result; empty: none does.
 
-        Wrong calls must be given in the order in which they ended: one that took a copy leaves its
-        own reply to a later one.
-
         ``kept``: whether bytes may have waited for a new connection.
         """
-        limit = self._limit_of_query(call, kept) if call.query else self._limit_of_ack(call)
-        if limit:
-            self._limited.append((call, limit))
-        return limit
+        return self._limit_of_query(call, kept) if call.query else self._limit_of_ack(call)
 
     def _limit_of_query(self, call: Call, kept: bool) -> str:
         # A call ends with the reply that it takes, so of several like ones that is the last one.
@@ -192,11 +189,24 @@ class Evidence:
             return TOO_LATE
         if copy:
             return COPY if self._answered(made) else ""
-        # The call of this reply may have taken another one, by a limit.
-        for call, limit in self._limited:
-            if call.request == made.request and call.began <= made.at <= call.ended:
-                return limit
+        return self._displaced(made, found.at)
+
+    def _displaced(self, made: Made, before: float) -> str:
+        """Return the limit by which the call of a reply took another one, and left this one."""
+        for call in self._of_request.get(made.request, ()):
+            during = call.began <= made.at <= call.ended <= before
+            if during and call.ending == "value" and call.value != made.value:
+                limit = self._limit_of_taken(call)
+                if limit:
+                    return limit
         return ""
+
+    def _limit_of_taken(self, call: Call) -> str:
+        if call.number not in self._limits:
+            # Calls may have left replies to each other; none explains itself.
+            self._limits[call.number] = ""
+            self._limits[call.number] = self._limit_of_query(call, kept=False)
+        return self._limits[call.number]
 
     def _limit_of_ack(self, call: Call) -> str:
         """Return the limit that explains an acknowledgement of a request that did not arrive."""
@@ -221,8 +231,6 @@ class Evidence:
     def _answered(self, made: Made) -> bool:
         """Return whether the call that a reply belongs to got a value."""
         return any(
-            call.request == made.request
-            and call.ending == "value"
-            and call.began <= made.at <= call.ended
-            for call in self._record.calls
+            call.ending == "value" and call.began <= made.at <= call.ended
+            for call in self._of_request.get(made.request, ())
         )
