@@ -1,12 +1,12 @@
-"""What the line delivered, and which documented limit of the protocol explains a wrong result."""
+"""Which documented limit of the protocol explains a wrong result."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from attack.arm import Made, Span, result_of
+from attack.delivery import Delivery, Found
 from attack.line import Delivered
 from attack.record import Call, Record
 from cobotwire.codec.interface import Codec
@@ -24,22 +24,8 @@ SLACK = 0.02
 KEPT_SECONDS = 3.0
 
 
-class Found(NamedTuple):
-    """A frame in the delivered bytes.
-
-    Attributes:
-        at: when its last byte was delivered.
-        spans: what its bytes are, each with whether it is a further copy of a reply.
-        torn: whether bytes between its own were lost when the line broke.
-    """
-
-    at: float
-    spans: list[tuple[Span, bool]]
-    torn: bool
-
-
 class Evidence:
-    """The bytes that the line delivered, each with its time and its origin."""
+    """Which replies a call can have taken, and which documented limits explain it."""
 
     def __init__(
         self,
@@ -56,24 +42,7 @@ class Evidence:
         for call in record.calls:
             self._of_request.setdefault(call.request, []).append(call)
         self._record = record
-        self._spans: list[tuple[Span, bool]] = []
-        self._places: list[int] = []
-        place, seen = 0, set[int]()
-        for span in spans:
-            self._places.append(place)
-            copy = span.label == "reply" and id(span.made) in seen
-            self._spans.append((span, copy))
-            if span.label == "reply":
-                seen.add(id(span.made))
-            place += len(span.data)
-        sent = b"".join(span.data for span in spans)
-        self._chunks = delivered
-        self._starts: list[int] = []
-        size = 0
-        for chunk in delivered:
-            self._starts.append(size)
-            size += chunk.end - chunk.start
-        self._stream = b"".join(sent[chunk.start : chunk.end] for chunk in delivered)
+        self._delivery = Delivery(codec.table.frame, spans, delivered)
 
     def limit_of(self, call: Call, kept: bool) -> str:
         """Return the limit that explains a wrong result; empty: none does.
@@ -132,46 +101,13 @@ class Evidence:
 
     def _replies(self, call: Call, since: float) -> Iterator[Found]:
         """Yield the delivered frames that give the result of a call, from a time on."""
-        for found, data in self._frames(since, call.ended):
+        for found in self._delivery.frames(since, call.ended):
             try:
-                value = result_of(self._codec, call.name, data)
+                value = result_of(self._codec, call.name, found.data)
             except ProtocolError:
                 continue
             if value == call.value:
                 yield found
-
-    def _frames(self, since: float, until: float) -> Iterator[tuple[Found, bytes]]:
-        header = self._codec.table.frame.header
-        times = [chunk.at for chunk in self._chunks]
-        first = bisect_right(times, since)
-        last = bisect_right(times, until)
-        if first == last:
-            return
-        # A frame may have begun before the first of these bytes.
-        start = max(0, self._starts[first] - 40)
-        end = self._starts[last - 1] + self._chunks[last - 1].end - self._chunks[last - 1].start
-        while (start := self._stream.find(header, start, end)) >= 0:
-            size = len(header) + 1 + self._stream[start + len(header)] if start + 2 < end else 0
-            data = self._stream[start : start + size]
-            if size and start + size <= end and self._at(start + size - 1) >= since:
-                yield self._found(start, size), data
-            start += 1
-
-    def _chunk(self, index: int) -> tuple[Delivered, int]:
-        number = bisect_right(self._starts, index) - 1
-        return self._chunks[number], index - self._starts[number]
-
-    def _at(self, index: int) -> float:
-        return self._chunk(index)[0].at
-
-    def _found(self, start: int, size: int) -> Found:
-        places = []
-        for index in range(start, start + size):
-            chunk, inside = self._chunk(index)
-            places.append(chunk.start + inside)
-        numbers = sorted({bisect_right(self._places, place) - 1 for place in places})
-        torn = places[-1] - places[0] != size - 1
-        return Found(self._at(start + size - 1), [self._spans[n] for n in numbers], torn)
 
     def _limit(self, found: Found) -> str:
         for span, _ in found.spans:
@@ -189,13 +125,12 @@ class Evidence:
             return TOO_LATE
         if copy:
             return COPY if self._answered(made) else ""
-        return self._displaced(made, found.at)
+        return self._displaced(made)
 
-    def _displaced(self, made: Made, before: float) -> str:
+    def _displaced(self, made: Made) -> str:
         """Return the limit by which the call of a reply took another one, and left this one."""
-        for call in self._of_request.get(made.request, ()):
-            during = call.began <= made.at <= call.ended <= before
-            if during and call.ending == "value" and call.value != made.value:
+        for call in self._calls_of(made):
+            if call.ending == "value" and call.value != made.value:
                 limit = self._limit_of_taken(call)
                 if limit:
                     return limit
@@ -210,9 +145,9 @@ class Evidence:
 
     def _limit_of_ack(self, call: Call) -> str:
         """Return the limit that explains an acknowledgement of a request that did not arrive."""
-        for found, data in self._frames(call.began - GRACE_SECONDS, call.ended):
+        for found in self._delivery.frames(call.began - GRACE_SECONDS, call.ended):
             try:
-                self._codec.decode("reply", data, of=call.name)
+                self._codec.decode("reply", found.data, of=call.name)
             except ProtocolError:
                 continue
             limit = self._limit(found)
@@ -230,7 +165,10 @@ class Evidence:
 
     def _answered(self, made: Made) -> bool:
         """Return whether the call that a reply belongs to got a value."""
-        return any(
-            call.ending == "value" and call.began <= made.at <= call.ended
-            for call in self._of_request.get(made.request, ())
-        )
+        return any(call.ending == "value" for call in self._calls_of(made))
+
+    def _calls_of(self, made: Made) -> list[Call]:
+        """Return the calls that can have sent the request of a reply."""
+        sent = self._last_handed(made.request, made.at)
+        calls = self._of_request.get(made.request, ())
+        return [call for call in calls if call.began <= sent <= call.ended]
