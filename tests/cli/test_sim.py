@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import re
 import select
 import signal
 import socket
@@ -66,6 +67,40 @@ def test_sim_continues_when_its_output_is_closed(sim: subprocess.Popen[str]) -> 
     assert sim.wait(timeout=10) == 0
     assert sim.stderr.read() == ""
     sim.stdout = None
+
+
+@pytest.mark.parametrize("sim", [[], ["--json"]], indirect=True, ids=["text", "json"])
+def test_arm_replies_while_nobody_reads_the_output(sim: subprocess.Popen[str]) -> None:
+    assert sim.stdout is not None
+    first = sim.stdout.readline().strip()
+    url = json.loads(first)["url"] if first.startswith("{") else first
+    # A pipe holds 64 KiB, and the program keeps 1 MiB.
+    with MyCobot(url, timeout=5.0) as arm:
+        for _ in range(20_000):
+            assert arm.is_power_on() is False
+        # A reader that comes late gets the first lines, and how many are missing.
+        lines = []
+        while "left out" not in (line := sim.stdout.readline()):
+            assert "FE FE 02 12 FA" in line
+            lines.append(line)
+        assert len(lines) + int(re.findall(r"\d+", line)[0]) == 20_000
+        # From then on no line is missing.
+        arm.power_on()
+        assert "power_on" in sim.stdout.readline()
+    sim.send_signal(signal.SIGTERM)
+    assert sim.wait(timeout=10) == 0
+
+
+def test_sim_whose_output_nobody_reads_ends_on_a_signal(sim: subprocess.Popen[str]) -> None:
+    assert sim.stdout is not None
+    url = sim.stdout.readline().strip()
+    with MyCobot(url, timeout=5.0) as arm:
+        for _ in range(2000):
+            arm.is_power_on()
+    started = time.monotonic()
+    sim.send_signal(signal.SIGTERM)
+    assert sim.wait(timeout=10) == 0
+    assert time.monotonic() - started < 5
 
 
 @pytest.mark.parametrize("sim", [["--quiet"]], indirect=True)

@@ -147,3 +147,11 @@ def test_report_on_a_simulated_arm_names_it(tmp_path: Path) -> None:
     report = from_json(file.read_text())
     assert report.subject == "simulated arm in memory"
     assert any(result.verdict is Verdict.PASS for result in report.results)
+
+
+@pytest.mark.parametrize(("host", "warns"), [("0.0.0.0", True), ("127.0.0.1", False)])
+def test_client_tester_on_a_public_address_warns(host: str, warns: bool) -> None:
+    words = ("client", "--listen", f"socket://{host}:0", "--seconds", "0.1")
+    ended = _run(*words)
+    warning = f"cobotwire: anyone who can reach {host} can connect, and is judged as the client\n"
+    assert ended.stderr == (warning if warns else "")

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 
 import pytest
 
@@ -14,7 +17,7 @@ from cobotwire import LinkError, UsageError
 from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire.simulator.client_connection import UNREAD_LIMIT
-from cobotwire.simulator.tcp import MOST_CLIENTS, address
+from cobotwire.simulator.tcp import IDLE_SECONDS, MOST_CLIENTS, address
 
 QUERY = bytes.fromhex("FE FE 02 12 FA")
 OFF = bytes.fromhex("FE FE 03 12 00 FA")
@@ -143,6 +146,9 @@ def test_clients_beyond_the_limit_are_disconnected(server: TcpServer) -> None:
     clients = [_connect(server) for _ in range(MOST_CLIENTS)]
     try:
         assert _comes(lambda: server.clients == MOST_CLIENTS)
+        for client in clients:
+            client.sendall(QUERY)
+            assert client.recv(100) == OFF
         with _connect(server) as late:
             assert late.recv(100) == b""
         clients.pop().close()
@@ -152,6 +158,71 @@ def test_clients_beyond_the_limit_are_disconnected(server: TcpServer) -> None:
     finally:
         for client in clients:
             client.close()
+
+
+def test_client_that_is_idle_for_longest_makes_room_for_a_new_one(server: TcpServer) -> None:
+    with ExitStack() as stack:
+        clients = [stack.enter_context(_connect(server)) for _ in range(MOST_CLIENTS)]
+        assert _comes(lambda: server.clients == MOST_CLIENTS)
+        # The first one has sent something, the last one still does; no other one ever did.
+        for _ in range(2):
+            clients[0].sendall(QUERY)
+            assert clients[0].recv(100) == OFF
+            time.sleep(IDLE_SECONDS / 2 + 0.2)
+        for busy in (clients[0], clients[-1]):
+            busy.sendall(QUERY)
+            assert busy.recv(100) == OFF
+        for number in range(1, MOST_CLIENTS - 1):
+            late = stack.enter_context(_connect(server))
+            late.sendall(QUERY)
+            assert late.recv(100) == OFF
+            assert clients[number].recv(100) == b""
+        for busy in (clients[0], clients[-1]):
+            busy.sendall(QUERY)
+            assert busy.recv(100) == OFF
+
+
+def test_server_without_descriptors_waits_and_then_accepts() -> None:
+    # In another process, whose limit of open files is low.
+    program = """
+import resource, sys, time
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.simulator import SimulatedArm, TcpServer
+with TcpServer(SimulatedArm(TABLE).connect) as server:
+    held = [open("/dev/null") for _ in range(8)]
+    resource.setrlimit(resource.RLIMIT_NOFILE, (held[-1].fileno() + 1, 4096))
+    print(server.url, flush=True)
+    sys.stdin.readline()
+    print(time.process_time(), flush=True)
+    sys.stdin.readline()
+    print(time.process_time(), flush=True)
+    held.clear()
+    sys.stdin.readline()
+"""
+    with subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+
+        def processor_time() -> float:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            process.stdin.write("\n")
+            process.stdin.flush()
+            return float(process.stdout.readline())
+
+        url = process.stdout.readline().strip()
+        with socket.create_connection(("127.0.0.1", int(url.rpartition(":")[2])), 5) as client:
+            client.settimeout(5)
+            client.sendall(QUERY)
+            started = processor_time()
+            time.sleep(1.0)
+            assert processor_time() - started < 0.3
+            # A file was closed meanwhile.
+            assert client.recv(100) == OFF
+        process.communicate("\n", timeout=10)
+        assert process.returncode == 0
 
 
 def test_closing_the_server_disconnects_all_clients() -> None:

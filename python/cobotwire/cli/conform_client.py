@@ -144,7 +144,11 @@ def _server(listen: str, referee: Referee) -> Server:
         raise UsageError("listen", listen, "pty or socket://HOST:PORT")
     host, port = address(parts.netloc)
     # All connections count as the same client, because the referee judges one client.
-    return TcpServer(lambda: referee, host, port)
+    server = TcpServer(lambda: referee, host, port)
+    if not server.loopback:
+        text = f"anyone who can reach {host} can connect, and is judged as the client"
+        click.echo(f"cobotwire: {text}", err=True)
+    return server
 
 
 def read_script(table: Table, path: str) -> Iterator[ScriptLine]:

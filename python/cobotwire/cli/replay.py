@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from typing import Any
 
 import click
 
 from cobotwire.capture import CaptureReader, Packet, read
 from cobotwire.capture.streams import codec_of_interface, packets_of_interface
+from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.output import as_hex, print_line
 from cobotwire.cli.shared.recordings import ARROWS, interface_option, warn_if_incomplete
 from cobotwire.cli.shared.serving import serve
+from cobotwire.cli.shared.simulator_output import left_out
 from cobotwire.codec.interface import Codec
 from cobotwire.diagnose.explain import format_message
 from cobotwire.protocol.errors import ProtocolError, UsageError
@@ -45,29 +48,35 @@ def replay(
             _print_timeline(capture, edition, as_json)
             warn_if_incomplete(capture)
             return
-        arm = _arm(capture, edition, speed, interface)
+        lines = LineOutput(left_out)
+        arm = _arm(capture, edition, speed, interface, lines)
         warn_if_incomplete(capture)
-    serve(PtyServer(arm))
+    try:
+        serve(PtyServer(arm), between=[lines.flush])
+    finally:
+        lines.close()
 
 
-def _arm(capture: CaptureReader, edition: str, speed: float, interface: int) -> ReplayedArm:
+def _arm(
+    capture: CaptureReader, edition: str, speed: float, interface: int, lines: LineOutput
+) -> ReplayedArm:
     if not 0 < speed <= FASTEST:
         raise UsageError("speed", speed, f"above 0, up to {FASTEST:.0f}")
     packets = packets_of_interface(capture, interface)
     codec = codec_of_interface(capture, interface, edition)
-    arm = ReplayedArm(packets, codec, speed=speed, on_request=_print_request)
+    arm = ReplayedArm(packets, codec, speed=speed, on_request=partial(_print_request, lines))
     if not arm.requests:
         message = f"{capture.name} holds no request, so there is nothing to reply to"
         raise UsageError("FILE", capture.name, message=message)
     return arm
 
 
-def _print_request(request: ReplayedRequest) -> None:
+def _print_request(lines: LineOutput, request: ReplayedRequest) -> None:
     size = request.reply_size
     reply = f"replied with {size} bytes" if size else "no reply"
     if size is None:
         reply = "this request was not recorded"
-    print_line(f"received {as_hex(request.data)}   {reply}")
+    lines.print(f"received {as_hex(request.data)}   {reply}")
 
 
 def _print_timeline(capture: CaptureReader, edition: str, as_json: bool) -> None:

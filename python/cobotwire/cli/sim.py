@@ -14,7 +14,7 @@ import click
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.joint_table import JointTable
-from cobotwire.cli.shared.output import print_line
+from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import JsonLines, Lines
 from cobotwire.inspect.plot.live_pose import LivePose
@@ -95,14 +95,16 @@ def sim(
         raise UsageError("seed", seed, message="--seed needs --scenario")
     package = editions.load(edition)
     output = JsonLines() if as_json else Lines()
+    lines = LineOutput(output.left_out)
     clock = RunningClock(speed)
-    on_note = None if quiet else lambda note: print_line(output.note(note))
+    on_note = None if quiet else lambda note: lines.print(output.note(note))
     arm = SimulatedArm(package.TABLE, clock=clock, on_note=on_note)
     faults = None if scenario is None else find(scenario, package.TABLE)
-    peers = _Peers(arm, clock, faults, seed, None if quiet else output)
+    peers = _Peers(arm, clock, faults, seed, None if quiet else output, lines)
     server = _server(peers, clock, tcp)
     with ExitStack() as stack:
-        between: list[Callable[[], None]] = []
+        between: list[Callable[[], None]] = [] if quiet else [lines.flush]
+        stack.callback(lines.close)
         if sys.stdout.isatty() and not (quiet or as_json):
             between.append(stack.enter_context(JointTable(package, arm, clock)).update)
         if view is not None:
@@ -135,9 +137,11 @@ class _Peers:
         scenario: Scenario | None,
         seed: int | None,
         output: Lines | JsonLines | None,
+        lines: LineOutput,
     ) -> None:
         self._arm, self._clock = arm, clock
-        self._scenario, self._seed, self._output = scenario, seed, output
+        self._scenario, self._seed = scenario, seed
+        self._output, self._lines = output, lines
 
     def new(self, client: int | None) -> Peer:
         arm = self._arm.connect(partial(self._print_event, client))
@@ -153,8 +157,8 @@ class _Peers:
 
     def _print_event(self, client: int | None, event: DeviceEvent, reply: bytes) -> None:
         if self._output is not None:
-            print_line(self._output.event(client, event, reply))
+            self._lines.print(self._output.event(client, event, reply))
 
     def _print_fault(self, client: int | None, done: AppliedFault) -> None:
         if self._output is not None:
-            print_line(self._output.fault(client, done))
+            self._lines.print(self._output.fault(client, done))

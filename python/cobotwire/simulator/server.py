@@ -82,8 +82,9 @@ class Server:
 
     def _ready(self, descriptor: int, events: int) -> None:
         """Handle a registered descriptor that is ready: a client's."""
-        client = self._clients[descriptor]
-        if events & READ and not client.receive():
+        client = self._clients.get(descriptor)
+        # It may have been dropped since select() returned.
+        if client is not None and events & READ and not client.receive():
             self._drop(client)
 
     def _connect(self, endpoint: Endpoint, peer: Peer) -> None:
@@ -120,6 +121,9 @@ class _Client:
         self.connection = connection
         # Whether the client must take some replies before it gets more.
         self.full = False
+        # When it sent bytes last, or connected; and whether it has sent any.
+        self.active_at = time.monotonic()
+        self.has_sent = False
 
     def receive(self) -> bool:
         """Receive what the client has sent; return whether client and peer are still connected."""
@@ -129,6 +133,7 @@ class _Client:
             return True
         except OSError:
             return False
+        self.active_at, self.has_sent = time.monotonic(), True
         try:
             self.connection.receive(data)
         except PeerDisconnected:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import selectors
 import socket
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from ipaddress import ip_address
@@ -18,6 +20,12 @@ ANY_FREE_PORT = 0
 HIGHEST_PORT = 65535
 # Further clients are disconnected: a runaway program must not use up all descriptors.
 MOST_CLIENTS = 64
+# Unless a client has been silent for this long: it is disconnected instead.
+IDLE_SECONDS = 2.0
+# While the system has no descriptor left, a client is accepted at most this often.
+RETRY_SECONDS = 0.2
+# A client is accepted only if as many descriptors are free.
+SPARE_DESCRIPTORS = 4
 
 
 class TcpServer(Server):
@@ -56,6 +64,8 @@ class TcpServer(Server):
         # A server that listens on all addresses is reached by loopback, too.
         shown = LOOPBACK if ip_address(bound).is_unspecified else bound
         self.url = f"socket://{f'[{shown}]' if ':' in shown else shown}:{number}"
+        # Since when no client can be accepted; None: they can.
+        self._paused_at: float | None = None
         self._selector.register(self._listening, selectors.EVENT_READ)
 
     @property
@@ -74,11 +84,28 @@ class TcpServer(Server):
         else:
             super()._ready(descriptor, events)
 
+    def _wait(self, call_at: float | None) -> float | None:
+        wait = super()._wait(call_at)
+        if self._paused_at is None:
+            return wait
+        left = self._paused_at + RETRY_SECONDS - time.monotonic()
+        if left <= 0:
+            self._paused_at = None
+            self._selector.register(self._listening, selectors.EVENT_READ)
+            return wait
+        return left if wait is None else min(left, wait)
+
     def _accept(self) -> None:
+        if not self._descriptors_are_free():
+            if not self._drop_idle_client():
+                # The client still waits: select() would return at once, again and again.
+                self._selector.unregister(self._listening)
+                self._paused_at = time.monotonic()
+            return
         # A client that disconnects before accept() is not an error.
         with suppress(OSError):
             client, _ = self._listening.accept()
-            if self.clients >= MOST_CLIENTS:
+            if self.clients >= MOST_CLIENTS and not self._drop_idle_client():
                 client.close()
                 return
             client.setblocking(False)
@@ -86,6 +113,29 @@ class TcpServer(Server):
             client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             endpoint = Endpoint(client.fileno(), client.recv, client.send, client.close)
             self._connect(endpoint, self._new_peer())
+
+    def _descriptors_are_free(self) -> bool:
+        """Return whether there are descriptors for a client, and for what a reply imports."""
+        free: list[int] = []
+        try:
+            with suppress(OSError):
+                free += (os.dup(self._listening.fileno()) for _ in range(SPARE_DESCRIPTORS))
+        finally:
+            for descriptor in free:
+                os.close(descriptor)
+        return len(free) == SPARE_DESCRIPTORS
+
+    def _drop_idle_client(self) -> bool:
+        """Disconnect the client that has been silent for longest, if that is long enough.
+
+        One that has never sent a byte goes before all that have.
+        """
+        latest = time.monotonic() - IDLE_SECONDS
+        idle = [client for client in self._clients.values() if client.active_at < latest]
+        if not idle:
+            return False
+        self._drop(min(idle, key=lambda client: (client.has_sent, client.active_at)))
+        return True
 
 
 def address(text: str) -> tuple[str, int]:
@@ -95,7 +145,7 @@ def address(text: str) -> tuple[str, int]:
         UsageError: the text does not have this form.
     """
     host, colon, number = text.rpartition(":")
-    if not colon or not (number.isascii() and number.isdigit()):
+    if not colon or not (number.isascii() and number.isdigit() and len(number) <= 5):
         raise UsageError("address", text, "HOST:PORT, or :PORT for this machine alone")
     return host.removeprefix("[").removesuffix("]") or LOOPBACK, int(number)
 

@@ -17,6 +17,11 @@ from cobotwire.simulator.arm import Note
 from cobotwire.simulator.faults import AppliedFault
 
 
+def left_out(lines: int) -> str:
+    """Return the line that stands for lines that were left out."""
+    return f"... {lines} lines are left out: nobody read them in time"
+
+
 class Lines:
     """Formats a line for people."""
 
@@ -44,6 +49,10 @@ class Lines:
     def note(self, note: Note) -> str:
         """Format why the arm ignored a request."""
         return self._line(None, "note", f"{note.command}: {note.text}")
+
+    def left_out(self, lines: int) -> str:
+        """Format how many lines were left out, because the output was not read."""
+        return left_out(lines)
 
     def _line(self, client: int | None, kind: str, text: str) -> str:
         line = f"{kind:<8} {text}"
@@ -85,6 +94,10 @@ class JsonLines:
     def note(self, note: Note) -> str:
         """Format why the arm ignored a request."""
         return self._object(None, {"event": "note", **note._asdict()})
+
+    def left_out(self, lines: int) -> str:
+        """Format how many lines were left out, because the output was not read."""
+        return self._object(None, {"event": "left out", "lines": lines})
 
     def _object(self, client: int | None, content: dict[str, Any]) -> str:
         return json.dumps(content if client is None else {"client": client, **content})
