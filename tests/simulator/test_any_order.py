@@ -38,6 +38,8 @@ CHANGES = {
     "power_on": {"is_free_mode"},
     "restore_servo_params": {"get_servo_data"},
 }
+# Motion commands that set no joint in motion after a stop.
+MOVES_NO_JOINT = {"pause", "resume", "clear_queue", "jog_stop", "set_gripper_state"}
 CALIBRATIONS = {"set_servo_calibration"}
 FASTEST, ACCELERATION, TICK = 150.0, 200.0, 360 / 4096
 ROUNDING = 1e-6
@@ -111,15 +113,21 @@ class AnyOrder(RuleBasedStateMachine):
         self.send("power_on")
 
     @rule(rng=st.randoms(use_true_random=False), seconds=st.sampled_from([0.0, 0.3, 5.0]))
-    def stop_and_try_to_move(self, rng: random.Random, seconds: float) -> None:
+    def stop_and_move_again(self, rng: random.Random, seconds: float) -> None:
         self.send("send_angles", tuple(angle / 2 for angle in random_angles(rng)), 50)
         self.clock.sleep(seconds)
         self.joints_stay_within_limits_and_below_the_fastest_speed()
         self.send(self.table.in_role("stop").name)
         self.clock.sleep(FASTEST / ACCELERATION)
         self.no_joint_moves_after_a_stop()
-        self.send("send_angles", tuple(angle / 2 for angle in random_angles(rng)), 50)
+        self.send("resume")
+        self.no_joint_moves_after_a_stop()
+        target, notes = tuple(angle / 2 for angle in random_angles(rng)), len(self.arm.notes)
+        self.send("send_angles", target, 50)
         self.clock.sleep(0.5)
+        if len(self.arm.notes) == notes:
+            aim = self.arm.state.angles.target(self.clock())
+            assert all(abs(a - b) <= TICK for a, b in zip(aim, target)), "the motion is obeyed"
 
     @rule(data=st.data())
     def shift_coordinates_by_any_reference(self, data: st.DataObject) -> None:
@@ -211,10 +219,10 @@ class AnyOrder(RuleBasedStateMachine):
             assert reply == b""
 
     def note_motion(self, name: str) -> None:
-        role = self.table.command(name).role
+        role, safety = self.table.command(name).role, self.table.command(name).safety
         if role == "stop":
             self.stopped_at, self.stood = self.clock(), None
-        if name == "resume":
+        elif safety == "motion" and name not in MOVES_NO_JOINT:
             self.stopped_at = None
         if name in CALIBRATIONS:
             self.stood = None

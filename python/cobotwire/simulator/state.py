@@ -39,7 +39,6 @@ class ArmState:
     powered: bool = False
     connected: bool = True
     free: bool = False
-    stopped: bool = False
     paused: bool = False
     fresh_mode: int = 0
     movement_type: int = 0
@@ -109,8 +108,8 @@ class ArmState:
         return [inside(low, high) for low, high in pairs] if self.geometry else pairs
 
     def resume(self, now: float) -> None:
-        """End a pause and a stop: continue, and obey motion again."""
-        self.paused, self.stopped = False, False
+        """End a pause: continue."""
+        self.paused = False
         self.angles.resume(now)
 
     def servo_speeds(self, now: float) -> tuple[int, ...]:

@@ -45,13 +45,11 @@ def reject(arm: ArmState, why: str, error: int = 0) -> bool:
 
 
 def may_move(arm: ArmState, speed: int) -> bool:
-    """Return whether the arm obeys a motion now: it is powered, held, and not stopped."""
+    """Return whether the arm obeys a motion now: it is powered and held."""
     if not arm.powered:
         return reject(arm, "ignored: the arm has no power")
     if arm.free or not all(arm.enabled):
         return reject(arm, "ignored: not every joint is held")
-    if arm.stopped:
-        return reject(arm, "ignored: the arm was stopped, and waits for resume")
     if speed == 0:
         return reject(arm, "ignored: its speed is 0")
     return True

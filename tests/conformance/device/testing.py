@@ -59,7 +59,7 @@ class Altered:
 
 
 # An interrupted run does not restore the power, since an arm without power would fall.
-HELD = ("powered", "stopped")
+HELD = ("powered",)
 # Not settings: where the arm is, what has happened to it, and what it is.
 NOT_SET = ("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry")
 

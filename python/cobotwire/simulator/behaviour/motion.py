@@ -60,16 +60,15 @@ query(m.IsPaused, lambda arm, now, request: arm.paused)
 
 @behaviour(m.Resume)
 def resume(arm: ArmState, now: float, request: m.Resume) -> None:
-    """Continue; after a stop, obey motion again."""
+    """End a pause, and continue."""
     arm.resume(now)
 
 
 @behaviour(m.Stop)
 def stop(arm: ArmState, now: float, request: m.Stop) -> None:
-    """End every motion; the arm ignores later ones until resume."""
+    """End every motion, and a pause; the next motion is obeyed."""
     arm.angles.brake(now)
     arm.resume(now)
-    arm.stopped = True
 
 
 @behaviour(m.IsInPosition)
