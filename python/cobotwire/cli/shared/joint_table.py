@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Self
 
+from rich.constrain import Constrain
 from rich.live import Live
 from rich.table import Table as Grid
 
@@ -22,6 +23,8 @@ SHOWN: tuple[tuple[Role, str], ...] = (
 )
 # The arm replies at once, or never.
 REPLY_SECONDS = 0.05
+# The terminal echoes ^C after the last row of the table; there it must not begin another row.
+ECHO_COLUMNS = 3
 
 
 class JointTable:
@@ -58,7 +61,8 @@ class JointTable:
         grid = Grid(title=title, show_header=False)
         for label, name in self._rows:
             grid.add_row(label, self._query(name))
-        self._live.update(grid, refresh=True)
+        width = self._live.console.width - ECHO_COLUMNS
+        self._live.update(Constrain(grid, width), refresh=True)
 
     def _query(self, name: str) -> str:
         try:
