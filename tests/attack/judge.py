@@ -120,11 +120,7 @@ class Judge:
         if call.ended <= due or call.ending == "interrupted":
             return
         excess = call.ended - due
-        stalled = sum(
-            min(at, call.ended) - max(at - seconds, call.began)
-            for at, seconds in self._scene.stalls
-            if at > call.began and at - seconds < call.ended
-        )
+        stalled = max(_stalled(call, self._scene.stalls), _stalled(call, self._scene.line.stalls))
         if stalled >= excess:
             self.tally.stalled += 1
             return
@@ -198,3 +194,12 @@ class Judge:
         self._fails += 1
         if self._fails <= MOST_FAILURES:
             self.tally.failures.append("\n".join([str(self._plan), title, *lines]))
+
+
+def _stalled(call: Call, stalls: list[tuple[float, float]]) -> float:
+    """Return for how many seconds of a call something was kept from running."""
+    return sum(
+        min(at, call.ended) - max(at - seconds, call.began)
+        for at, seconds in stalls
+        if at > call.began and at - seconds < call.ended
+    )

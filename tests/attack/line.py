@@ -22,6 +22,8 @@ READ_SIZE = 4096
 # As long as nothing is due, the loop looks for orders of the run this often.
 SLICE_SECONDS = 0.005
 SMALL_BUFFER = 1024
+# A turn of the loop that takes longer was kept from running.
+STALL_SECONDS = 0.02
 # More than a pty holds.
 LARGE = 1 << 20
 # TCP goes on after a stall only when it has probed the peer.
@@ -51,6 +53,7 @@ class HostileLine:
 
     Attributes:
         frames: the legal requests that arrived before any fault, with their times.
+        stalls: when the line itself did not run, and for how many seconds.
         delivered: which of the sent bytes were given to the transport, and when.
     """
 
@@ -58,7 +61,7 @@ class HostileLine:
         self.frames: list[tuple[float, bytes]] = []
         self.delivered: list[Delivered] = []
         self.stalled = False
-        self.breaks = 0
+        self.stalls: list[tuple[float, float]] = []
         self._peer = peer
         self._codec = codec
         self._framer = codec.framer("request")
@@ -109,7 +112,6 @@ class HostileLine:
     def unplug(self, *, resets: bool) -> None:
         """Break the line; :meth:`replug` brings it back."""
         with self._lock:
-            self.breaks += 1
             self._there = False
             self._drop()
             self._unwritten = b""
@@ -176,7 +178,12 @@ class HostileLine:
         self._end = None
 
     def _serve(self) -> None:
+        before = time.monotonic()
         while not self._over:
+            now = time.monotonic()
+            if now - before > STALL_SECONDS:
+                self.stalls.append((now, now - before - SLICE_SECONDS))
+            before = now
             with self._lock:
                 end, wait = self._end, self._peer.wait
                 reading = [] if end is None or self.stalled else [end]
