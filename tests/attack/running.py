@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from attack.arm import HostilePeer
 from attack.blocking import run_threads
 from attack.calls import SHORT
+from attack.ends import PtyEnd, TcpEnd
 from attack.judge import Judge, Scene
 from attack.line import HostileLine
 from attack.plans import Plan, plan
@@ -37,7 +38,8 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
     """Run a plan and judge it; ``change`` makes another client of the edition's."""
     codec = codecs.load(table_of(chosen), "reference")
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
-    line = HostileLine(peer, codec, tcp=chosen.tcp, small=chosen.profile.stalls)
+    end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
+    line = HostileLine(peer, codec, end)
     with StallMeter() as meter, line:
         setting = Setting(chosen, line.url)
         if change is not None:

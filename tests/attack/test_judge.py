@@ -13,9 +13,10 @@ from attack.profiles import PROFILES
 from attack.running import attack
 from attack.tally import FORBIDDEN, Tally
 from cobotwire.session import exchange
+from cobotwire.simulator.faults import Corrupted
 
 
-def chosen(profile: str = "benign", **changes: Any) -> Plan:
+def chosen(name: str = "benign", **changes: Any) -> Plan:
     """Return the plan of a short run of the blocking client."""
     usual: dict[str, Any] = {
         "client": "blocking",
@@ -28,7 +29,7 @@ def chosen(profile: str = "benign", **changes: Any) -> Plan:
         "seconds": 2.0,
         "calls": 120,
     }
-    return replace(plan(PROFILES[profile], 1), **{**usual, **changes})
+    return replace(plan(PROFILES[name], 1), **{**usual, **changes})
 
 
 def counts(tally: Tally) -> list[str]:
@@ -115,14 +116,14 @@ def test_undocumented_exception_is_counted() -> None:
 def test_call_that_ends_after_its_deadline_is_late() -> None:
     def change(client: Any) -> Any:
         class Slow(client):  # type: ignore[misc]
-            def get_joint_min_angle(self, joint: int) -> float:
-                value: float = super().get_joint_min_angle(joint)
+            def get_encoder(self, joint: int) -> int:
+                value: int = super().get_encoder(joint)
                 time.sleep(0.6)
                 return value
 
         return Slow
 
-    assert "late" in counts(attack(chosen(users=1, seconds=0.7), change))
+    assert "late" in counts(attack(chosen(users=1, seconds=1.0), change))
 
 
 def test_call_that_never_ends_is_lost() -> None:
@@ -138,6 +139,10 @@ def test_call_that_never_ends_is_lost() -> None:
 
 
 def test_damaged_value_is_recognised_as_a_limit() -> None:
-    tally = attack(chosen("harsh", users=2, seconds=1.2, calls=1000, attempts=3))
-    assert tally.honest or tally.limited
-    assert tally.wrong == 0
+    # The last byte of the value: most damaged replies are legal.
+    faults = (Corrupted(byte=-2, probability=0.5),)
+    damaging = replace(PROFILES["benign"], faults=faults, one_way=0.0)
+    tally = attack(chosen(profile=damaging))
+    assert tally.limits["damage"] >= 10
+    assert tally.limited == tally.limits["damage"]
+    assert counts(tally) == []
