@@ -106,7 +106,9 @@ def sim(
         between: list[Callable[[], None]] = [] if quiet else [lines.flush]
         stack.callback(lines.close)
         if sys.stdout.isatty() and not (quiet or as_json):
-            between.append(stack.enter_context(JointTable(package, arm, clock)).update)
+            table = stack.enter_context(JointTable(package, arm, clock))
+            lines.redirect(table.add_line)
+            between.append(table.update)
         if view is not None:
             between.append(stack.enter_context(LivePose(package, arm, clock, view)).update)
         preparation = threading.Timer(PREPARE_AFTER_SECONDS, prepare)

@@ -32,19 +32,24 @@ class LineOutput:
         self._format_left_out = left_out
         self._left_out = 0
         self._pipe = _pipe()
+        self._print_line: Callable[[str], None] = print_line
         self._waiting: deque[bytes] = deque()
         self._size = 0
 
     def print(self, line: str) -> None:
         """Print a line as soon as the reader takes it; do nothing if the reader is gone."""
         if self._pipe is None:
-            print_line(line)
+            self._print_line(line)
             return
         if self._left_out or self._size > KEPT:
             self._left_out += 1
         else:
             self._add(line)
         self.flush()
+
+    def redirect(self, print_line: Callable[[str], None]) -> None:
+        """Give each line of a terminal to ``print_line``, because a live table is on the screen."""
+        self._print_line = print_line
 
     def flush(self) -> None:
         """Print what the reader takes now; call this from time to time."""

@@ -18,12 +18,10 @@ WIDTH_OF_FILES = 200
 def print_line(line: str) -> None:
     """Print a line at once; do nothing if the reader of the output has closed it.
 
-    While a live table is shown, the line appears above it.
+    Not while a live table is shown: the line would be written into the table.
     """
     try:
-        # rich replaces sys.stdout while it shows a table; without ``file``, click writes past that
-        # replacement, into the table.
-        click.echo(line, file=sys.stdout)
+        click.echo(line)
     except BrokenPipeError:
         discard_output()
 
