@@ -14,6 +14,7 @@ import pytest
 from strategies import TABLES
 from targets.comparison import ToolMissing
 from targets.decoder import browser
+from targets.decoder.browser import SHOWN
 from vectors import ROOT
 
 # The elements that make a browser load content, and the attribute that names the content.
@@ -102,7 +103,8 @@ def test_pages_load_nothing_from_other_hosts(pages: dict[Path, Page]) -> None:
 @pytest.mark.parametrize("edition", sorted(TABLES))
 def test_decoder_page_of_the_site_decodes_a_request(site: Path, edition: str) -> None:
     try:
-        shown = browser.dom(f"{(site / 'decoder.html').as_uri()}#edition={edition}&hex=FEFE0220FA")
+        url = f"{(site / 'decoder.html').as_uri()}#edition={edition}&hex=FEFE0220FA"
+        _, shown = browser.evaluate(url, SHOWN, "shown()")
     except ToolMissing as missing:
         pytest.skip(str(missing))
     assert "request at 0: <code>get_angles</code>" in shown

@@ -1,14 +1,19 @@
 "use strict";
 // Cut frames and decode them by an edition's table (docs/framing.md), without access to the page.
-(function () {
+(function law() {
   const DIRECTIONS = ["request", "reply"];
 
-  class Rejection extends Error {
-    // The reason why bytes are not a legal message; `offset` is that of the first wrong byte.
+  class Rejection {
+    // The reason why bytes are not a legal message; `offset` is that of the first wrong byte. Not an
+    // Error, and its text is made when it is read: in noise, each byte has a rejection.
     constructor(reason, offset, text) {
-      super(text);
       this.reason = reason;
       this.offset = offset;
+      this.text = text;
+    }
+
+    get message() {
+      return this.text();
     }
   }
 
@@ -65,35 +70,35 @@
     fault(bytes) {
       const { header, addresses } = this.frame;
       for (let index = 0; index < header.length; index += 1) {
-        if (index >= bytes.length) return new Rejection("truncated", index, "the bytes end in the header");
+        if (index >= bytes.length) return new Rejection("truncated", index, () => "the bytes end in the header");
         if (bytes[index] !== header[index])
-          return new Rejection("no-header", index, `a frame starts with ${hex(header)}`);
+          return new Rejection("no-header", index, () => `a frame starts with ${hex(header)}`);
       }
       if (addresses.length && bytes.length >= this.at && !addresses.includes(bytes[this.at - 1]))
-        return new Rejection("bad-address", this.at - 1, `the edition has no address ${hex([bytes[this.at - 1]])}`);
+        return new Rejection("bad-address", this.at - 1, () => `the edition has no address ${hex([bytes[this.at - 1]])}`);
       if (bytes.length <= this.at)
-        return new Rejection("truncated", bytes.length, "the bytes end before LEN");
+        return new Rejection("truncated", bytes.length, () => "the bytes end before LEN");
       const length = bytes[this.at];
       if (!this.lengths.has(length))
-        return new Rejection("bad-length", this.at, `no message has LEN ${hex([length])}`);
+        return new Rejection("bad-length", this.at, () => `no message has LEN ${hex([length])}`);
       if (bytes.length === this.at + 1)
-        return new Rejection("truncated", bytes.length, "the bytes end before CMD");
+        return new Rejection("truncated", bytes.length, () => "the bytes end before CMD");
       return this._endFault(bytes, length, bytes[this.at + 1]);
     }
 
     _endFault(bytes, length, id) {
       const known = this.variants.get(id);
       if (!known)
-        return new Rejection("unknown-id", this.at + 1, `the edition has no id ${hex([id])}`);
+        return new Rejection("unknown-id", this.at + 1, () => `the edition has no id ${hex([id])}`);
       if (!known.some((each) => each.length === length))
-        return new Rejection("bad-length", this.at, `LEN ${hex([length])} is not legal for ${known[0].command.name}`);
+        return new Rejection("bad-length", this.at, () => `LEN ${hex([length])} is not legal for ${known[0].command.name}`);
       const end = this.at + 1 + length;
       if (bytes.length < end)
-        return new Rejection("truncated", bytes.length, `bytes missing at the end: ${end - bytes.length}`);
+        return new Rejection("truncated", bytes.length, () => `bytes missing at the end: ${end - bytes.length}`);
       const check = end - this.checkSize;
       const right = this._check(bytes.subarray(0, check));
       const same = right.every((byte, index) => byte === bytes[check + index]);
-      return same ? null : new Rejection("bad-check", check, `the frame should end with ${hex(right)}`);
+      return same ? null : new Rejection("bad-check", check, () => `the frame should end with ${hex(right)}`);
     }
 
     _check(body) {
@@ -115,7 +120,7 @@
       const fault = this.fault(bytes);
       if (fault !== null) throw fault;
       const end = this.at + 1 + bytes[this.at];
-      if (bytes.length > end) throw new Rejection("trailing", end, "LEN ends the frame before the last byte");
+      if (bytes.length > end) throw new Rejection("trailing", end, () => "LEN ends the frame before the last byte");
       const readings = [];
       let first = null;
       for (const each of this.variants.get(bytes[this.at + 1])) {
@@ -146,7 +151,7 @@
           numbers: numbers.map((number) => {
             const found = { number, offset: at, raw: rawAt(number, bytes, at) };
             if (!allows(field, number, found.raw))
-              throw new Rejection("bad-value", at, badValue(command, field, number, found.raw));
+              throw new Rejection("bad-value", at, () => badValue(command, field, number, found.raw));
             at += number.width;
             return { ...found, value: physical(number, found.raw) };
           }),
@@ -162,7 +167,7 @@
     const picked = rawAt(selector.cases[0].numbers[0], bytes, start);
     const found = field.cases.find((each) => each.when.includes(picked));
     if (!found)
-      throw new Rejection("bad-value", start, badValue(command, selector, selector.cases[0].numbers[0], picked));
+      throw new Rejection("bad-value", start, () => badValue(command, selector, selector.cases[0].numbers[0], picked));
     return found;
   }
 
@@ -214,15 +219,17 @@
       .trim();
     const bytes = [];
     for (const word of plain ? plain.split(" ") : []) {
-      if (!/^[0-9a-f]*$/i.test(word)) throw new Rejection("not-hex", bytes.length, `"${word}" is not hex`);
+      const shown = word.length > 60 ? `${word.slice(0, 57)}...` : word;
+      if (!/^[0-9a-f]*$/i.test(word)) throw new Rejection("not-hex", bytes.length, () => `"${shown}" is not hex`);
       if (word.length % 2)
-        throw new Rejection("not-hex", bytes.length, `"${word}" has an odd number of digits`);
+        throw new Rejection("not-hex", bytes.length, () => `"${shown}" has an odd number of digits`);
       for (let at = 0; at < word.length; at += 2) bytes.push(parseInt(word.slice(at, at + 2), 16));
     }
     return Uint8Array.from(bytes);
   }
 
   globalThis.cobotwire = Object.assign(globalThis.cobotwire || { tables: {} }, {
-    Law, Rejection, hex, parse,
+    // `source` is this code, for a worker: a page that is a file may not load another file into one.
+    Law, Rejection, hex, parse, source: `"use strict";(${law})();`,
   });
 })();

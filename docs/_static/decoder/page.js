@@ -18,6 +18,68 @@
   const UNITS = { degree: "°", degree_celsius: " °C", millimetre: " mm", percent: " %", volt: " V",
     milliampere: " mA", hertz: " Hz", step_per_second: " steps/s", tick: " ticks" };
 
+  // Of a long input, this much is shown at first: events, and bytes of each; "more" shows as many again.
+  const EVENTS = 200;
+  const BYTES = 1024;
+  // A longer input is not kept in the address, which browsers limit.
+  const LONGEST_LINK = 16384;
+
+  // The worker: it parses and cuts, and sends the events in portions. It runs beside the page, which
+  // answers meanwhile, however long the input is.
+  function work() {
+    let bytes, events;
+    function send(job, first, count, limit) {
+      const portion = events.slice(first, first + count).map((event) => (
+        { ...event, data: bytes.slice(event.offset, event.offset + Math.min(event.size, limit)) }));
+      const frames = events.reduce((sum, event) => sum + ("noise" in event ? 0 : 1), 0);
+      const lost = events.reduce((sum, event) => sum + ("noise" in event ? event.size : 0), 0);
+      postMessage({ job, first, portion, counts: { bytes: bytes.length, events: events.length, frames, lost } });
+    }
+    onmessage = ({ data: { job, text, table, directions, first, count, limit, from, size } }) => {
+      if (from !== undefined) {
+        postMessage({ job, data: bytes.slice(from, from + size) });
+        return;
+      }
+      try {
+        if (text !== undefined) {
+          bytes = cobotwire.parse(text);
+          events = new cobotwire.Law(table, directions).cut(bytes);
+        }
+      } catch (error) {
+        postMessage({ job, problem: { offset: error.offset, message: error.message } });
+        return;
+      }
+      send(job, first, count, limit);
+    };
+  }
+
+  const SOURCE = URL.createObjectURL(
+    new Blob([cobotwire.source, `(${work})();`], { type: "text/javascript" }));
+  // The worker, the number of the newest job, and whether its answer is outstanding.
+  let worker = null;
+  let job = 0;
+  let busy = false;
+
+  // Have the worker do a job. One that is at work on an outdated input is ended.
+  function ask(root, request, answered) {
+    if (worker === null || (busy && request.text !== undefined)) {
+      if (worker !== null) worker.terminate();
+      worker = new Worker(SOURCE);
+    }
+    job += 1;
+    busy = true;
+    const output = parts(root).output;
+    output.setAttribute("aria-busy", "true");
+    const mine = job;
+    worker.onmessage = ({ data }) => {
+      if (data.job !== mine) return;
+      busy = false;
+      answered(data);
+      output.removeAttribute("aria-busy");
+    };
+    worker.postMessage({ job, limit: BYTES, ...request });
+  }
+
   function counted(number, noun) {
     return `${number} ${noun}${number === 1 ? "" : "s"}`;
   }
@@ -31,37 +93,68 @@
 
   function show(root) {
     const { text, edition, direction, output } = parts(root);
-    output.replaceChildren();
-    let bytes;
-    try {
-      bytes = cobotwire.parse(text.value);
-    } catch (error) {
-      output.append(element("p", { class: "problem", role: "alert" },
-        `Not hex, after ${counted(error.offset, "byte")}: ${error.message}.`));
-      return;
-    }
     const directions = direction.value === "both" ? ["request", "reply"] : [direction.value];
-    const law = new cobotwire.Law(cobotwire.tables[edition.value], directions);
-    const events = law.cut(bytes);
-    output.append(summary(bytes, events));
-    for (const event of events) {
-      const data = bytes.subarray(event.offset, event.offset + event.size);
-      output.append("noise" in event ? noise(event, data) : frame(law, event, data));
-    }
+    const table = cobotwire.tables[edition.value];
+    const law = new cobotwire.Law(table, directions);
+    ask(root, { text: text.value, table, directions, first: 0, count: EVENTS }, (answer) => {
+      if (answer.problem) {
+        const { offset, message } = answer.problem;
+        output.replaceChildren(element("p", { class: "problem", role: "alert" },
+          `Not hex, after ${counted(offset, "byte")}: ${message}.`));
+        return;
+      }
+      output.replaceChildren(summary(answer.counts));
+      append(root, law, answer);
+    });
   }
 
-  function summary(bytes, events) {
-    const frames = events.filter((event) => !("noise" in event)).length;
-    const lost = events.reduce((sum, event) => sum + ("noise" in event ? event.size : 0), 0);
+  // Show a portion of the events, and a button for the next one.
+  function append(root, law, { first, portion, counts }) {
+    const { output } = parts(root);
+    output.append(...portion.map((event) => (
+      "noise" in event ? noise(root, event, event.data) : frame(law, event, event.data))));
+    const next = first + portion.length;
+    if (next === counts.events) return;
+    output.append(more(`${next} of ${counts.events} are shown: more`, (button) => {
+      ask(root, { first: next, count: EVENTS }, (answer) => {
+        button.remove();
+        append(root, law, answer);
+      });
+    }));
+  }
+
+  function more(text, act) {
+    const button = element("button", { type: "button", class: "more" }, text);
+    button.addEventListener("click", () => act(button));
+    return button;
+  }
+
+  function summary({ bytes, frames, lost }) {
     return element("p", { class: "summary" },
-      `${counted(bytes.length, "byte")}: ${counted(frames, "frame")}, ${counted(lost, "byte")} of noise`);
+      `${counted(bytes, "byte")}: ${counted(frames, "frame")}, ${counted(lost, "byte")} of noise`);
   }
 
-  function noise(event, data) {
-    return element("section", { class: "event noise" },
+  function noise(root, event, data) {
+    const shown = chips(data, () => "noise");
+    const card = element("section", { class: "event noise" },
       element("h3", {}, `noise at ${event.offset}: ${event.noise}`),
       element("p", {}, `${REASONS[event.noise]}.`),
-      chips(data, () => "noise"));
+      shown);
+    if (data.length < event.size) card.append(moreBytes(root, event, shown));
+    return card;
+  }
+
+  function moreBytes(root, event, shown) {
+    const label = () => `${shown.children.length} of ${counted(event.size, "byte")} are shown: more`;
+    return more(label(), (button) => {
+      const from = event.offset + shown.children.length;
+      const size = Math.min(BYTES, event.size - shown.children.length);
+      ask(root, { from, size }, ({ data }) => {
+        shown.append(...chips(data, () => "noise").children);
+        if (shown.children.length === event.size) button.remove();
+        else button.textContent = label();
+      });
+    });
   }
 
   function frame(law, event, data) {
@@ -169,7 +262,8 @@
 
   function changed(root) {
     const { text, edition, direction } = parts(root);
-    const state = new URLSearchParams({ edition: edition.value, direction: direction.value, hex: text.value.trim() });
+    const state = new URLSearchParams({ edition: edition.value, direction: direction.value });
+    if (text.value.length <= LONGEST_LINK) state.set("hex", text.value.trim());
     history.replaceState(null, "", `#${state}`);
     show(root);
   }

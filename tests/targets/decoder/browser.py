@@ -4,16 +4,38 @@ from __future__ import annotations
 
 import html
 import json
+import os
 import re
+import select
 import shutil
+import signal
 import subprocess
 from pathlib import Path
-from typing import Any
+from types import TracebackType
+from typing import Any, Self
 
 from targets.comparison import ToolMissing
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 SECONDS = 120
+# No sandbox, since CI runs as root; Chromium opens only our own files.
+OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu")
+
+# Use the page as a person does: choose, paste, wait, and keep what it shows each time.
+SHOWN = """
+async function shown(state) {
+  const root = document.getElementById("decoder");
+  for (const [name, value] of Object.entries(state || {})) {
+    root.querySelector(`[name=${name}]`).value = value;
+  }
+  if (state) root.dispatchEvent(new Event("input"));
+  await answered(root);
+  return root.querySelector(".output").outerHTML;
+}
+async function answered(root) {
+  while (root.querySelector(".output[aria-busy]")) await new Promise((go) => setTimeout(go, 1));
+}
+"""
 
 
 def chromium() -> str:
@@ -41,6 +63,88 @@ def result(page: Path) -> Any:
     return json.loads(html.unescape(found.group(1)))
 
 
+def evaluate(url: str, *expressions: str) -> list[Any]:
+    """Return the values of JavaScript expressions, or of their promises, in a loaded page.
+
+    Time is real, and workers run, unlike in :func:`dom`.
+    """
+    with _Tab(url) as tab:
+        return [tab.evaluate(expression) for expression in expressions]
+
+
+class _Tab:
+    """A page in a browser that takes commands of the DevTools protocol on descriptors 3 and 4."""
+
+    def __init__(self, url: str) -> None:
+        self._url = url
+        self._count = 0
+        self._session: dict[str, str] = {}
+
+    def __enter__(self) -> Self:
+        theirs_in, ours_out = os.pipe()
+        ours_in, theirs_out = os.pipe()
+        command = [chromium(), *OPTIONS, "--remote-debugging-pipe", "about:blank"]
+        script = f'exec "$@" 3<&{theirs_in} 4>&{theirs_out}'
+        self._process = subprocess.Popen(
+            ["bash", "-c", script, "bash", *command],
+            pass_fds=(theirs_in, theirs_out),
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        os.close(theirs_in)
+        os.close(theirs_out)
+        self._in, self._out = open(ours_in, "rb", buffering=0), open(ours_out, "wb", buffering=0)
+        self._read = b""
+        target = self._call("Target.createTarget", url="about:blank")["targetId"]
+        attached = self._call("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = {"sessionId": attached["sessionId"]}
+        self._call("Page.enable")
+        self._call("Page.navigate", url=self._url)
+        while self._message().get("method") != "Page.loadEventFired":
+            pass
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        # The browser is a group of processes of its own.
+        os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+        self._in.close()
+        self._out.close()
+
+    def evaluate(self, expression: str) -> Any:
+        """Return the value of an expression, or of its promise."""
+        found = self._call(
+            "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
+        )
+        assert "exceptionDetails" not in found, found
+        return found["result"].get("value")
+
+    def _call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        self._count += 1
+        request = {"id": self._count, "method": method, "params": parameters, **self._session}
+        data = json.dumps(request).encode() + b"\0"
+        while data:
+            data = data[self._out.write(data) or 0 :]
+        while (answer := self._message()).get("id") != self._count:
+            pass
+        assert "error" not in answer, answer
+        return dict(answer["result"])
+
+    def _message(self) -> dict[str, Any]:
+        while b"\0" not in self._read:
+            ready, _, _ = select.select([self._in], [], [], SECONDS)
+            data = self._in.read(1 << 20) if ready else b""
+            assert data, "the browser does not answer"
+            self._read += data
+        message, _, self._read = self._read.partition(b"\0")
+        return dict(json.loads(message))
+
+
 def picture(url: str, path: Path, width: int, height: int, *, dark: bool = False) -> None:
     """Write a screenshot of a page to a PNG file; 390 is the width of a phone."""
     shades = ["--blink-settings=preferredColorScheme=0"] if dark else []
@@ -49,7 +153,6 @@ def picture(url: str, path: Path, width: int, height: int, *, dark: bool = False
 
 
 def _run(*arguments: str) -> str:
-    # No sandbox, since CI runs as root; Chromium opens only our own files.
-    command = [chromium(), "--headless=new", "--no-sandbox", "--disable-gpu", *arguments]
+    command = [chromium(), *OPTIONS, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=True)
     return done.stdout

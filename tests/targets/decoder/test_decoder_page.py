@@ -15,6 +15,7 @@ from cobotwire.codec.interface import Noise
 from strategies import TABLES, codec_of
 from targets.comparison import ToolMissing
 from targets.decoder import browser
+from targets.decoder.browser import SHOWN
 from targets.vectors.comparison import Record, read
 from vectors import ROOT
 
@@ -28,24 +29,6 @@ NOTATIONS = [
     ("hello <script>", "not hex"),
 ]
 WRONG = "FE FE 03 12 07 FA"
-# Use the page as a person does: choose, paste, and keep what it shows each time.
-DRIVER = """
-document.addEventListener("DOMContentLoaded", () => {
-  const root = document.getElementById("decoder");
-  const shown = STATES.map((state) => {
-    for (const [name, value] of Object.entries(state)) {
-      root.querySelector(`[name=${name}]`).value = value;
-    }
-    root.dispatchEvent(new Event("input"));
-    return root.querySelector(".output").outerHTML;
-  });
-  const result = document.createElement("pre");
-  result.id = "result";
-  result.textContent = JSON.stringify(shown);
-  document.body.append(result);
-});
-"""
-
 try:
     browser.chromium()
     MISSING = ""
@@ -66,8 +49,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def _shown(page: Path, **state: str) -> str:
     """Return what the page shows of the state in its address."""
-    found = browser.dom(f"{page.as_uri()}#{urlencode(state)}")
-    output = found[found.index('class="output"') :]
+    _, output = browser.evaluate(f"{page.as_uri()}#{urlencode(state)}", SHOWN, "shown()")
     return html.unescape(output)
 
 
@@ -75,10 +57,8 @@ def _shown(page: Path, **state: str) -> str:
 def typed(page: Path) -> dict[str, str]:
     """Return what the page shows of each pasted text; one browser, since it starts slowly."""
     states = [*_streams(), *(_state(pasted) for pasted, _ in NOTATIONS), _state(WRONG, "reply")]
-    driven = page.with_name("driven.html")
-    driver = DRIVER.replace("STATES", json.dumps(states).replace("<", "\\u003c"))
-    driven.write_text(page.read_text().replace("</body>", f"<script>{driver}</script></body>"))
-    shown = browser.result(driven)
+    calls = (f"shown({json.dumps(state)})" for state in states)
+    _, *shown = browser.evaluate(page.as_uri(), SHOWN, *calls)
     return {state["hex"]: text for state, text in zip(states, shown, strict=True)}
 
 
@@ -147,3 +127,93 @@ def test_rejected_value_is_shown_at_its_bytes(typed: dict[str, str]) -> None:
     assert "rejected" in shown
     assert "is 7; allowed: one of 0, 1 (byte 4)" in shown
     assert 'class="byte wrong">07' in shown
+
+
+# Paste 2 MB, and note the longest time for which the page does not answer.
+LONG = """
+(async () => {
+  const root = document.getElementById("decoder");
+  const text = root.querySelector("[name=hex]");
+  // Laying out a field of some megabytes takes the browser seconds by itself.
+  text.style.display = "none";
+  root.querySelector("[name=edition]").value = "mycobot";
+  text.value = PASTED;
+  const started = performance.now();
+  root.dispatchEvent(new Event("input"));
+  let longest = 0;
+  for (let last = started; root.querySelector(".output[aria-busy]"); ) {
+    await new Promise((go) => setTimeout(go, 0));
+    longest = Math.max(longest, performance.now() - last);
+    last = performance.now();
+  }
+  const output = root.querySelector(".output");
+  const seconds = (performance.now() - started) / 1000;
+  const nodes = output.querySelectorAll("*").length;
+  return { seconds, longest: longest / 1000, text: output.textContent, nodes,
+    address: location.href.length };
+})()
+"""
+# Long inputs: headers without end, false headers in false headers, and small frames.
+LONG_INPUTS = {
+    "FE": '"FE ".repeat(2_000_000)',
+    "FE without blanks": '"FE".repeat(2_000_000)',
+    "FE FE 10": '"FE FE 10 20 ".repeat(500_000)',
+    "noise and frames": '"FE FE 02 20 FA 00 ".repeat(333_333)',
+    "not hex": '"xy".repeat(2_000_000)',
+}
+
+
+@pytest.mark.parametrize("pasted", LONG_INPUTS)
+def test_long_input_is_decoded_beside_the_page(page: Path, pasted: str) -> None:
+    short = LONG_INPUTS[pasted].replace("000)", "00)").replace("333_333", "33_333")
+    calls = [LONG.replace("PASTED", text) for text in (short, LONG_INPUTS[pasted])]
+    small, large = browser.evaluate(page.as_uri(), *calls)
+    # On two busy cores each takes 1 to 5 s. The first one has a tenth of the bytes.
+    assert large["seconds"] < 30
+    assert large["seconds"] < 40 * max(small["seconds"], 0.1)
+    assert large["longest"] < 0.5 + 0.5 * large["seconds"]
+    assert large["nodes"] < 10_000
+    assert large["address"] < 1000
+    assert ("Not hex" in large["text"]) == (pasted == "not hex")
+    assert ("of noise" in large["text"]) == (pasted != "not hex")
+
+
+def test_rest_of_a_long_input_is_shown_on_request(page: Path) -> None:
+    script = """
+    (async () => {
+      await shown({ edition: "mycobot", direction: "both", hex: "FE FE 02 20 FA 00 ".repeat(250) });
+      const root = document.getElementById("decoder");
+      const counts = [root.querySelectorAll(".event").length];
+      root.querySelector("button.more").click();
+      await answered(root);
+      counts.push(root.querySelectorAll(".event").length);
+      root.querySelector("button.more").click();
+      await answered(root);
+      counts.push(root.querySelectorAll(".event").length);
+      counts.push(root.querySelectorAll("button.more").length);
+      await shown({ edition: "mycobot", direction: "both", hex: "00 ".repeat(2500) });
+      for (let turn = 0; turn < 2; turn += 1) {
+        counts.push(root.querySelectorAll(".byte").length);
+        root.querySelector("button.more").click();
+        await answered(root);
+      }
+      counts.push(root.querySelectorAll(".byte").length);
+      counts.push(root.querySelectorAll("button.more").length);
+      return counts;
+    })()
+    """
+    _, counts = browser.evaluate(page.as_uri(), SHOWN, script)
+    assert counts == [200, 400, 500, 0, 1024, 2048, 2500, 0]
+
+
+def test_newest_input_is_shown_if_the_page_is_still_busy_with_another(page: Path) -> None:
+    script = """
+    (async () => {
+      const root = document.getElementById("decoder");
+      root.querySelector("[name=hex]").value = "FE ".repeat(1_000_000);
+      root.dispatchEvent(new Event("input"));
+      return shown({ hex: "FE FE 02 20 FA" });
+    })()
+    """
+    _, output = browser.evaluate(page.as_uri(), SHOWN, script)
+    assert "5 bytes: 1 frame, 0 bytes of noise" in output
