@@ -19,6 +19,8 @@ from scripted_peer import ScriptedPeer
 COMMAND = [*PROGRAM, "monitor"]
 run = partial(run_program, "monitor")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+COORDS = bytes.fromhex("FE FE 0E 23 00 00 00 00 00 00 00 00 00 00 00 00 FA")
+REQUEST_SIZE = len(bytes.fromhex("FE FE 02 20 FA"))
 LEAK = bytes.fromhex("FF FF 01 04 02 38 02 BE")
 
 
@@ -37,10 +39,34 @@ def test_json_output_holds_values_errors_and_noise() -> None:
     first, second = map(json.loads, result.stdout.splitlines())
     assert first["values"]["get_angles"]["j1"] == 1.4
     assert first["values"]["get_coords"] is None
-    assert (first["unanswered"], second["unanswered"]) == (1, 3)
+    # Each query is sent three times; only the first one of all gets a reply.
+    assert [(s["sent"], s["unanswered"]) for s in (first, second)] == [(4, 3), (10, 9)]
     assert first["noise"] == len(LEAK)
     assert first["diagnosis"].startswith("servo bus leak")
     assert "no reply to" in second["error"]
+
+
+def test_requests_that_were_repeated_are_counted_as_unanswered() -> None:
+    # The device counts on its own: it gets each request, and replies to every second one.
+    with ScriptedPeer([], [ANGLES], [], [COORDS]) as peer:
+        result = run(peer.url, "--count", "1", "--json")
+    (sample,) = map(json.loads, result.stdout.splitlines())
+    assert None not in sample["values"].values()
+    assert len(peer.received) == 4 * REQUEST_SIZE
+    assert (sample["sent"], sample["unanswered"], sample["late"]) == (4, 2, 0)
+
+
+def test_reply_after_the_repeat_of_its_request_is_counted_as_late() -> None:
+    with ScriptedPeer([], [ANGLES + ANGLES], [COORDS]) as peer:
+        result = run(peer.url, "--count", "2", "--json")
+    first = json.loads(result.stdout.splitlines()[0])
+    assert (first["sent"], first["unanswered"], first["late"]) == (3, 1, 1)
+
+
+def test_monitor_prints_the_counts_of_requests() -> None:
+    with ScriptedPeer([], [ANGLES], [COORDS]) as peer:
+        result = run(peer.url, "--count", "1")
+    assert "3 sent, 1 unanswered, 0 late" in result.stdout
 
 
 def test_monitor_keeps_the_rate(server: PtyServer) -> None:

@@ -38,8 +38,10 @@ def monitor(
 ) -> None:
     """Show joints and coordinates of the arm at URL, the sample rate, errors and noise.
 
-    Only queries are sent. On a terminal the output is a live table. Elsewhere, or with --json, it
-    is one line per sample. Ctrl-C closes the port and finishes the recording.
+    Only queries are sent. A query without a reply in time is repeated, and each repeat counts as a
+    request. The reply to an unanswered request may still come: then it is late. On a terminal the
+    output is a live table. Elsewhere, or with --json, it is one line per sample. Ctrl-C closes the
+    port and finishes the recording.
     """
     package = editions.load(edition)
     table = package.TABLE
@@ -71,9 +73,13 @@ def _numbers(value: object) -> str:
 
 def _line(sample: Observation) -> str:
     values = "  ".join(f"{name} {_numbers(value)}" for name, value in sample.values.items())
-    state = [f"{sample.rate:.1f}/s", f"{sample.unanswered} unanswered", f"{sample.late} late"]
+    state = [f"{sample.rate:.1f}/s", _counts(sample)]
     state.append(f"{sample.noise} bytes of noise" + f": {sample.diagnosis}" * bool(sample.noise))
     return f"{sample.time:9.3f}  {values}  {', '.join(state)}"
+
+
+def _counts(sample: Observation) -> str:
+    return f"{sample.sent} sent, {sample.unanswered} unanswered, {sample.late} late"
 
 
 def _grid(port: str, sample: Observation) -> Grid:
@@ -83,7 +89,7 @@ def _grid(port: str, sample: Observation) -> Grid:
         named = "  ".join(f"{part} {number:8.2f}" for part, number in parts)
         grid.add_row(name, named or "[red]no reply[/red]")
     grid.add_row("rate", f"{sample.rate:.1f} a second")
-    grid.add_row("unanswered", f"{sample.unanswered}   (late {sample.late})")
+    grid.add_row("requests", _counts(sample))
     # As plain text, because received bytes may look like markup.
     grid.add_row("noise", Text(f"{sample.noise} bytes   {sample.diagnosis}"))
     grid.add_row("last error", Text(sample.error))

@@ -26,8 +26,9 @@ class Observation(NamedTuple):
         time: seconds since the first sample.
         values: the results by command name; None if there was no legal reply.
         rate: samples a second over the last few; 0 for the first.
-        unanswered: requests without a legal reply, so far.
-        late: replies that came after their deadline, so far.
+        sent: requests that were sent, repeats included, so far.
+        unanswered: those of them without a legal reply in time.
+        late: replies that came after their deadline, or after the reply to a repeat, so far.
         noise: bytes of noise, so far.
         diagnosis: what that noise is, in a sentence.
         error: the last error of this sample; empty if there was none.
@@ -36,6 +37,7 @@ class Observation(NamedTuple):
     time: float
     values: dict[str, Any]
     rate: float
+    sent: int
     unanswered: int
     late: int
     noise: int
@@ -62,7 +64,7 @@ class Monitor:
         commands = codec.table.commands
         self._commands = [c for role in ROLES for c in commands if c.role == role]
         self._listener = DiagnosingListener(codec)
-        self._unanswered = 0
+        self._answered = 0
         self._error = ""
 
     def samples(self, count: int | None = None) -> Iterator[Observation]:
@@ -97,7 +99,8 @@ class Monitor:
             time=times[-1] - started,
             values=values,
             rate=(len(times) - 1) / span if span else 0.0,
-            unanswered=self._unanswered,
+            sent=listener.sent,
+            unanswered=listener.sent - self._answered,
             late=listener.late,
             noise=listener.noise,
             diagnosis=str(listener.findings),
@@ -106,8 +109,9 @@ class Monitor:
 
     def _query(self, command: Command) -> Any:
         try:
-            return getattr(self._arm, command.name)()
+            value = getattr(self._arm, command.name)()
         except (ReplyTimeout, ProtocolError) as error:
-            self._unanswered += 1
             self._error = str(error)
             return None
+        self._answered += 1
+        return value

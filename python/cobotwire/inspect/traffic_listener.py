@@ -13,6 +13,7 @@ class DiagnosingListener:
     Attributes:
         findings: the findings in the noise, counted by kind.
         noise: the bytes of noise.
+        sent: the number of requests that were sent, repeats included.
         late: the number of replies that came after their deadline.
     """
 
@@ -20,12 +21,14 @@ class DiagnosingListener:
         self._diagnoser = Diagnoser(codec, "reply")
         self.findings = Summary()
         self.noise = 0
+        self.sent = 0
         self.late = 0
 
     def __call__(self, traffic: Traffic) -> None:
         """Take one item of a client's traffic."""
         event = traffic.event
         if event is None:
+            self.sent += 1
             self._diagnoser.sent(traffic.data)
         elif isinstance(event, Noise):
             self.noise += len(event.data)
