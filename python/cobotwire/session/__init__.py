@@ -1,5 +1,6 @@
 """The exchange of messages without a port, clock or thread: bytes and times in, events out."""
 
+from cobotwire.session.acks import PendingAck
 from cobotwire.session.device import (
     DeviceSession,
     MalformedRequest,
@@ -18,7 +19,7 @@ from cobotwire.session.events import (
     UnexpectedFrame,
 )
 from cobotwire.session.exchange import Exchange
-from cobotwire.session.pending import Pending, PendingAck, PendingRequest
+from cobotwire.session.pending import Pending, PendingRequest
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.request import EncodedRequest
 

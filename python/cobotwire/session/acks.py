@@ -1,87 +1,157 @@
 """Acknowledgements: which of the one-way requests that were sent has been acknowledged.
 
 An acknowledgement carries only the command's id. Where several requests of one id were sent and
-some acknowledgements are lost, it is unknown which request each belongs to. So a request counts
-as acknowledged once more acknowledgements have come than the other requests can have caused. It may
-seem unacknowledged although it was, never the reverse, if each acknowledgement comes once and in
-time.
+some acknowledgements are lost, it is unknown which request each belongs to. So a request counts as
+acknowledged once more acknowledgements have come than the other requests can still have caused.
+It may seem unacknowledged although it was, never the reverse, if each acknowledgement comes once
+and in time. An acknowledgement that was lost causes doubt only until it is too late to come.
 """
 
 from __future__ import annotations
 
 from collections import deque
+from math import inf
 from typing import NamedTuple
 
-from cobotwire.codec.interface import DecodedMessage, Frame
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
+from cobotwire.protocol.errors import LinkError, ProtocolError
+from cobotwire.session.events import FrameEvent
+from cobotwire.session.pending import Pending
 from cobotwire.session.policy import GRACE_SECONDS
-from cobotwire.session.request import EncodedRequest
+from cobotwire.session.request import EncodedRequest, as_call
 
 # Some firmware acknowledges a motion only when it ends.
 MOTION_SECONDS = 60.0
 
 
-class ExpectedAck(NamedTuple):
+class ExpectedAck:
     """An acknowledgement that may come, at ``offset`` of the stream or later.
 
     Attributes:
         request: the one-way request that was sent.
+        sent_at: the second at which it was sent.
         until: the second after which it no longer counts.
         offset: where in the received stream it can begin at the earliest.
-        balance: what the balance of its command must exceed for it to be certain.
+        doubts: until when the acknowledgement of each other request may come, and look like this
+            one; soonest first.
+        certain: whether it has come, whichever requests the other ones belong to.
     """
 
+    __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")
+
+    def __init__(
+        self, request: EncodedRequest, now: float, until: float, offset: int, doubts: list[float]
+    ) -> None:
+        self.request = request
+        self.sent_at = now
+        self.until = until
+        self.offset = offset
+        self.doubts = doubts
+        self.certain = False
+
+    def count(self, frame: Frame, began_at: float) -> None:
+        """Count an acknowledgement of the command: of another request, as long as it can be."""
+        self.doubts = [until for until in self.doubts if until > began_at]
+        if self.doubts:
+            self.doubts = self.doubts[1:]
+        elif frame.offset >= self.offset:
+            self.certain = True
+
+
+class PendingAck(Pending):
+    """A one-way request whose caller waits for its acknowledgement.
+
+    Attributes:
+        ack: the acknowledgement that is expected.
+        until: when the wait ends.
+    """
+
+    __slots__ = ("ack", "until")
+
+    def __init__(self, ack: ExpectedAck, until: float) -> None:
+        super().__init__(ack.request)
+        self.ack = ack
+        self.until = until
+
+
+class Acknowledged(NamedTuple):
+    """An acknowledgement that came, and the oldest request that it can belong to."""
+
     request: EncodedRequest
-    until: float
-    offset: int
-    balance: int
+    message: DecodedMessage
 
 
 class _CommandAcks:
-    """The requests of one command id; ``balance`` is acknowledgements less requests sent."""
+    """The requests of one command id, oldest first.
 
-    __slots__ = ("balance", "copied", "expected")
+    Attributes:
+        expected: those whose acknowledgement may still come, if each one belongs to the oldest.
+        uncertain: those that are not certain to be acknowledged, and may still be.
+        copied: the request of which a copy came.
+        began_at: since when acknowledgements have been expected without a break.
+    """
+
+    __slots__ = ("began_at", "copied", "expected", "uncertain")
 
     def __init__(self) -> None:
-        self.balance = 0
-        # Those that may still come, oldest first.
         self.expected: deque[ExpectedAck] = deque()
+        self.uncertain: list[ExpectedAck] = []
         self.copied: ExpectedAck | None = None
+        self.began_at = 0.0
+
+    def shorten(self, seconds: float, now: float) -> None:
+        """Expect each acknowledgement only that long after its request."""
+        for ack in self.expected:
+            ack.until = min(ack.until, ack.sent_at + seconds)
+        self.forget_expired(now)
+        for ack in self.uncertain:
+            ack.doubts = sorted(other.until for other in self.expected if other is not ack)
 
     def forget_expired(self, now: float) -> None:
         while self.expected and self.expected[0].until <= now:
             self.expected.popleft()
+        self.uncertain = [a for a in self.uncertain if a.until > now and not a.certain]
 
 
 class Acks:
-    """Counts acknowledgements of the requests that were sent lately."""
+    """The acknowledgements of the requests that were sent lately, and the callers that wait."""
 
-    def __init__(self) -> None:
+    def __init__(self, codec: Codec) -> None:
+        self._codec = codec
         self._commands: dict[int, _CommandAcks] = {}
+        self._waiting: list[PendingAck] = []
+        # Whether this firmware was seen to acknowledge a motion at its start.
+        self._motions_at_once = False
 
-    def expect(self, request: EncodedRequest, now: float, wait: float, offset: int) -> ExpectedAck:
+    @property
+    def next_end(self) -> float:
+        """When the first wait ends; infinity if nobody waits."""
+        return min((p.until for p in self._waiting if not p.done), default=inf)
+
+    def expect(
+        self, request: EncodedRequest, now: float, offset: int, within: float | None
+    ) -> tuple[ExpectedAck, PendingAck | None]:
         """Note that a request goes out; its acknowledgement can begin at ``offset``.
 
-        It is expected for ``wait`` seconds at least.
+        The second is there if a caller waits ``within`` seconds for it.
         """
-        usual = MOTION_SECONDS if request.command.safety == "motion" else GRACE_SECONDS
-        acks = self._commands.get(request.command.id)
-        if acks is None:
-            acks = self._commands[request.command.id] = _CommandAcks()
+        slow = request.command.safety == "motion" and not self._motions_at_once
+        usual = MOTION_SECONDS if slow else GRACE_SECONDS
+        acks = self._commands.setdefault(request.command.id, _CommandAcks())
         acks.forget_expired(now)
-        balance = acks.balance + len(acks.expected) - 1
-        ack = ExpectedAck(request, now + max(wait, usual), offset, balance)
+        if not acks.expected:
+            acks.began_at = now
+        doubts = sorted(earlier.until for earlier in acks.expected)
+        ack = ExpectedAck(request, now, now + max(within or 0.0, usual), offset, doubts)
+        for earlier in acks.uncertain:
+            earlier.doubts = sorted((*earlier.doubts, ack.until))
         acks.expected.append(ack)
-        acks.balance -= 1
-        return ack
-
-    def is_certain(self, ack: ExpectedAck) -> bool:
-        """Return whether it has come, whichever requests the other ones belong to."""
-        return self._commands[ack.request.command.id].balance > ack.balance
-
-    def was_copied(self, ack: ExpectedAck) -> bool:
-        """Return whether a copy of the request came: its acknowledgement, or its echo."""
-        return self._commands[ack.request.command.id].copied is ack
+        acks.uncertain.append(ack)
+        if within is None:
+            return ack, None
+        pending = PendingAck(ack, now + within)
+        self._waiting.append(pending)
+        return ack, pending
 
     def note_copy(self, frame: Frame) -> None:
         """Note a copy of a request, which is a bare acknowledgement unless the line echoes."""
@@ -91,23 +161,82 @@ class Acks:
             if ack.request.frame == frame.data:
                 acks.copied = ack
 
-    def match(self, frame: Frame, now: float) -> tuple[EncodedRequest, DecodedMessage] | None:
+    def match(self, frame: Frame, now: float, began_at: float) -> Acknowledged | None:
         """Count a frame that is an acknowledgement; None: it is not one.
 
-        Returns:
-            The oldest request that it can belong to, and the decoded frame.
+        ``began_at`` is when its first byte came; minus infinity if that is not known.
         """
         acks = self._commands.get(frame.command)
         if acks is None:
             return None
-        acks.forget_expired(now)
+        acks.forget_expired(began_at)
         if not acks.expected or frame.offset < acks.expected[0].offset:
             return None
-        request = acks.expected[0].request
+        oldest = acks.expected[0]
         try:
-            message = frame.decode("reply", of=request.command.name)
+            message = frame.decode("reply", of=oldest.request.command.name)
         except ProtocolError:
             return None
+        self._learn(acks, now)
         acks.expected.popleft()
-        acks.balance += 1
-        return request, message
+        for ack in acks.uncertain:
+            ack.count(frame, began_at)
+        self._end_certain(message)
+        return Acknowledged(oldest.request, message)
+
+    def _learn(self, acks: _CommandAcks, now: float) -> None:
+        """Learn whether motions are acknowledged at once.
+
+        They are if the acknowledgement of a single motion comes at once. They are too if the newest
+        motion always seems to be the acknowledged one for longer than a motion may take: then an
+        earlier acknowledgement was lost.
+        """
+        newest = acks.expected[-1]
+        if newest.request.command.safety != "motion" or now - newest.sent_at >= GRACE_SECONDS:
+            return
+        single = acks.began_at == newest.sent_at
+        if single or now - acks.began_at > MOTION_SECONDS:
+            self._motions_at_once = True
+            acks.shorten(GRACE_SECONDS, now)
+
+    def _end_certain(self, message: DecodedMessage) -> None:
+        for pending in self._waiting:
+            if pending.ack.certain and not pending.done:
+                self._end(pending, message)
+        self.drop_done()
+
+    def _end(self, pending: PendingAck, message: DecodedMessage) -> None:
+        """End a wait with its acknowledgement; 0 says that the arm did not do it."""
+        if 0 in message.fields.values():
+            call = as_call(pending.request, self._codec)
+            detail = f"the arm acknowledged {call} with 0: it did not carry it out"
+            pending.fail(ProtocolError("rejected", 0, pending.request.frame, detail))
+        else:
+            pending.succeed({})
+
+    def wake(self, now: float, echoes: bool) -> None:
+        """End the waits whose time is over: a copy counts, unless the line ``echoes``."""
+        for pending in self._waiting:
+            if pending.until <= now and not pending.done:
+                copied = self._commands[pending.request.command.id].copied is pending.ack
+                if copied and not echoes:
+                    pending.succeed({})
+                else:
+                    pending.expire(self._codec, now - pending.ack.sent_at, 1)
+        self.drop_done()
+
+    def fail(self, error: LinkError) -> None:
+        """End every wait: the transport is gone."""
+        for pending in self._waiting:
+            if not pending.done:
+                pending.fail(error)
+        self.drop_done()
+
+    def note(self, event: FrameEvent | Noise) -> None:
+        """Have those who wait remember an event, for the text of a timeout."""
+        for pending in self._waiting:
+            pending.note(event)
+
+    def drop_done(self) -> None:
+        """Forget the waits that have ended."""
+        self._waiting = [pending for pending in self._waiting if not pending.done]

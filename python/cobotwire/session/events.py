@@ -68,7 +68,7 @@ class RequestExpired(NamedTuple):
     attempts: int = 1
 
 
-FrameEvent = LateReply | UnexpectedFrame | EchoReceived
+FrameEvent = AckReceived | LateReply | UnexpectedFrame | EchoReceived
 SessionEvent = ReplyMatched | ReplyRejected | AckReceived | RequestExpired | FrameEvent | Noise
 
 

@@ -30,7 +30,7 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame, Noise
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
-from cobotwire.session.acks import Acks
+from cobotwire.session.acks import Acks, PendingAck
 from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
 from cobotwire.session.events import (
@@ -47,7 +47,7 @@ from cobotwire.session.events import (
 from cobotwire.session.leftover import LateFrame, Leftover
 from cobotwire.session.matching import repeats_arguments
 from cobotwire.session.outstanding import OutstandingReplies, late_replies
-from cobotwire.session.pending import Pending, PendingAck, PendingRequest
+from cobotwire.session.pending import Pending, PendingRequest
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.request import EncodedRequest, as_call, request_of
 
@@ -65,12 +65,13 @@ class Exchange:
         self._replying_ids = {c.id for c in codec.table.commands if c.answers}
         self.alignment = Alignment(codec)
         self._sent_last = b""
+        # Where in the stream the bytes began that were received last.
+        self._chunk_at = 0
         self._queue: list[PendingRequest] = []
         # The request that was sent last; it waits for its reply unless it is done.
         self._last: PendingRequest | None = None
-        self._pending_acks: list[PendingAck] = []
         self._outstanding = OutstandingReplies()
-        self._acks = Acks()
+        self._acks = Acks(codec)
         self._echo = EchoDetector()
 
     # What callers want.
@@ -97,14 +98,11 @@ class Exchange:
         """
         self._echo.sent_one_way(request, self._framer.fed)
         self._sent_last = request.frame
-        pending = None
-        if request.command.ack:
-            ack = self._acks.expect(request, now, ack_within or 0.0, self._framer.fed)
-            if request.command.id in self._replying_ids:
-                self._outstanding.expect(request, ack.until)
-            if ack_within is not None:
-                pending = PendingAck(request, ack, now, now + ack_within)
-                self._pending_acks.append(pending)
+        if not request.command.ack:
+            return request.frame + request.text, None
+        ack, pending = self._acks.expect(request, now, self._framer.fed, ack_within)
+        if request.command.id in self._replying_ids:
+            self._outstanding.expect(request, ack.until)
         return request.frame + request.text, pending
 
     def give_up(self, pending: Pending) -> None:
@@ -128,10 +126,11 @@ class Exchange:
             self.alignment.lose(self._sent_last)
             self._sent_last = b""
         self.fail_waiting(error)
-        for pending in (*self._queue, *self._pending_acks):
+        for pending in self._queue:
             if not pending.done:
                 pending.fail(error)
         self._drop_done()
+        self._acks.fail(error)
         return events
 
     def fail_waiting(self, error: LinkError) -> None:
@@ -165,16 +164,14 @@ class Exchange:
 
     def receive(self, data: bytes, now: float) -> list[SessionEvent]:
         """Take received bytes; return what they are."""
+        self._chunk_at = self._framer.fed
         return self._sort(self._framer.feed(data), now)
 
     def wake(self, now: float) -> list[SessionEvent]:
         """Let time pass; return what ends by it. Receive first what has come by now."""
         waiting = self._waiting()
         events = self._end_wait(waiting, now) if waiting and waiting.ends_at <= now else []
-        for pending in self._pending_acks:
-            if pending.until <= now and not pending.done:
-                self._end_ack(pending, now)
-                self._drop_done()
+        self._acks.wake(now, self._echo.proven)
         return events
 
     def idle_seconds(self, now: float) -> float | None:
@@ -186,9 +183,7 @@ class Exchange:
                 soonest = repeat_at
         else:
             soonest = min([self._free_at(p, now) for p in self._queued()], default=inf)
-        for pending in self._pending_acks:
-            if pending.until < soonest and not pending.done:
-                soonest = pending.until
+        soonest = min(soonest, self._acks.next_end)
         return None if soonest == inf else max(0.0, soonest - now)
 
     def has_outgoing(self, now: float) -> bool:
@@ -239,7 +234,7 @@ class Exchange:
 
     def _drop_done(self) -> None:
         self._queue = [pending for pending in self._queue if not pending.done]
-        self._pending_acks = [pending for pending in self._pending_acks if not pending.done]
+        self._acks.drop_done()
 
     def _free_at(self, pending: PendingRequest, now: float) -> float:
         """Return from when on no late reply can be mistaken for the request's."""
@@ -301,13 +296,6 @@ class Exchange:
         waiting.expire(self._codec, now - requested_at, attempts)
         return [*events, RequestExpired(request.command, requested_at, attempts)]
 
-    def _end_ack(self, pending: PendingAck, now: float) -> None:
-        """End the wait for an acknowledgement: a copy counts, unless the line echoes."""
-        if self._acks.was_copied(pending.ack) and not self._echo.proven:
-            pending.succeed({})
-        else:
-            pending.expire(self._codec, now - pending.sent_at, 1)
-
     # What received bytes are.
 
     def _sort(self, received: Sequence[Event], now: float) -> list[SessionEvent]:
@@ -358,15 +346,11 @@ class Exchange:
         if is_copy:
             self._acks.note_copy(frame)
             return self._note(EchoReceived(frame))
-        acknowledged = self._acks.match(frame, now)
+        began_at = now if frame.offset >= self._chunk_at else -inf
+        acknowledged = self._acks.match(frame, now, began_at)
         if acknowledged is None:
             return self._note(UnexpectedFrame(frame))
-        for pending in self._pending_acks:
-            if self._acks.is_certain(pending.ack) and not pending.done:
-                pending.succeed({})
-        self._drop_done()
-        request, message = acknowledged
-        return AckReceived(request.command, message, frame)
+        return self._note(AckReceived(acknowledged.request.command, acknowledged.message, frame))
 
     def _weigh_copy(
         self, waiting: PendingRequest, frame: Frame, message: DecodedMessage
@@ -397,6 +381,5 @@ class Exchange:
         waiting = self._waiting()
         if waiting is not None:
             waiting.note(event)
-        for pending in self._pending_acks:
-            pending.note(event)
+        self._acks.note(event)
         return event

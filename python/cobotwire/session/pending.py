@@ -7,7 +7,6 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.errors import CobotwireError, LinkError, ReplyTimeout
-from cobotwire.session.acks import ExpectedAck
 from cobotwire.session.events import FrameEvent
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.received import ReceivedMeanwhile
@@ -183,21 +182,3 @@ class PendingRequest(Pending):
         """End it with the reply that was received at ``now``."""
         self.replied_at = now
         self.succeed(fields)
-
-
-class PendingAck(Pending):
-    """A one-way request whose caller waits for its acknowledgement.
-
-    Attributes:
-        ack: the acknowledgement that is expected.
-        sent_at: when the request was sent.
-        until: when the wait ends.
-    """
-
-    __slots__ = ("ack", "sent_at", "until")
-
-    def __init__(self, request: EncodedRequest, ack: ExpectedAck, now: float, until: float) -> None:
-        super().__init__(request)
-        self.ack = ack
-        self.sent_at = now
-        self.until = until

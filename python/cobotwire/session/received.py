@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterator
 
 from cobotwire.codec.interface import Codec, Event, Noise
-from cobotwire.session.events import EchoReceived, FrameEvent, LateReply
+from cobotwire.session.events import AckReceived, EchoReceived, FrameEvent, LateReply
 
 # At most this many lines are kept, and this many bytes of each are shown.
 LINES = 20
@@ -61,7 +61,7 @@ class ReceivedMeanwhile:
         return tuple(
             _noise_line(item, next(diagnoses))
             if isinstance(item, _NoiseSpan)
-            else f"{_kind(item)} {_hex(item.frame.data, len(item.frame.data))}"
+            else f"{_kind(item, request)} {_hex(item.frame.data, len(item.frame.data))}"
             for item in self._items
         )
 
@@ -93,9 +93,14 @@ def _noise_line(span: _NoiseSpan, diagnosis: str) -> str:
     return f"{line}: {diagnosis}" if diagnosis else line
 
 
-def _kind(event: FrameEvent) -> str:
+def _kind(event: FrameEvent, request: bytes) -> str:
     if isinstance(event, LateReply):
         return f"late reply to {event.command.name}"
+    if isinstance(event, AckReceived):
+        # An acknowledgement has only the command's id, so an earlier request may have caused it.
+        same = request[: len(event.frame.data)][3:4] == event.frame.data[3:4]
+        doubt = ", perhaps of an earlier request" if same else ""
+        return f"acknowledgement of {event.command.name}{doubt}"
     return "the request's own bytes" if isinstance(event, EchoReceived) else "frame"
 
 
