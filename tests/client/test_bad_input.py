@@ -99,5 +99,7 @@ def test_wrong_option_is_named(options: dict[str, Any], argument: str) -> None:
 
 def test_unknown_codec_in_the_environment_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COBOTWIRE_CODEC", "fast")
-    with pytest.raises(UsageError, match="COBOTWIRE_CODEC is 'fast'; allowed: reference or native"):
+    with pytest.raises(
+        UsageError, match="COBOTWIRE_CODEC is 'fast'; allowed: native, reference, or unset"
+    ):
         Client.__init__(MyCobot.__new__(MyCobot), RecordingTransport())

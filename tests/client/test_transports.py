@@ -59,14 +59,14 @@ def test_wrong_baud_rate_is_named(baudrate: Any) -> None:
 
 @pytest.mark.parametrize("codec", ["foo", "", 5, True, ["native"]])
 def test_unknown_codec_is_named(codec: Any) -> None:
-    with pytest.raises(UsageError, match="allowed: native or reference") as caught:
+    with pytest.raises(UsageError, match="allowed: native, reference or None") as caught:
         MyCobot("loop://", codec=codec)
     assert caught.value.argument == "codec"
 
 
 def test_native_codec_without_its_binary_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(codecs, "native_available", lambda: False)
-    with pytest.raises(UsageError, match="the native codec is not installed here"):
+    with pytest.raises(UsageError, match="the native codec is not installed; use 'reference'"):
         MyCobot("loop://", codec="native")
 
 
