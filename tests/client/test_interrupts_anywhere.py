@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from types import FrameType
 from typing import Any
 
@@ -146,6 +147,20 @@ class Lines:
         self._missed = 0 if reached else self._missed + 1
 
 
+def always_longer(limit: float, measure: Callable[[], float]) -> bool:
+    """Return whether a time is beyond its limit three times in a row.
+
+    A machine that is busy may delay one run, and a stall that was measured counts for nothing. What
+    an interrupt does at one line, it does every time; and what it breaks for good shows every time.
+    """
+    for _ in range(3):
+        with StallMeter() as meter:
+            seconds = measure()
+        if seconds <= limit + meter.longest:
+            return False
+    return True
+
+
 @pytest.mark.parametrize("codec", ["native", "reference"])
 @pytest.mark.parametrize("name", CALLS)
 def test_interrupt_at_any_line_delays_no_other_call(name: str, codec: Any) -> None:
@@ -154,18 +169,18 @@ def test_interrupt_at_any_line_delays_no_other_call(name: str, codec: Any) -> No
         MyCobot(server.url, timeout=TIMEOUT, retry=RETRY, codec=codec) as arm,
         OtherThreads(arm, 3) as others,
     ):
-        late: list[tuple[int, float]] = []
-        lines = Lines(codec)
-        for number in lines:
+
+        def slowest_after(number: int) -> float:
             others.slowest = 0.0
-            with StallMeter() as meter:
-                lines.note(interrupted(lambda: CALLS[name](arm), number))
-                before = others.calls
-                # Until each of them has ended the call that was under way, and made another one.
-                while others.calls < before + 6 and others.slowest < 5:
-                    time.sleep(0.001)
-            if others.slowest > LATE + meter.longest:
-                late.append((number, others.slowest))
+            lines.note(interrupted(lambda: CALLS[name](arm), number))
+            before = others.calls
+            # Until each of them has ended the call that was under way, and made another one.
+            while others.calls < before + 6 and others.slowest < 5:
+                time.sleep(0.001)
+            return others.slowest
+
+        lines = Lines(codec)
+        late = [n for n in lines if always_longer(LATE, partial(slowest_after, n))]
     assert lines.reached > 10, "the call has lines to interrupt"
     assert not late, f"{len(late)} of {lines.reached} interrupts delayed others"
     assert not others.wrong
@@ -177,14 +192,15 @@ def test_calls_after_an_interrupt_are_as_fast_as_before(codec: Any) -> None:
         PtyServer(SimulatedArm(TABLE)) as server,
         MyCobot(server.url, timeout=TIMEOUT, retry=RETRY, codec=codec) as arm,
     ):
-        lines, slow = Lines(codec), []
-        for number in lines:
+
+        def seconds_after(number: int) -> float:
             lines.note(interrupted(lambda: arm.get_joint_min_angle(6), number))
-            with StallMeter() as meter:
-                started = time.monotonic()
-                assert arm.get_joint_max_angle(1) == 165.0
-                seconds = time.monotonic() - started
-            if seconds > 0.05 + meter.longest:
-                slow.append((number, seconds))
+            started = time.monotonic()
+            assert arm.get_joint_max_angle(1) == 165.0
+            return time.monotonic() - started
+
+        lines = Lines(codec)
+        # Less than a second attempt takes.
+        slow = [n for n in lines if always_longer(0.12, partial(seconds_after, n))]
     assert lines.reached > 20
     assert not slow
