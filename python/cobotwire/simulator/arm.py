@@ -13,7 +13,7 @@ from cobotwire.protocol.messages import Reply
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
-from cobotwire.simulator.behaviour import BEHAVIOURS
+from cobotwire.simulator.behaviour import BEHAVIOURS, Sized
 from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.peer import IDLE_SECONDS
 from cobotwire.simulator.replies import clamped, completed
@@ -125,7 +125,7 @@ class SimulatedArm:
         """Give up an incomplete request on the arm's own connection; return the replies."""
         return self._own_connection.flush()
 
-    def perform(self, command: Command, fields: Mapping[str, Any]) -> Reply[Any] | None:
+    def perform(self, command: Command, fields: Mapping[str, Any]) -> Reply[Any] | Sized | None:
         """Perform a command; return the reply, None if the behaviour leaves it to the arm.
 
         ``fields`` are those of the request, as the codec decodes them.
@@ -139,6 +139,11 @@ class SimulatedArm:
             self.note(command, text)
         self.state.remarks.clear()
         return reply
+
+    def encode_sized(self, command: Command, sized: Sized) -> bytes:
+        """Return the bytes of a reply in the variant that has as many data bytes."""
+        [variant] = [i for i, each in enumerate(command.reply) if each.size == sized.size]
+        return self.codec.encode(command.name, "reply", sized.reply.values, variant=variant)
 
     def note(self, command: Command, text: str) -> None:
         """Add a note."""
@@ -213,6 +218,8 @@ class ArmConnection:
         reply = self._arm.perform(command, given) if performed else None
         if not command.answers and not (command.ack and self._arm.acks):
             return b""
+        if isinstance(reply, Sized):
+            return self._arm.encode_sized(command, reply)
         result = {} if reply is None else reply.fields
         fields = completed(command, given, result)
         try:

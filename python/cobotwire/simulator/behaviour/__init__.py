@@ -12,6 +12,6 @@ from cobotwire.simulator.behaviour import (  # noqa: F401  (importing them regis
     system,
     upkeep,
 )
-from cobotwire.simulator.behaviour.registry import BEHAVIOURS, Behaviour, behaviour
+from cobotwire.simulator.behaviour.registry import BEHAVIOURS, Behaviour, Sized, behaviour
 
-__all__ = ["BEHAVIOURS", "Behaviour", "behaviour"]
+__all__ = ["BEHAVIOURS", "Behaviour", "Sized", "behaviour"]

@@ -3,6 +3,7 @@
 A behaviour takes the arm's state, the time and the typed request, and returns the typed reply. It
 serves every edition that has the command: arguments that an edition lacks are None. A behaviour
 may return None or leave out optional fields of its reply: the arm then fills in usual legal values.
+It may also state how many data bytes the reply has (:class:`Sized`).
 :func:`query` and :func:`stored` register the behaviours that most commands have.
 """
 
@@ -14,9 +15,18 @@ from typing import Any, NamedTuple, TypeVar
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.simulator.state import ArmState
 
-Behave = Callable[[ArmState, float, Any], Reply[Any] | None]
+
+
+class Sized(NamedTuple):
+    """A reply with its number of data bytes, if variants with the same fields differ in it."""
+
+    reply: Reply[Any]
+    size: int
+
+
+Behave = Callable[[ArmState, float, Any], Reply[Any] | Sized | None]
 RequestT = TypeVar("RequestT", bound=Request[Any])
-Result = TypeVar("Result", bound=Reply[Any] | None)
+Result = TypeVar("Result", bound=Reply[Any] | Sized | None)
 
 
 class Behaviour(NamedTuple):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from cobotwire.editions.mycobot280 import messages as m
-from cobotwire.simulator.behaviour.registry import behaviour, query, row
+from cobotwire.editions.mycobot280.enums import ServoDataMode
+from cobotwire.simulator.behaviour.registry import Sized, behaviour, query, row
 from cobotwire.simulator.kinematics.ticks import ZERO_TICK
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_angle, go_to_angles, move_gripper
@@ -72,10 +73,12 @@ def set_servo_data(arm: ArmState, now: float, request: m.SetServoData) -> None:
 
 
 @behaviour(m.GetServoData)
-def get_servo_data(arm: ArmState, now: float, request: m.GetServoData) -> m.GetServoDataReply:
-    """Reply with a servo register: its low byte, or with mode 1 all of it."""
+def get_servo_data(arm: ArmState, now: float, request: m.GetServoData) -> Sized:
+    """Reply with a servo register: its low byte, or with mode 1 always two bytes."""
     value = arm.registers[request.joint - 1].get(request.register, 0)
-    return m.GetServoDataReply(value=value if request.mode else value % 256)
+    if request.mode == ServoDataMode.WORD:
+        return Sized(m.GetServoDataReply(value=value), 2)
+    return Sized(m.GetServoDataReply(value=value % 256), 1)
 
 
 @behaviour(m.SetServoCalibration)
