@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import pty
 import signal
+import struct
 import subprocess
 import sys
+import termios
+import time
 from pathlib import Path
 
 import pytest
@@ -70,7 +74,8 @@ def test_bytes_option_explains_each_byte_of_a_file(capture: str) -> None:
 
 
 def test_summary_counts_frames_noise_and_findings(capture: str) -> None:
-    code, out, _ = run(capture, "--quiet", "--summary", "--json")
+    code, out, _ = run(capture, "--summary", "--json")
+    assert (code, out) == run(capture, "--quiet", "--summary", "--json")[:2]
     counts = json.loads(out)
     noise = len(FIELD) - len(ANGLES) - 2 * len(FRAME)
     assert code == 1
@@ -84,14 +89,25 @@ def test_summary_counts_frames_noise_and_findings(capture: str) -> None:
     assert counts["diagnosis"].startswith("the controller rebooted: panic LoadProhibited; ")
     _, words, _ = run(capture, "--summary")
     assert len(words.splitlines()) > 8
-    assert f"{len(FIELD)} bytes, 3 frames, 2 resyncs" in words
+    assert words.startswith(f"{len(FIELD)} bytes, 3 frames, 2 resyncs")
+    assert "get_angles(" not in words
+
+
+def test_colour_of_hex_words_tells_the_parts_of_a_frame(capture: str) -> None:
+    shown = _on_a_terminal([*COMMAND, capture], None)
+    assert "\x1b[2mFE FE 03\x1b[0m \x1b[36m\x1b[1m12\x1b[0m 01 \x1b[2mFA\x1b[0m" in shown
+    assert "\x1b[33mFF FF 01 04 02 38 02 BE\x1b[0m" in shown
+    words = _on_a_terminal([*COMMAND, "FE FE 03 12 00 FA 78"], None)
+    assert "\x1b[36m\x1b[1m12\x1b[0m 00 \x1b[2mFA\x1b[0m" in words
+    assert "noise   \x1b[31m78\x1b[0m" in words
+    assert "\x1b[" not in run("FE FE 03 12 00 FA 78")[1]
 
 
 def test_closed_output_ends_decode_with_141_and_no_message(tmp_path: Path) -> None:
     path = tmp_path / "long.bin"
     path.write_bytes(FIELD * 2000)
     process = subprocess.Popen(
-        [*COMMAND, str(path), "--summary"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        [*COMMAND, str(path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     assert process.stdout is not None
     assert process.stderr is not None
@@ -102,9 +118,10 @@ def test_closed_output_ends_decode_with_141_and_no_message(tmp_path: Path) -> No
     process.stderr.close()
 
 
-def test_ctrl_c_prints_the_counts_so_far() -> None:
+@pytest.mark.parametrize("words", [[], ["--summary"]], ids=["frames", "summary"])
+def test_ctrl_c_ends_live_input_and_prints_the_counts_so_far(words: list[str]) -> None:
     process = subprocess.Popen(
-        [*COMMAND, "-", "--summary"],
+        [*COMMAND, "-", *words],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -113,13 +130,25 @@ def test_ctrl_c_prints_the_counts_so_far() -> None:
     assert process.stdout is not None
     process.stdin.write(ANGLES * 2)
     process.stdin.flush()
-    # Live input is shown as it arrives, although the pipe stays open.
-    assert b"get_angles" in process.stdout.readline()
+    if words:
+        _wait_until_read(process.stdin.fileno())
+    else:
+        # Live input is shown as it arrives, although the pipe stays open.
+        assert b"get_angles" in process.stdout.readline()
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert b"34 bytes, 2 frames, 0 resyncs" in out
+    assert (b"34 bytes, 2 frames, 0 resyncs" in out) == bool(words)
     assert b"Traceback" not in err
+
+
+def _wait_until_read(pipe: int) -> None:
+    """Wait until the other end has read everything, and has had the time to decode it."""
+    end = time.monotonic() + 30
+    while struct.unpack("i", fcntl.ioctl(pipe, termios.FIONREAD, bytes(4)))[0]:
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    time.sleep(0.5)
 
 
 def test_memory_use_does_not_depend_on_the_file_size(tmp_path: Path) -> None:
@@ -137,7 +166,7 @@ def test_memory_use_does_not_depend_on_the_file_size(tmp_path: Path) -> None:
             "except SystemExit: pass\n"
             "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)"
         )
-        command = [sys.executable, "-c", script, "decode", str(path), "--summary"]
+        command = [sys.executable, "-c", script, "decode", str(path)]
         with subprocess.Popen(
             command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         ) as process:

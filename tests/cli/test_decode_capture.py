@@ -43,8 +43,8 @@ def test_decode_prints_times_and_directions_of_a_recording(recorded: Path) -> No
 
 
 def test_json_output_holds_times_and_directions(recorded: Path) -> None:
-    result = run("decode", recorded, "--json", "--summary")
-    *entries, summary = map(json.loads, result.stdout.splitlines())
+    entries = [*map(json.loads, run("decode", recorded, "--json").stdout.splitlines())]
+    (summary,) = map(json.loads, run("decode", recorded, "--json", "--summary").stdout.splitlines())
     packets = list(read(recorded))
     assert entries[0]["time_ns"] == packets[0].time_ns
     assert [entry["direction"] for entry in entries] == ["sent", "received", "received", "received"]

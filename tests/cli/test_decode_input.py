@@ -83,7 +83,66 @@ def test_argument_that_is_hex_and_a_file_is_rejected(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "words", [["nosuch.bin"], ["a.bin", "b.bin"], ["FE", "F"], ["."], ["-", "FE"]]
+    ("words", "message"),
+    [
+        (["nosuch.bin"], "nosuch.bin: no such file"),
+        (["/nope"], "/nope: no such file"),
+        (["nope"], "nope: no such file"),
+        (["a.bin", "b.bin"], "a.bin: no such file"),
+        (["/nope", "FE"], "/nope: no such file"),
+        (["*.nope"], "*.nope: no such file"),
+        (["FE", "F"], "FE F is not hex; give pairs of hex digits, one FILE, or -"),
+        (["."], ".: the folder holds no file"),
+        (["-", "FE"], "- is standard input; it cannot be combined with files or bytes"),
+    ],
 )
-def test_argument_that_is_neither_hex_nor_a_file_is_rejected(words: list[str]) -> None:
-    assert run(*words)[0] == 2
+@pytest.mark.parametrize("format", [[], ["--raw"]], ids=["detected", "raw"])
+def test_argument_that_is_neither_hex_nor_a_file_is_rejected(
+    tmp_path: Path, words: list[str], message: str, format: list[str]
+) -> None:
+    code, out, err = run(*words, *format, cwd=tmp_path)
+    assert (code, out) == (2, "")
+    assert err == f"cobotwire: {message}\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "one.bin").write_bytes(ANGLES)
+    (tmp_path / "two.bin").write_bytes(READ + ANGLES)
+    (tmp_path / "three.hex").write_text(ANGLES.hex())
+    (tmp_path / "FEFE0220FA").write_bytes(ANGLES)
+    (tmp_path / ".hidden").write_bytes(READ)
+    (tmp_path / "inner").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        (["two.bin", "one.bin"], ["two.bin", "one.bin"]),
+        (["*.bin"], ["one.bin", "two.bin"]),
+        (["three.hex", "o*"], ["three.hex", "one.bin"]),
+        (["F*", "one.bin"], ["./FEFE0220FA", "one.bin"]),
+        (["."], ["./FEFE0220FA", "./one.bin", "./three.hex", "./two.bin"]),
+    ],
+)
+def test_files_patterns_and_folders_are_decoded_file_by_file(
+    folder: Path, words: list[str], names: list[str]
+) -> None:
+    _, out, _ = run(*words, cwd=folder)
+    expected = "".join(f"{name}:\n" + run(name, cwd=folder)[1] for name in names)
+    assert out == expected
+    code, out, _ = run(*words, "--json", cwd=folder)
+    entries = [json.loads(line) for line in out.splitlines()]
+    assert [*dict.fromkeys(entry["file"] for entry in entries)] == names
+    assert code == int(any(name.endswith("two.bin") for name in names))
+    _, out, _ = run(*words, "--summary", "--json", cwd=folder)
+    assert json.loads(out)["frames"] == {"0x20 get_angles": len(names)}
+
+
+def test_pattern_that_matches_one_file_is_decoded_like_the_file(folder: Path) -> None:
+    assert run("tw*", cwd=folder) == run("two.bin", cwd=folder)
+
+
+def test_missing_file_is_reported_before_any_file_is_decoded(folder: Path) -> None:
+    assert run("one.bin", "nope.bin", cwd=folder) == (2, "", "cobotwire: nope.bin: no such file\n")

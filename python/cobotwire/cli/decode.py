@@ -19,6 +19,8 @@ from cobotwire.capture import CaptureReader
 from cobotwire.capture.byte_source import ByteFormat, ByteSource, open_bytes
 from cobotwire.capture.streams import DirectionStream, diagnose_capture
 from cobotwire.cli.shared.exit_codes import OUTPUT_CLOSED
+from cobotwire.cli.shared.hex_colours import frame_colours
+from cobotwire.cli.shared.input_files import input_files
 from cobotwire.cli.shared.item_formats import Format, as_object, byte_by_byte, one_line
 from cobotwire.cli.shared.output import discard_output
 from cobotwire.cli.shared.recordings import ARROWS, recording_named, warn_if_incomplete
@@ -26,6 +28,7 @@ from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose import Diagnoser, Item
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
+from cobotwire.protocol.printable import printable
 
 # Decoding this many bytes takes some seconds, so a progress bar is shown.
 LONG_FILE = 4 << 20
@@ -40,10 +43,12 @@ class Options(NamedTuple):
     each_byte: bool
     as_json: bool
     quiet: bool
+    # The name of the file, if there are several.
+    file: str | None = None
 
 
 @click.command(short_help="Explain bytes, streams and recordings.")
-@click.argument("input", nargs=-1, required=True, metavar="HEX...|FILE|-")
+@click.argument("input", nargs=-1, required=True, metavar="HEX...|FILE...|-")
 @click.option("--raw", "format", flag_value="raw", help="FILE holds raw bytes.")
 @click.option("--hex", "format", flag_value="hex", help="FILE holds hex text.")
 @click.option(
@@ -58,8 +63,8 @@ class Options(NamedTuple):
 )
 @click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as is done for HEX.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
-@click.option("--summary", is_flag=True, help="Print counts at the end.")
-@click.option("--quiet", is_flag=True, help="Do not print frames and noise.")
+@click.option("--summary", is_flag=True, help="Print only counts.")
+@click.option("--quiet", is_flag=True, help="Print nothing but the summary, if any.")
 @click.pass_obj
 def decode(
     edition: str,
@@ -74,9 +79,10 @@ def decode(
 ) -> None:
     """Print the meaning of each frame, and the diagnosis of everything else.
 
-    HEX is bytes as pairs of hex digits, with or without spaces, commas or 0x. Any other single
-    argument is a FILE; - is standard input. If an argument is both hex and an existing file, write
-    ./NAME for the file or 0xNAME for the bytes.
+    HEX is bytes as pairs of hex digits, with or without spaces, commas or 0x. Anything else is a
+    FILE, a folder of files, or a pattern such as '*.bin'; - is standard input. The --summary of
+    several files counts all of them. If an argument is both hex and an existing file, write ./NAME
+    for the file or 0xNAME for the bytes.
 
     A recording (pcapng, which other verbs write with --record) is decoded packet by packet. Each
     frame is decoded in the direction in which it was sent, and printed with its time. --direction
@@ -89,25 +95,38 @@ def decode(
     \b
       cobotwire decode FE FE 06 21 01 00 1D 14 FA
       cobotwire decode capture.bin --summary
+      cobotwire decode monday.bin tuesday.bin captures/ '*.hex' --summary
       cobotwire decode arm.pcapng
       cat capture.hex | cobotwire decode - --hex --json
 
     Exit codes: 0 all bytes are legal frames; 1 some are not; 141 the reader of the output closed
     it.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
+    quiet = quiet or summary
     options = Options(edition, direction, accept_unknown, each_byte, as_json, quiet)
-    capture = recording_named(input) if format is None else None
+    files = input_files(input)
     counts = StreamCounts()
     try:
-        if capture is None:
-            _decode_bytes(open_bytes(input, format, _notify), options, counts)
-        else:
-            _decode_recording(capture, options, counts)
+        for names in [input] if files is None else [(name,) for name in files]:
+            if files is not None and len(files) > 1:
+                options = _name_file(options, names[0])
+            capture = recording_named(names) if format is None else None
+            if capture is None:
+                _decode_bytes(open_bytes(names, format, _notify), options, counts)
+            else:
+                _decode_recording(capture, options, counts)
     finally:
         # Ctrl-C prints the counts up to that point.
         if summary:
             _print(_counts_json(counts) if as_json else "\n".join(_counts_lines(counts)))
     sys.exit(0 if counts.only_legal else 1)
+
+
+def _name_file(options: Options, name: str) -> Options:
+    """Print the heading of one of several files; return the options to decode it."""
+    if not options.quiet and not options.as_json:
+        _print(f"{printable(name)}:")
+    return options._replace(file=name)
 
 
 def _notify(text: str) -> None:
@@ -123,15 +142,17 @@ class _StreamPrinter:
         directions = tuple(d for d in DIRECTIONS if listening in (d, "both"))
         self.reader = FrameReader(codec, directions)
         self._counts, self._options = counts, options
+        self._file = {} if options.file is None else {"file": options.file}
         self._format = self._choose_format(codec)
 
     def _choose_format(self, codec: Codec) -> Format:
         if self._options.as_json:
-            return lambda item: json.dumps(as_object(self.reader, item))
-        if self._options.each_byte:
-            return byte_by_byte(self.reader, codec.table.frame)
+            return lambda item: json.dumps({**self._file, **as_object(self.reader, item)})
         colour = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
-        return one_line(self.reader, colour)
+        paint = frame_colours(codec.table.frame) if colour else None
+        if self._options.each_byte:
+            return byte_by_byte(self.reader, codec.table.frame, paint)
+        return one_line(self.reader, paint)
 
     def print(self, items: list[Item]) -> None:
         self._counts.add(items, self.reader)
@@ -167,7 +188,7 @@ class _TimedStreamPrinter(_StreamPrinter):
         if not self._options.as_json:
             return f"{after:10.6f}{self._label} {ARROWS[direction]} {super().format(item)}"
         when = {"time_ns": time_ns, "after": after, "url": self._url, "direction": direction}
-        return json.dumps({**when, **as_object(self.reader, item)})
+        return json.dumps({**self._file, **when, **as_object(self.reader, item)})
 
 
 def _decode_bytes(source: ByteSource, options: Options, counts: StreamCounts) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from cobotwire.cli.shared.hex_colours import Paint
 from cobotwire.cli.shared.output import as_hex, as_json_value
 from cobotwire.codec.interface import Frame
 from cobotwire.diagnose import Finding, Item, Unrecognised
@@ -26,8 +27,8 @@ SHOWN = 16
 Format = Callable[[Item], str]
 
 
-def one_line(reader: FrameReader, colour: bool) -> Format:
-    """Return a formatter: offset, kind, bytes and meaning."""
+def one_line(reader: FrameReader, paint: Paint | None) -> Format:
+    """Return a formatter: offset, kind, bytes and meaning; with colours if there is ``paint``."""
     meaning = lru_cache(REMEMBERED)(lambda data: " | ".join(map(_reading, reader.read(data))))
 
     def format(item: Item) -> str:
@@ -36,8 +37,12 @@ def one_line(reader: FrameReader, colour: bool) -> Format:
         else:
             kind, text = item.kind, item.describe()
             label_colour = "red" if isinstance(item, Unrecognised) else "yellow"
-        label = click.style(f"{kind:<14}", fg=label_colour) if colour else f"{kind:<14}"
-        return f"{item.offset:>8}  {label}  {_first_bytes(item)}  {text}{_pieces(item)}"
+        label, shown = f"{kind:<14}", _first_bytes(item)
+        if paint is not None:
+            label = click.style(label, fg=label_colour)
+            is_frame = isinstance(item, Frame)
+            shown = paint(item.data) if is_frame else click.style(shown, fg=label_colour)
+        return f"{item.offset:>8}  {label}  {shown}  {text}{_pieces(item)}"
 
     return format
 
@@ -62,18 +67,19 @@ def _pieces(item: Item) -> str:
     return around + (" (continued)" if item.continued else "")
 
 
-def byte_by_byte(reader: FrameReader, frame: FrameFormat) -> Format:
+def byte_by_byte(reader: FrameReader, frame: FrameFormat, paint: Paint | None) -> Format:
     """Return a formatter: each byte of a frame on a line; noise, and why it is not a frame."""
 
     def format(item: Item) -> str:
         readings = reader.read(item.data)
         if isinstance(item, Frame):
-            lines = [f"frame   {as_hex(item.data)}"]
+            lines = [f"frame   {paint(item.data) if paint else as_hex(item.data)}"]
             for reading in readings:
                 lines.append(f"  {_reading(reading)}")
                 lines += _parts(frame, item.data, reading)
             return "\n".join(lines)
-        lines = [f"noise   {as_hex(item.data)}   {item.reason}", f"  {item.describe()}"]
+        shown = click.style(as_hex(item.data), fg="red") if paint else as_hex(item.data)
+        lines = [f"noise   {shown}   {item.reason}", f"  {item.describe()}"]
         lines += [f"  {_reading(reading)}" for reading in readings if reading.error is not None]
         return "\n".join(lines)
 
