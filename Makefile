@@ -114,7 +114,7 @@ clean: ## remove the environment and all build products
 
 # Build the Rust codec in release mode; install it in place, with the extras of the command line.
 .venv/.native: .venv/.base $(RUST_SOURCES)
-	. $(BIN)/activate && maturin develop --release --quiet --extras cli,sim
+	. $(BIN)/activate && maturin develop --release --quiet --extras sim
 	touch $@
 
 .venv/.tools: .venv/.base codegen/pyproject.toml

@@ -102,7 +102,7 @@ def fresh(tmp_path_factory: pytest.TempPathFactory, wheels: list[Path]) -> Path:
     run(sys.executable, "-m", "venv", folder)
     [native] = [wheel for wheel in wheels if wheel.name.startswith("cobotwire-")]
     others = [wheel for wheel in wheels if wheel != native]
-    run(folder / "bin" / "python", "-m", "pip", "install", "--quiet", f"{native}[cli]", *others)
+    run(folder / "bin" / "python", "-m", "pip", "install", "--quiet", native, *others)
     return folder / "bin"
 
 
@@ -137,6 +137,17 @@ def test_package_built_from_one_yaml_file_talks_to_its_simulator(
     assert "request: get_warmth(plate=2)" in decoded.stdout
     with pytest.raises(FileNotFoundError):
         run("cargo", "--version", env={**environment, "PATH": str(fresh)})
+
+
+def test_command_line_works_without_extras_and_names_a_missing_one(
+    environment: dict[str, str],
+) -> None:
+    assert "get_angles" in run("cobotwire", "commands", env=environment).stdout
+    assert "late-replies" in run("cobotwire", "sim", "--list-scenarios", env=environment).stdout
+    with pytest.raises(subprocess.CalledProcessError) as caught:
+        run("cobotwire", "plot", "arm.pcapng", "-o", "arm.svg", env=environment)
+    sentence = "plotting needs matplotlib: pip install 'cobotwire[plot]'"
+    assert caught.value.stderr == f"cobotwire: {sentence}\n"
 
 
 def test_own_template_replaces_the_shipped_one_of_the_same_name(

@@ -1,4 +1,4 @@
-"""Run the command ``cobotwire``; it needs the packages of the extra ``cli``."""
+"""Run the command ``cobotwire``."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ def main() -> None:
     try:
         import click  # noqa: F401  (imported only to see whether it is installed)
         import rich  # noqa: F401
-    except ImportError as error:
-        sys.exit(f"cobotwire: {error}. The command line needs: pip install 'cobotwire[cli]'")
+    except ImportError:
+        # They are dependencies of cobotwire; pip install --no-deps leaves them out.
+        sys.exit("cobotwire: the command line needs click and rich: pip install click rich")
     from cobotwire.cli.app import app
 
     app(prog_name="cobotwire")

@@ -41,7 +41,7 @@ def parse(text: str, name: str) -> Node:
         from ruamel.yaml import YAML
         from ruamel.yaml.error import MarkedYAMLError, YAMLError
     except ImportError:
-        message = f"reading the scenario {name} needs ruamel.yaml: pip install 'cobotwire[sim]'"
+        message = "fault scenarios need ruamel.yaml: pip install 'cobotwire[sim]'"
         raise UsageError("scenario", message=message) from None
     yaml = YAML(typ="safe", pure=True)
     try:

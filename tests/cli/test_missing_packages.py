@@ -1,0 +1,68 @@
+"""Check what the command line needs, and what it says if a package is missing."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import vectors
+
+CLI = vectors.ROOT / "python" / "cobotwire" / "cli"
+
+
+def run_without(package: str, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run the command line as if a package was not installed."""
+    script = (
+        f"import sys; sys.modules[{package!r}] = None\n"
+        "from cobotwire.cli import main\n"
+        f"sys.argv[1:] = {list(words)!r}\n"
+        "main()"
+    )
+    return subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def test_every_package_that_the_command_line_imports_is_a_dependency() -> None:
+    project = tomllib.loads((vectors.ROOT / "pyproject.toml").read_text())["project"]
+    installed = {words.split(">")[0] for words in project["dependencies"]}
+    imported = {name for path in CLI.rglob("*.py") for name in _imported(path)}
+    assert imported - set(sys.stdlib_module_names) - {"cobotwire"} <= installed
+    assert {"click", "rich"} <= imported
+
+
+def _imported(path: Path) -> set[str]:
+    nodes = list(ast.walk(ast.parse(path.read_text())))
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+    return {name.partition(".")[0] for name in names}
+
+
+@pytest.mark.parametrize(
+    ("package", "words", "sentence"),
+    [
+        ("rich", ["ports"], "the command line needs click and rich: pip install click rich"),
+        ("click", ["ports"], "the command line needs click and rich: pip install click rich"),
+        *(
+            ("ruamel", words, "fault scenarios need ruamel.yaml: pip install 'cobotwire[sim]'")
+            for words in (["sim", "--scenario", "panic"], ["sim", "--list-scenarios"])
+        ),
+        (
+            "matplotlib",
+            ["plot", "arm.pcapng", "-o", "arm.svg"],
+            "plotting needs matplotlib: pip install 'cobotwire[plot]'",
+        ),
+    ],
+)
+def test_missing_package_is_named_in_one_sentence(
+    package: str, words: list[str], sentence: str
+) -> None:
+    result = run_without(package, *words)
+    assert result.returncode != 0
+    assert result.stdout == ""
+    assert result.stderr == f"cobotwire: {sentence}\n"
