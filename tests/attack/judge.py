@@ -29,13 +29,13 @@ class Scene(NamedTuple):
         setting: the plan and the record of the users.
         line: what arrived and what was delivered.
         peer: what the arm received and sent.
-        stalls: when the machine stalled, and for how many seconds.
+        stalls: when the machine stalled, and for how many seconds; each measure by itself.
     """
 
     setting: Setting
     line: HostileLine
     peer: HostilePeer
-    stalls: list[tuple[float, float]]
+    stalls: list[list[tuple[float, float]]]
 
 
 class Judge:
@@ -120,7 +120,7 @@ class Judge:
         if call.ended <= due or call.ending == "interrupted":
             return
         excess = call.ended - due
-        stalled = max(_stalled(call, self._scene.stalls), _stalled(call, self._scene.line.stalls))
+        stalled = max(_stalled(call, stalls) for stalls in self._scene.stalls)
         if stalled >= excess:
             self.tally.stalled += 1
             return

@@ -16,6 +16,7 @@ from attack.calls import SHORT
 from attack.ends import PtyEnd, TcpEnd
 from attack.judge import Judge, Scene
 from attack.line import HostileLine
+from attack.machine import MachineMeter
 from attack.plans import Plan, plan
 from attack.profiles import PROFILES
 from attack.setting import Setting, table_of
@@ -40,13 +41,14 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
     line = HostileLine(peer, codec, end)
-    with StallMeter() as meter, line:
+    with StallMeter() as meter, MachineMeter() as machine, line:
         setting = Setting(chosen, line.url)
         if change is not None:
             setting.client = change(setting.client)
         run: Callable[..., None] = run_threads if chosen.client == "blocking" else run_tasks
         run(setting, partial(_happen, line, setting), partial(_settle, line, setting))
-    return Judge(Scene(setting, line, peer, meter.late)).judge()
+    stalls = [meter.late, line.stalls, *machine.stops.values()]
+    return Judge(Scene(setting, line, peer, stalls)).judge()
 
 
 def _settle(line: HostileLine, setting: Setting) -> None:
