@@ -125,6 +125,10 @@ class SimulatedArm:
         """Give up an incomplete request on the arm's own connection; return the replies."""
         return self._own_connection.flush()
 
+    def forget_client(self) -> None:
+        """Forget an incomplete request on the arm's own connection; its client has left."""
+        self._own_connection.forget_client()
+
     def perform(self, command: Command, fields: Mapping[str, Any]) -> Reply[Any] | Sized | None:
         """Perform a command; return the reply, None if the behaviour leaves it to the arm.
 
@@ -188,6 +192,10 @@ class ArmConnection:
     def restart(self) -> None:
         """Restart the arm, and forget an incomplete request of this client."""
         self._arm.restart()
+        self.reset()
+
+    def forget_client(self) -> None:
+        """Forget an incomplete request; its client has left."""
         self.reset()
 
     def reset(self) -> None:

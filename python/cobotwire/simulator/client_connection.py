@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from cobotwire.simulator.peer import Peer
+from cobotwire.simulator.peer import Peer, SharedPeer
 
 # Bytes of replies that wait for a client to read them. Beyond that the oldest replies are lost, as
 # on a serial line without flow control.
@@ -42,6 +42,13 @@ class ClientConnection:
         due = self._plan_flush()
         if due is not None and self._clock() >= due:
             self._keep(self._peer.flush())
+
+    def forget_client(self) -> None:
+        """Drop the unread replies and the incomplete request of a client that has left."""
+        self._unread.clear()
+        self._due = None
+        if isinstance(self._peer, SharedPeer):
+            self._peer.forget_client()
 
     def take(self) -> bytes:
         """Return the oldest reply; empty if the client has read everything."""

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from cobotwire.protocol.errors import LinkError
 from cobotwire.simulator.client_connection import ClientConnection
 from cobotwire.simulator.clock import Clock, RunningClock
-from cobotwire.simulator.peer import Peer, PeerDisconnected
+from cobotwire.simulator.peer import Peer, PeerDisconnected, SharedPeer
 
 # Time passes even if a peer always requests an immediate flush.
 TICK_SECONDS = 1e-6
@@ -104,6 +104,8 @@ class MemoryTransport:
         A fault scenario keeps its state, too: it may disconnect again.
         """
         with self._news:
+            if isinstance(self._peer, SharedPeer):
+                self._peer.forget_client()
             self._connection = ClientConnection(self._peer, self.clock)
             self._closed = False
             self._news.notify_all()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 # Peers give up an incomplete request after this pause, so that the next request does not complete
 # it.
@@ -27,4 +27,13 @@ class Peer(Protocol):
 
     def flush(self) -> bytes:
         """Return what is to be sent now, without new data."""
+        ...
+
+
+@runtime_checkable
+class SharedPeer(Protocol):
+    """A peer that serves one client after another: it forgets each when it has left."""
+
+    def forget_client(self) -> None:
+        """Forget the incomplete request of the client that has left."""
         ...

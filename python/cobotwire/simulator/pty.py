@@ -3,31 +3,114 @@
 from __future__ import annotations
 
 import os
+import select
+import termios
 import tty
-from functools import partial
+from contextlib import suppress
 
 from cobotwire.simulator.clock import RunningClock
+from cobotwire.simulator.openings import Openings
 from cobotwire.simulator.peer import Peer
-from cobotwire.simulator.server import Endpoint, Server
+from cobotwire.simulator.server import READ, Endpoint, Server
 
 
 class PtyServer(Server):
-    """Serves a peer on a pty while its ``with`` block runs; ``url`` is the port to open."""
+    """Serves a peer on a pty while its ``with`` block runs; ``url`` is the port to open.
+
+    When the last program closes the port, its incomplete request and the replies that it did not
+    read are dropped, so that the next program finds neither. Systems other than Linux do not report
+    that the port is closed; there the peer gives up the request after a pause.
+    """
 
     def __init__(self, peer: Peer, clock: RunningClock | None = None) -> None:
         """Create the pty; ``clock`` is the one that the peer uses; None: real time."""
         super().__init__(clock)
-        master, slave = os.openpty()
-        # Raw mode: a terminal would echo the requests and swallow some of their bytes. The slave
-        # stays open here, so that clients can come and go.
+        self._master, slave = os.openpty()
+        # Raw mode: a terminal would echo the requests and swallow some of their bytes.
         tty.setraw(slave)
         # A client that does not read must not block the server.
-        os.set_blocking(master, False)
+        os.set_blocking(self._master, False)
         self.url = os.ttyname(slave)
+        # Whether a program has the port open; always, if the system does not report it.
+        self._opened = True
+        # Whether a program has closed the port since the last one opened it.
+        self._left = False
+        self._held: list[int] = [slave]
+        self._connect(Endpoint(self._master, self._read, self._write, self._close), peer)
+        self._openings: Openings | None = None
+        with suppress(OSError):
+            self._openings = Openings(self.url)
+            # While this process has the slave open, nothing reports that the last client closed it.
+            os.close(self._held.pop())
+            self._selector.register(self._openings.descriptor, READ)
+            self._selector.unregister(self._master)
+            self._opened = False
 
-        def close() -> None:
-            os.close(master)
+    def _ready(self, descriptor: int, events: int) -> None:
+        self._note_openings()
+        if descriptor == self._master and self._master in self._clients:
+            super()._ready(descriptor, events)
+
+    def _note_openings(self) -> None:
+        """Register the port once it is open; if it was closed before, forget the client that left.
+
+        The kernel reports openings before the bytes that follow them.
+        """
+        for opening in self._openings.read() if self._openings else ():
+            if opening and self._left:
+                self._forget_client()
+            if opening and not self._opened:
+                self._register()
+            self._left = not opening
+
+    def _register(self) -> None:
+        if self._master in self._clients:
+            self._opened = True
+            self._selector.register(self._master, READ)
+
+    def _read(self, size: int) -> bytes:
+        try:
+            return os.read(self._master, size)
+        except BlockingIOError:
+            raise
+        except OSError:
+            if self._openings is None:
+                raise
+        # No program has the port open.
+        if self._opened:
+            self._opened = self._left = False
+            self._selector.unregister(self._master)
+            self._forget_client()
+        raise BlockingIOError
+
+    def _write(self, data: bytes) -> int:
+        # What is sent while no program has the port open is lost, as on a serial port.
+        return os.write(self._master, data) if self._opened else len(data)
+
+    def _forget_client(self) -> None:
+        """Drop the incomplete request of the last client, and the replies that it did not read."""
+        if self._openings is None or self._master not in self._clients:
+            return
+        self._clients[self._master].connection.forget_client()
+        with self._openings.ignored(), suppress(OSError):
+            slave = os.open(self.url, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+            termios.tcflush(slave, termios.TCIFLUSH)
             os.close(slave)
+        if not self._opened and not _hung_up(self._master):
+            self._register()
 
-        endpoint = Endpoint(master, partial(os.read, master), partial(os.write, master), close)
-        self._connect(endpoint, peer)
+    def _close(self) -> None:
+        for descriptor in (self._master, *self._held):
+            os.close(descriptor)
+        if self._openings is not None:
+            if self._openings.descriptor in self._selector.get_map():
+                self._selector.unregister(self._openings.descriptor)
+            self._openings.close()
+            self._openings = None
+
+
+def _hung_up(master: int) -> bool:
+    """Return whether no program has the slave of a pty open."""
+    poll = select.poll()
+    poll.register(master, 0)
+    return any(event & select.POLLHUP for _, event in poll.poll(0))

@@ -92,7 +92,8 @@ class Server:
         self._selector.register(endpoint.descriptor, READ)
 
     def _drop(self, client: _Client) -> None:
-        self._selector.unregister(client.endpoint.descriptor)
+        if client.endpoint.descriptor in self._selector.get_map():
+            self._selector.unregister(client.endpoint.descriptor)
         del self._clients[client.endpoint.descriptor]
         client.endpoint.close()
 
@@ -102,7 +103,8 @@ class Server:
         elif client.full != bool(client.connection.unread):
             client.full = not client.full
             events = READ | WRITE if client.full else READ
-            self._selector.modify(client.endpoint.descriptor, events)
+            if client.endpoint.descriptor in self._selector.get_map():
+                self._selector.modify(client.endpoint.descriptor, events)
 
     def _wait(self, call_at: float | None) -> float | None:
         """Return for how many real seconds there is nothing to do unless something arrives."""

@@ -16,7 +16,6 @@ from cobotwire.protocol.messages import Reply, Request
 from cobotwire.simulator.state import ArmState
 
 
-
 class Sized(NamedTuple):
     """A reply with its number of data bytes, if variants with the same fields differ in it."""
 

@@ -12,7 +12,7 @@ from cobotwire.simulator.faults.chooser import Chooser
 from cobotwire.simulator.faults.exchange import AppliedFault, Piece, Reply, Request, joined
 from cobotwire.simulator.faults.fault import Moment
 from cobotwire.simulator.faults.faulty_connection import FaultyConnection
-from cobotwire.simulator.peer import IDLE_SECONDS, Peer, PeerDisconnected
+from cobotwire.simulator.peer import IDLE_SECONDS, Peer, PeerDisconnected, SharedPeer
 
 Chosen = list[tuple[Chooser, Moment]]
 
@@ -80,6 +80,13 @@ class FaultyPeer:
         """Return what is due by now, without new data."""
         self._pass_time()
         return self._take()
+
+    def forget_client(self) -> None:
+        """Forget an incomplete request; replies that a fault has delayed still come."""
+        self._kept = b""
+        self._reset()
+        if isinstance(self._peer, SharedPeer):
+            self._peer.forget_client()
 
     def power_cycle(self) -> None:
         """Switch the arm off and on: it is no longer deaf, and has lost its state."""
