@@ -52,6 +52,8 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     show_default=True,
     help="The arm's speed: 2 is twice as fast.",
 )
+@click.option("--powered", is_flag=True, help="The arm has power from the start.")
+@click.option("--no-acks", is_flag=True, help="Send no acknowledgements, as older firmware.")
 @click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf file.")
@@ -73,6 +75,8 @@ def sim(
     on_pty: bool,
     tcp: str | None,
     speed: float,
+    powered: bool,
+    no_acks: bool,
     quiet: bool,
     as_json: bool,
     view: str | None,
@@ -98,7 +102,9 @@ def sim(
     lines = LineOutput(output.left_out)
     clock = RunningClock(speed)
     on_note = None if quiet else lambda note: lines.print(output.note(note))
-    arm = SimulatedArm(package.TABLE, clock=clock, on_note=on_note)
+    arm = SimulatedArm(
+        package.TABLE, clock=clock, on_note=on_note, powered=powered, acks=not no_acks
+    )
     faults = None if scenario is None else find(scenario, package.TABLE)
     peers = _Peers(arm, clock, faults, seed, None if quiet else output, lines)
     server = _server(peers, clock, tcp)

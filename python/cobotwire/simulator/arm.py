@@ -56,10 +56,11 @@ class SimulatedArm:
         codec: codecs.CodecName | None = None,
         on_event: EventListener | None = None,
         acks: bool = True,
+        powered: bool = False,
         geometry: Geometry | None = None,
         on_note: Callable[[Note], None] | None = None,
     ) -> None:
-        """Create an arm that is powered off, with every joint at zero.
+        """Create an arm with every joint at zero.
 
         Args:
             table: the edition that the arm speaks.
@@ -67,6 +68,7 @@ class SimulatedArm:
             codec: ``native`` or ``reference``; None: the default one.
             on_event: called with everything that the arm receives, and with its reply.
             acks: whether the arm sends the acknowledgements that the edition allows.
+            powered: whether the arm has power from the start; after a restart it has none.
             geometry: the lengths of the links; None: those of the arm that speaks this edition. If
                 they are not known either, the arm reports all coordinates as 0, rejects motions to
                 coordinates, and its joints do not snap to encoder ticks.
@@ -81,6 +83,8 @@ class SimulatedArm:
         self._notes: deque[Note] = deque(maxlen=NOTES_KEPT)
         self._geometry = geometry or geometry_of(table)
         self.state = self._new_state()
+        if powered:
+            self.state.power_on()
         self._own_connection = ArmConnection(self, on_event)
 
     def connect(self, on_event: EventListener | None = None) -> ArmConnection:

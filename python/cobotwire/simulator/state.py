@@ -107,6 +107,12 @@ class ArmState:
         pairs = list(zip(self.minimum, self.maximum))
         return [inside(low, high) for low, high in pairs] if self.geometry else pairs
 
+    def power_on(self) -> None:
+        """Power and hold every joint where it is; connect the Atom."""
+        self.connected = True
+        self.powered, self.free = True, False
+        self.enabled = [True] * self.joints
+
     def resume(self, now: float) -> None:
         """End a pause: continue."""
         self.paused = False

@@ -10,9 +10,7 @@ from cobotwire.simulator.state import ArmState
 @behaviour(m.PowerOn)
 def power_on(arm: ArmState, now: float, request: m.PowerOn) -> None:
     """Power and hold every joint where it is; connect the Atom."""
-    arm.connected = True
-    arm.powered, arm.free = True, False
-    arm.enabled = [True] * arm.joints
+    arm.power_on()
 
 
 @behaviour(m.PowerOff)
