@@ -96,7 +96,7 @@ UNCHECKED: Differences = dict(
         _same("set_vision_mode", "254", (254,), "bad-value", _FLAG),
         _same("release_all_servos", "2", (2,), "bad-value", _FLAG),
         _same("release_servo", "2", (1, 2), "bad-value", _FLAG),
-        _same("send_coords", "mode 2", (_ZERO, 50, 2), "bad-value", _FLAG),
+        _same("send_coords", "mode 3", (_ZERO, 50, 3), "bad-value", _FLAG),
         _same("set_pwm_output", "-1 hertz", (1, -1, 128), "bad-value", _UNSIGNED),
         _same("set_gripper_state", "torque", (0, 50, None, 1), (0, 50, 1), _TORQUE),
         _same("set_gripper_state", "no torque", (0, 50, None, 0), "bad-value", _TORQUE),

@@ -37,6 +37,8 @@ class MoveMode(IntEnum):
     """Each joint takes its shortest path."""
     LINEAR = 1
     """The end moves along a straight line."""
+    UNEXPLAINED = 2
+    """Other clients send this mode; no source says what it means."""
 
 
 class TargetKind(IntEnum):

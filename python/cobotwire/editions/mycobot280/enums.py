@@ -46,6 +46,15 @@ class RpyAxis(IntEnum):
     """Yaw, about z."""
 
 
+class MovementType(IntEnum):
+    """The path to a coordinate target that is sent without a mode."""
+
+    ANGULAR = 0
+    """Each joint takes its shortest path."""
+    LINEAR = 1
+    """The end moves along a straight line."""
+
+
 class ServoDataMode(IntEnum):
     """The width of a servo register."""
 

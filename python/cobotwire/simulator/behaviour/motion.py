@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cobotwire.editions.mycobot280 import messages as m
-from cobotwire.editions.mycobot280.enums import MoveMode, TargetKind
+from cobotwire.editions.mycobot280.enums import MovementType, MoveMode, TargetKind
 from cobotwire.simulator.behaviour.registry import behaviour, query, row
 from cobotwire.simulator.kinematics import DEGREES_PER_TICK, Pose
 from cobotwire.simulator.state import ArmState
@@ -93,4 +93,4 @@ query(m.IsMoving, lambda arm, now, request: arm.angles.moving(now))
 
 def moves_straight(arm: ArmState) -> bool:
     """Return whether the end moves on a straight line if the command does not choose."""
-    return arm.movement_type == MoveMode.LINEAR
+    return arm.movement_type == MovementType.LINEAR

@@ -55,7 +55,7 @@ class CoordsCommands(Client):
             coords: Position and orientation of the end (6 numbers (x, y, z -3253.5..3300
                 millimetre; rx, ry, rz -325.35..330 degree)).
             speed: Speed in percent of the maximum (0..100 percent).
-            mode: The path to a coordinate target (one of ANGULAR (0), LINEAR (1)).
+            mode: The path to a coordinate target (one of ANGULAR (0), LINEAR (1), UNEXPLAINED (2)).
 
         Safety: motion. Command id 0x25.
         """

@@ -12,7 +12,7 @@ from .. import messages
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..enums import FreshMode, MoveMode, TargetKind
+    from ..enums import FreshMode, MovementType, TargetKind
     from ..values import Angles, Radians
 
 
@@ -92,12 +92,12 @@ class AsyncMotionCommands(AsyncClient):
         await self._send(messages.motion.SendRadians(radians, speed), ack_within)
 
     async def set_movement_type(
-        self, mode: MoveMode | int, *, ack_within: float | None = None
+        self, mode: MovementType | int, *, ack_within: float | None = None
     ) -> None:
         """Set the path to coordinates."""
         await self._send(messages.motion.SetMovementType(mode), ack_within)
 
-    async def get_movement_type(self) -> MoveMode:
+    async def get_movement_type(self) -> MovementType:
         """Read the path to coordinates."""
         return await self._call(messages.motion.GetMovementType())
 

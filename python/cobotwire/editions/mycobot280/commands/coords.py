@@ -66,7 +66,7 @@ class CoordsCommands(Client):
                 -70..412.6 millimetre; rx, ry, rz -180..180 degree)).
             speed: Speed in percent of the maximum (1..100 percent).
             mode: The path to the target. Left out: that of set_movement_type (one of ANGULAR (0),
-                LINEAR (1); optional).
+                LINEAR (1), UNEXPLAINED (2); optional).
 
         Safety: motion. Command id 0x25.
         """

@@ -12,7 +12,7 @@ from .. import messages
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..enums import FreshMode, MoveMode, TargetKind
+    from ..enums import FreshMode, MovementType, TargetKind
     from ..values import Angles, Radians
 
 
@@ -220,24 +220,28 @@ class MotionCommands(Client):
         """
         self._send(messages.motion.SendRadians(radians, speed), ack_within)
 
-    def set_movement_type(self, mode: MoveMode | int, *, ack_within: float | None = None) -> None:
+    def set_movement_type(
+        self, mode: MovementType | int, *, ack_within: float | None = None
+    ) -> None:
         """Set the path to coordinates.
 
         Sets the path of the end to a coordinate target.
 
         Args:
-            mode: The path to a coordinate target (one of ANGULAR (0), LINEAR (1)).
+            mode: The path to a coordinate target that is sent without a mode (one of ANGULAR (0),
+                LINEAR (1)).
 
         Safety: setting. Command id 0x87.
         """
         self._send(messages.motion.SetMovementType(mode), ack_within)
 
-    def get_movement_type(self) -> MoveMode:
+    def get_movement_type(self) -> MovementType:
         """Read the path to coordinates.
 
         Reads the path of the end to a coordinate target.
 
-        Returns: The path to a coordinate target (one of ANGULAR (0), LINEAR (1)).
+        Returns: The path to a coordinate target that is sent without a mode (one of ANGULAR (0),
+            LINEAR (1)).
         Safety: query. Command id 0x88.
         """
         return self._call(messages.motion.GetMovementType())

@@ -15,7 +15,7 @@ from ...mycobot.messages.motion import IsMoving as IsMoving
 from ...mycobot.messages.motion import IsMovingReply as IsMovingReply
 from ...mycobot.messages.motion import IsPaused as IsPaused
 from ...mycobot.messages.motion import IsPausedReply as IsPausedReply
-from ..enums import FreshMode, MoveMode
+from ..enums import FreshMode, MovementType
 from ..values import Angles, Radians
 
 
@@ -156,7 +156,7 @@ class SendRadiansReply(Reply[None], to=SendRadians):
 class SetMovementType(Request[None], command="set_movement_type"):
     """Set the path to coordinates."""
 
-    mode: MoveMode | int
+    mode: MovementType | int
 
 
 class SetMovementTypeReply(Reply[None], to=SetMovementType):
@@ -165,14 +165,14 @@ class SetMovementTypeReply(Reply[None], to=SetMovementType):
     done: int | None = None
 
 
-class GetMovementType(Request[MoveMode], command="get_movement_type"):
+class GetMovementType(Request[MovementType], command="get_movement_type"):
     """Read the path to coordinates."""
 
 
-class GetMovementTypeReply(Reply[MoveMode], to=GetMovementType):
+class GetMovementTypeReply(Reply[MovementType], to=GetMovementType):
     """Reply to get_movement_type."""
 
-    mode: MoveMode
+    mode: MovementType
 
 
 class GetAnglesPlan(Request[Angles], command="get_angles_plan"):
