@@ -28,7 +28,8 @@ class Radians(NamedTuple):
     """The six joint angles in radians, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6: A joint angle, in radians.
+        j1, j2, j3, j4, j5, j6: A joint angle as the arm reports it, in radians; the range is that
+            of measured_angle.
     """
 
     j1: float

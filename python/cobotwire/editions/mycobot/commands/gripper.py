@@ -21,7 +21,8 @@ class GripperCommands(Client):
 
         Reads how far the gripper is open, in percent; 0 is closed, 100 fully open.
 
-        Returns: How far the gripper is open; 0 is closed, 100 fully open (0..100 percent).
+        Returns: How far the gripper is open, as the arm reports it; 0 is closed, 100 fully open. A
+            gripper that is open beyond its calibration reports more than 100 (0..105 percent).
         Safety: query. Command id 0x65.
         """
         return self._call(messages.gripper.GetGripperValue())

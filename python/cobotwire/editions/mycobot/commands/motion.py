@@ -37,7 +37,7 @@ class MotionCommands(Client):
 
         Reads the angles of all six joints, in degrees.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -325.35..330 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -181..181 degree).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())

@@ -77,7 +77,7 @@ class CoordsCommands(Client):
 
         Reads the angles of all six joints, and position and orientation of the end, at once.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree);
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -181..181 degree);
             Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
             -327.68..327.67 degree).
         Safety: query. Command id 0xD5.

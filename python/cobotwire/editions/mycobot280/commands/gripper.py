@@ -25,7 +25,8 @@ class GripperCommands(Client):
             gripper: Kind of gripper: 1 adaptive, 3 parallel, 4 flexible; no source says what 5 is
                 (one of 1, 3, 4, 5; optional).
 
-        Returns: How far the gripper is open; 0 is closed, 100 fully open (0..100 percent).
+        Returns: How far the gripper is open, as the arm reports it; 0 is closed, 100 fully open. A
+            gripper that is open beyond its calibration reports more than 100 (0..105 percent).
         Safety: query. Command id 0x65.
         """
         return self._call(messages.gripper.GetGripperValue(gripper))

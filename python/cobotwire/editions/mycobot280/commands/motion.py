@@ -37,7 +37,7 @@ class MotionCommands(Client):
 
         Reads the angles of all six joints, in degrees.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -181..181 degree).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -194,7 +194,7 @@ class MotionCommands(Client):
 
         Reads the angles of all six joints, in radians.
 
-        Returns: The six joint angles in radians, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67
+        Returns: The six joint angles in radians, base first (j1, j2, j3, j4, j5, j6 -181..181
             degree).
         Safety: query. Command id 0x20.
         """
