@@ -10,6 +10,7 @@ import pytest
 from cobotwire.protocol.errors import (
     CaptureError,
     CobotwireError,
+    EditionUnknown,
     LinkError,
     MotionTimeout,
     ProtocolError,
@@ -24,6 +25,7 @@ ERRORS = [
     LinkError("/dev/ttyACM0", "it is gone", 3),
     ReplyTimeout("get_angles", 0.5, ("noise",), 3, "get_angles()"),
     MotionTimeout((1.0, 2.0), 3.0, True),
+    EditionUnknown("/dev/ttyACM0", ("is_power_on: no reply",)),
     CaptureError("a.pcapng", 12, "it is cut off"),
     ScenarioError(["a.yaml:1:2: there is no fault losst", "a.yaml:2:1: nothing"]),
 ]

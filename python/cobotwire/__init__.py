@@ -1,10 +1,11 @@
 """The myCobot serial protocol: a typed API for the arm, and codecs for its line.
 
-    from cobotwire import MyCobot
+    from cobotwire import MyCobot280
 
-    with MyCobot("/dev/ttyACM0") as arm:
+    with MyCobot280("/dev/ttyACM0") as arm:
         arm.send_angles([0, 0, 0, 0, 0, 0], speed=30)
 
+``connect(port)`` finds out which edition an arm speaks, and returns the client of that edition.
 ``codec_in_use()`` returns the name of the codec: ``native`` (Rust) or ``reference`` (Python).
 """
 
@@ -14,12 +15,15 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AsyncMyCobot",
+    "AsyncMyCobot280",
     "CaptureError",
     "CobotwireError",
+    "EditionUnknown",
     "Limits",
     "LinkError",
     "MotionTimeout",
     "MyCobot",
+    "MyCobot280",
     "ProtocolError",
     "ReplyTimeout",
     "RetryPolicy",
@@ -28,14 +32,20 @@ __all__ = [
     "UsageError",
     "__version__",
     "codec_in_use",
+    "connect",
+    "connect_async",
+    "identify",
 ]
 
 if TYPE_CHECKING:
     from cobotwire.codec import chosen as codec_in_use
     from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
+    from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
+    from cobotwire.inspect.identification import connect, connect_async, identify
     from cobotwire.protocol.errors import (
         CaptureError,
         CobotwireError,
+        EditionUnknown,
         LinkError,
         MotionTimeout,
         ProtocolError,
@@ -50,12 +60,17 @@ else:
     # the codec, imports no client of this one. asyncio takes longer to import than all the rest.
     _PLACES = {
         "AsyncMyCobot": "editions.mycobot",
+        "AsyncMyCobot280": "editions.mycobot280",
         "Limits": "protocol.limits",
         "MyCobot": "editions.mycobot",
+        "MyCobot280": "editions.mycobot280",
         "RetryPolicy": "session.policy",
         "Sample": "session.sample",
         "StreamReport": "session.sample",
         "codec_in_use": "codec",
+        "connect": "inspect.identification",
+        "connect_async": "inspect.identification",
+        "identify": "inspect.identification",
     }
 
     def __getattr__(name: str) -> Any:

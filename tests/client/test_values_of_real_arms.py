@@ -99,7 +99,8 @@ def test_columns_reject_impossible_angles(edition: str, codec: Any) -> None:
     columns = codecs.load(editions.load(edition).TABLE, codec).decode_columns(
         good + bad + good, "reply"
     )
-    assert columns.rows("get_angles")["angles"].tolist() == [[180.08, 0, 0, 0, 0, 0]] * 2
+    angles: Any = columns.rows("get_angles")["angles"].tolist()
+    assert angles == [[180.08, 0, 0, 0, 0, 0]] * 2
 
 
 def test_radians_of_an_impossible_angle_are_a_protocol_error() -> None:

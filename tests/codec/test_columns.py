@@ -18,6 +18,7 @@ CODECS = ["reference", "native"]
 LISTENING = st.sampled_from(["request", "reply", "both"])
 EACH_EDITION = pytest.mark.parametrize("edition", TABLES)
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
+COORDS = bytes.fromhex("FE FE 0E 23 01 BC FD A0 10 0D DC 66 FF 54 DE 21 FA")
 FLAG = bytes.fromhex("FE FE 03 12 01 FA")
 
 
@@ -182,11 +183,13 @@ def test_object_without_buffer_is_rejected(codec: Codec) -> None:
 def test_raw_column_has_the_smallest_type_for_the_allowed_values() -> None:
     for edition, format, least in [("mycobot", "i", -32535), ("mycobot280", "h", -32768)]:
         for name in CODECS:
-            stream = ANGLES[:4] + b"\x80\xe9" * 6 + b"\xfa" + FLAG
+            stream = COORDS[:4] + b"\x80\xe9" * 6 + b"\xfa" + FLAG + ANGLES
             columns = codec_of(edition, name).decode_columns(stream, "reply", raw=True)
-            angles = columns.rows("get_angles")["angles"]
-            assert angles.format == format
-            assert min(plain(columns)[0]) >= least
+            coords = columns.rows("get_coords")["coords"]
+            assert coords.format == format
+            first: Any = coords.tolist()[0]
+            assert min(first) >= least
+            assert columns.rows("get_angles")["angles"].format == "h"
             assert columns.rows("is_power_on")[columns.rows("is_power_on").names[0]].format == "B"
 
 

@@ -15,6 +15,7 @@ from cobotwire.editions import DEFAULT
 VERBS = (
     "demo",
     "ports",
+    "identify",
     "doctor",
     "monitor",
     "call",

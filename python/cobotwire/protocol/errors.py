@@ -130,6 +130,23 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         super().__init__(f"{what}; received meanwhile: {meanwhile}")
 
 
+class EditionUnknown(CobotwireError):
+    """No arm replied, or its replies do not show which edition it speaks.
+
+    Attributes:
+        url: the port.
+        evidence: each query that was sent, and what happened.
+    """
+
+    def __init__(self, url: str, evidence: tuple[str, ...]) -> None:
+        self.url = url
+        self.evidence = evidence
+        super().__init__(
+            f"{url}: the edition of the arm is not known ({'; '.join(evidence)}); check the port "
+            "with cobotwire doctor, or open it with the client of an edition, such as MyCobot280"
+        )
+
+
 class MotionTimeout(CobotwireError, TimeoutError):
     """The arm did not reach its target in time, or it stopped short of the target.
 

@@ -18,7 +18,7 @@ from cobotwire.protocol.errors import (
     UsageError,
 )
 
-LINK_FAILED, INTERRUPTED = 3, 130
+LINK_FAILED, NO_REPLY, INTERRUPTED = 3, 4, 130
 # What a shell reports for a process that SIGPIPE ended.
 OUTPUT_CLOSED = 141
 
@@ -26,7 +26,7 @@ CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (UsageError, 2),
     (ScenarioError, 2),
     (LinkError, LINK_FAILED),
-    (ReplyTimeout, 4),
+    (ReplyTimeout, NO_REPLY),
     (ProtocolError, 5),
     (CaptureError, 6),
 )

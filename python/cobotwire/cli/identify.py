@@ -1,0 +1,56 @@
+"""``cobotwire identify``: find out which edition and firmware an arm has."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+import click
+
+from cobotwire.cli.shared.arm_options import baudrate_option
+from cobotwire.cli.shared.exit_codes import NO_REPLY
+from cobotwire.cli.shared.output import as_json_value, format_result
+from cobotwire.inspect.identification import Evidence, Identification
+from cobotwire.inspect.identification import identify as identify_arm
+
+
+@click.command(short_help="Find out which edition an arm speaks.")
+@click.argument("port", metavar="URL")
+@baudrate_option
+@click.option(
+    "--timeout", type=float, default=0.5, show_default=True, help="Seconds to wait for a reply."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+def identify(port: str, baudrate: int | None, timeout: float, as_json: bool) -> None:
+    """Find out which edition and firmware the arm at URL has, and by what evidence.
+
+    At most three harmless queries are sent, whatever --edition says: nothing moves, and nothing is
+    set.
+
+    Exit codes: 0 the edition is known; 1 an arm replied, but its edition is not known; 3 the port
+    failed; 4 no reply.
+    """
+    found = identify_arm(port, baudrate=baudrate, timeout=timeout)
+    click.echo(json.dumps(_as_json(found), indent=1) if as_json else "\n".join(_lines(found)))
+    if not found.edition:
+        sys.exit(1 if found.replied else NO_REPLY)
+
+
+def _lines(found: Identification) -> list[str]:
+    what = f"edition {found.edition}" if found.edition else "the edition is not known"
+    firmware = f", firmware {found.firmware}" if found.firmware else ""
+    return [f"{found.url}: {what}{firmware}", *map(_line, found.evidence)]
+
+
+def _line(evidence: Evidence) -> str:
+    text = f"replied {format_result(evidence.result)}" if evidence.replied else evidence.text
+    owner = (
+        f"only {evidence.edition} has this query" if evidence.edition else "every edition has it"
+    )
+    return f"  {evidence.query:<20} {text} ({owner})"
+
+
+def _as_json(found: Identification) -> dict[str, Any]:
+    evidence = [{**each._asdict(), "result": as_json_value(each.result)} for each in found.evidence]
+    return {**found._asdict(), "evidence": evidence}
