@@ -191,9 +191,9 @@ def test_notice_about_a_file_is_printable(tmp_path: Path) -> None:
         ["sim", "--scenario"],
         ["conform", "client", "--expect"],
         ["conform", "codec", "x", "--expected"],
-        ["call", "get_angles", "--port"],
-        ["call", "--port", "x"],
-        ["call", "is_power_on", "--port", "x"],
+        ["call", "URL", "get_angles"],
+        ["call", "x"],
+        ["call", "x", "is_power_on"],
         ["doctor"],
         ["monitor"],
         ["commands"],
@@ -201,9 +201,14 @@ def test_notice_about_a_file_is_printable(tmp_path: Path) -> None:
     ids=" ".join,
 )
 def test_error_about_an_argument_is_printable(words: list[str]) -> None:
-    text = run(*words, f"/nowhere/{HOSTILE}")
+    text = run(*_fill(words, f"/nowhere/{HOSTILE}"))
     assert "a\\x1b" in text
     assert is_clean(text)
+
+
+def _fill(words: list[str], value: str) -> list[str]:
+    """Return the words with a value in place of URL, or at their end."""
+    return [value if word == "URL" else word for word in [*words, *["URL"] * ("URL" not in words)]]
 
 
 def test_plot_shows_file_and_port_as_they_are(recording: Path, tmp_path: Path) -> None:
@@ -218,7 +223,7 @@ def test_plot_shows_file_and_port_as_they_are(recording: Path, tmp_path: Path) -
 @pytest.mark.parametrize(
     "verb",
     [
-        ["call", "get_angles", "--timeout", "0.3", "--port"],
+        ["call", "URL", "get_angles", "--timeout", "0.3"],
         ["doctor", "--count", "1", "--timeout", "0.2"],
         ["monitor", "--count", "1"],
         ["conform", "device", "--port"],
@@ -229,7 +234,7 @@ def test_plot_shows_file_and_port_as_they_are(recording: Path, tmp_path: Path) -
 def test_what_the_arm_sends_is_shown_printable(verb: list[str], json: bool) -> None:
     words = ["--json"] if json and verb[0] != "conform" else []
     with ScriptedPeer(*[[PANIC]] * 200) as peer:
-        text = run(*verb, peer.url, *words)
+        text = run(*_fill(verb, peer.url), *words)
     assert "panic" in text or "conform" in verb
     assert is_clean(text)
 

@@ -57,39 +57,38 @@ def test_version_names_the_codec_in_use() -> None:
 
 
 def test_call_prints_the_result(server: PtyServer) -> None:
-    result = run("call", "get_angles", "--port", server.url)
+    result = run("call", server.url, "get_angles")
     assert (result.returncode, result.stdout) == (
         0,
         "j1=0.0  j2=0.0  j3=0.0  j4=0.0  j5=0.0  j6=0.0\n",
     )
-    as_json = run("call", "get_reference_frame", "--port", server.url, "--json")
+    as_json = run("call", server.url, "get_reference_frame", "--json")
     assert json.loads(as_json.stdout) == {"command": "get_reference_frame", "result": "BASE"}
 
 
 def test_call_accepts_text_arguments_after_the_frame(server: PtyServer) -> None:
-    port = ("--port", server.url)
-    call = ("--edition", "mycobot280", "call", "set_ssid_pwd")
-    missing = run(*call, "home", *port)
+    call = ("--edition", "mycobot280", "call", server.url, "set_ssid_pwd")
+    missing = run(*call, "home")
     assert (missing.returncode, "Traceback" in missing.stderr) == (2, False)
     assert (
         "set_ssid_pwd() is missing its argument password; it takes account, password"
         in missing.stderr
     )
-    done = run(*call, "home", "password=a=b", *port)
+    done = run(*call, "home", "password=a=b")
     assert done.returncode == 0, done.stderr
 
 
 def test_call_accepts_lists_enum_names_and_negative_numbers(
     server: PtyServer, simulated: SimulatedArm
 ) -> None:
-    url = ("--port", server.url)
-    assert run("call", "power_on", *url).returncode == 0
-    moved = run("call", "send_angles", "-10,0,0,0,0,5.5", "speed=100", *url)
+    call = ("call", server.url)
+    assert run(*call, "power_on").returncode == 0
+    moved = run(*call, "send_angles", "-10,0,0,0,0,5.5", "speed=100")
     assert moved.returncode == 0, moved.stderr
     assert simulated.state.angles.target(0.0) == pytest.approx((-10, 0, 0, 0, 0, 5.5), abs=0.044)
-    assert run("call", "set_end_type", "tool", *url).returncode == 0
+    assert run(*call, "set_end_type", "tool").returncode == 0
     assert simulated.state.end_type == 1
-    assert run("call", "set_digital_output", "23", "on", *url).returncode == 0
+    assert run(*call, "set_digital_output", "23", "on").returncode == 0
     assert simulated.state.pins == {23: True}
 
 
@@ -108,17 +107,17 @@ def test_call_accepts_lists_enum_names_and_negative_numbers(
 def test_call_with_wrong_arguments_names_the_mistake(
     server: PtyServer, words: list[str], code: int, message: str
 ) -> None:
-    result = run("call", *words, "--port", server.url)
+    result = run("call", server.url, *words)
     assert result.returncode == code
     assert message in result.stderr
     assert "Traceback" not in result.stderr
 
 
 def test_missing_port_and_silent_arm_have_different_exit_codes() -> None:
-    assert run("call", "get_angles", "--port", "/dev/nosuchport").returncode == 3
+    assert run("call", "/dev/nosuchport", "get_angles").returncode == 3
     master, slave = pty.openpty()
     try:
-        silent = run("call", "get_angles", "--timeout", "0.1", "--port", os.ttyname(slave))
+        silent = run("call", os.ttyname(slave), "get_angles", "--timeout", "0.1")
     finally:
         os.close(master)
         os.close(slave)
@@ -160,8 +159,8 @@ def test_decode_rejects_arguments_that_are_not_hex() -> None:
 
 def test_help_of_call_keeps_the_lines_of_its_examples() -> None:
     lines = [line.strip() for line in run("call", "--help").stdout.splitlines()]
-    assert "cobotwire call get_angles --port /dev/ttyACM0" in lines
-    assert "cobotwire call set_reference_frame WORLD --port /dev/ttyACM0" in lines
+    assert "cobotwire call /dev/ttyACM0 get_angles" in lines
+    assert "cobotwire call /dev/ttyACM0 set_reference_frame WORLD" in lines
     assert "\\b" not in "".join(lines)
 
 

@@ -22,7 +22,7 @@ def recorded(tmp_path: Path) -> Path:
     """Record a call on a bad line: an echo, a servo leak, and a reply with a pause inside."""
     path = tmp_path / "arm.pcapng"
     with ScriptedPeer([QUERY, LEAK + ANGLES[:8], 0.1, ANGLES[8:]]) as peer:
-        result = run("call", "get_angles", "--port", peer.url, "--record", path)
+        result = run("call", peer.url, "get_angles", "--record", path)
     assert (result.returncode, result.stderr) == (0, "")
     return path
 
@@ -82,7 +82,7 @@ def test_existing_file_is_not_overwritten_and_nothing_is_sent(
 ) -> None:
     path = tmp_path / "there.pcapng"
     path.write_bytes(b"precious")
-    result = run("call", "power_on", "--port", server.url, "--record", path)
+    result = run("call", server.url, "power_on", "--record", path)
     assert result.returncode == 2
     assert "the file exists already" in result.stderr
     assert path.read_bytes() == b"precious"

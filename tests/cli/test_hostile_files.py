@@ -131,15 +131,15 @@ def test_panic_with_a_core_of_thousands_of_digits_is_decoded(
 @pytest.mark.parametrize(
     "words",
     [
-        ["doctor", "--count", "1", "--timeout", "0.2"],
-        ["monitor", "--count", "1"],
-        ["call", "get_angles", "--timeout", "0.2", "--port"],
+        ["doctor", "URL", "--count", "1", "--timeout", "0.2"],
+        ["monitor", "URL", "--count", "1"],
+        ["call", "URL", "get_angles", "--timeout", "0.2"],
     ],
     ids=lambda words: words[0],
 )
 def test_panic_with_a_core_of_thousands_of_digits_is_reported(words: list[str]) -> None:
     with ScriptedPeer(*[[PANIC.encode()]] * 200) as peer:
-        _, text = run(*words, peer.url)
+        _, text = run(*(peer.url if word == "URL" else word for word in words))
     # Of two dumps the first is cut off, where only the start of what was received is kept.
     assert re.search("panic (LoadProhibited|of unknown cause)", text)
 
@@ -166,14 +166,14 @@ def test_scenario_without_packets_names_its_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize("value", [f"0x{'f' * 5000}", DIGITS, "9" * 400, "1e999", "nan"])
 def test_argument_with_thousands_of_digits_is_wrong_usage(server: PtyServer, value: str) -> None:
     for words in (["send_angle", "1", value, "30"], ["get_encoder", value]):
-        code, text = run("call", *words, "--port", server.url)
+        code, text = run("call", server.url, *words)
         assert code == 2
         assert len(text) < 300
 
 
 def test_recording_that_cannot_be_begun_leaves_no_file(server: PtyServer, tmp_path: Path) -> None:
     file = tmp_path / "arm.pcapng"
-    call = ["call", "get_angles", "--port", server.url, "--record", str(file)]
+    call = ["call", server.url, "get_angles", "--record", str(file)]
     # No file may grow: each write fails, as on a full disk.
     limited = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh", sys.executable, "-c"]
     command = [*limited, "from cobotwire.cli import main; main()", *call]

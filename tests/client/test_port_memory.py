@@ -56,7 +56,7 @@ def test_late_reply_to_a_closed_client_is_not_used_by_the_next_one(
 
 def test_late_reply_to_one_program_is_not_printed_by_the_next_one(late_arm: SlowArm) -> None:
     first, second = (
-        run_program("call", "--port", late_arm.url, "get_encoder", joint) for joint in ("1", "2")
+        run_program("call", late_arm.url, "get_encoder", joint) for joint in ("1", "2")
     )
     assert "no reply" in first.stderr
     assert second.stdout.strip() == "2", second

@@ -17,9 +17,9 @@ from cobotwire.cli.shared.output import as_json_value, format_result
     short_help="Send one command; print the result.",
     context_settings={"ignore_unknown_options": True},
 )
+@click.argument("port", metavar="URL")
 @click.argument("name")
 @click.argument("args", nargs=-1, metavar="[ARGS]...")
-@click.option("--port", required=True, help="A serial port, or a URL such as socket://host:9000.")
 @arm_options
 @click.option(
     "--timeout", type=float, help="Seconds to wait for the reply [default: the command's]."
@@ -28,23 +28,24 @@ from cobotwire.cli.shared.output import as_json_value, format_result
 @click.pass_obj
 def call(
     edition: str,
+    port: str,
     name: str,
     args: tuple[str, ...],
-    port: str,
     baudrate: int | None,
     record: str | None,
     timeout: float | None,
     as_json: bool,
 ) -> None:
-    """Send the command NAME with its ARGS, and print the result.
+    """Send the command NAME with its ARGS to the arm at URL, and print the result.
 
+    URL is a serial port, or a URL such as socket://host:9000.
     Write ARGS in the order of the command's arguments, or as name=value. Separate the items of a
     list by commas. Write an enum member as its name or its number:
 
     \b
-      cobotwire call get_angles --port /dev/ttyACM0
-      cobotwire call send_angles 0,0,0,0,0,0 speed=30 --port /dev/ttyACM0
-      cobotwire call set_reference_frame WORLD --port /dev/ttyACM0
+      cobotwire call /dev/ttyACM0 get_angles
+      cobotwire call /dev/ttyACM0 send_angles 0,0,0,0,0,0 speed=30
+      cobotwire call /dev/ttyACM0 set_reference_frame WORLD
 
     `cobotwire commands NAME` shows the arguments of a command.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)

@@ -32,7 +32,7 @@ def serve(
     signal.signal(signal.SIGTERM, stop)
     print_line(server.url if first_line is None else first_line)
     if sys.stdout.isatty():
-        click.echo(f"Try: cobotwire call get_angles --port {server.url}   (Ctrl-C ends)", err=True)
+        click.echo(f"Try: cobotwire call {server.url} get_angles   (Ctrl-C ends)", err=True)
     try:
         server.serve(between)
     finally:
