@@ -48,7 +48,7 @@ class InLoop:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        self._run(self.client.close())
+        self._run(self.client.__aexit__(kind, error, traceback))
         self._end()
 
     def _end(self) -> None:

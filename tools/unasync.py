@@ -67,6 +67,9 @@ PASSAGES = [
             limits: where the arm may be sent, narrower or wider than the edition says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.
+            on_error: ``stop`` sends stop once when an exception leaves the ``with`` block, Ctrl-C
+                included, and when a waited motion fails; ``leave`` leaves the arm as it is. Leaving
+                the block without an exception changes nothing.
 
         Raises:
             UsageError: an argument is not allowed.
@@ -90,10 +93,8 @@ PASSAGES = [
     ("from any task.", "from any thread."),
     ("another task waits for", "another thread waits for"),
     (
-        """Cancelling a call sends ``stop`` before CancelledError goes on. The protocol is not an emergency
-    stop: a frame can be lost.""",
-        """Ctrl-C during a call sends ``stop`` before KeyboardInterrupt goes on. The protocol is not an
-    emergency stop: a frame can be lost.""",
+        "A call that fails or is cancelled sends ``stop``",
+        "A call that fails or is interrupted sends ``stop``",
     ),
 ]
 RULES = [

@@ -60,14 +60,22 @@ def test_move_that_is_not_waited_for_returns_at_once(arm: Any) -> None:
     arm.send_angles([0, 0, 0, 0, 0, 0], 100, ack_within=1.0)
 
 
-def test_slow_move_raises_a_timeout_and_continues(arm: Any) -> None:
+def test_slow_move_raises_a_timeout_and_is_stopped(arm: Any) -> None:
     started = time.monotonic()
-    with pytest.raises(MotionTimeout, match="has not reached") as caught:
+    with pytest.raises(
+        MotionTimeout, match=r"has not reached .* it is at .* stop was sent"
+    ) as caught:
         arm.move_angles([150, 0, 0, 0, 0, 0], 10, timeout=0.5)
     assert 0.4 < time.monotonic() - started < 1.0
-    assert isinstance(caught.value, TimeoutError)
-    assert caught.value.standing is False
-    assert arm.is_moving() is True
+    error = caught.value
+    assert isinstance(error, TimeoutError)
+    assert error.standing is False
+    assert error.stopped is True
+    assert error.state.powered is True
+    assert error.state.position is not None
+    assert 0 < error.state.position[0] < 150
+    time.sleep(0.2)  # the arm needs a moment to stop
+    assert arm.is_moving() is False
 
 
 def test_arm_that_stops_short_raises_an_error_before_the_timeout(
@@ -78,6 +86,20 @@ def test_arm_that_stops_short_raises_an_error_before_the_timeout(
     with pytest.raises(MotionTimeout, match="stands still short of"):
         arm.move_angles(THERE, 50, timeout=20)
     assert time.monotonic() - started < 3
+
+
+def test_failed_motion_says_what_keeps_the_arm_from_moving(simulated: SimulatedArm) -> None:
+    with PtyServer(simulated) as server, MyCobot280(server.url) as arm:
+        with pytest.raises(MotionTimeout, match="it has no power") as caught:
+            arm.move_angles(THERE, 50, timeout=5)
+        assert caught.value.state.powered is False
+        arm.power_on(ack_within=1.0)
+        arm.pause()
+        with pytest.raises(MotionTimeout, match="its motion is paused"):
+            arm.move_angles(THERE, 50, timeout=5)
+        simulated.state.error = 32
+        with pytest.raises(MotionTimeout, match=r"error register is 32 \(.*no inverse solution"):
+            arm.wait_until_reached([150, 0, 0, 0, 0, 0], TargetKind.ANGLES, timeout=0.2)
 
 
 def test_target_beyond_the_limits_is_rejected_before_a_byte_is_sent(arm: Any) -> None:
@@ -139,3 +161,75 @@ def test_next_step_of_waiting_depends_on_times_and_results() -> None:
     assert isinstance(steps.send(Outcome(100.4)), Query)
     with pytest.raises(StopIteration):
         steps.send(Outcome(100.5, True))
+
+
+def sent(traffic: list[Traffic]) -> list[bytes]:
+    return [one.data for one in traffic if one.direction == "sent"]
+
+
+@pytest.mark.parametrize("way", OPENERS)
+@pytest.mark.parametrize("error", [ValueError("a mistake"), KeyboardInterrupt(), SystemExit(1)])
+def test_exception_that_leaves_the_block_stops_a_moving_arm_once(
+    simulated: SimulatedArm, way: str, error: BaseException
+) -> None:
+    traffic: list[Traffic] = []
+
+    def fail(url: str) -> None:
+        with OPENERS[way](url, trace=traffic.append) as arm:
+            arm.power_on(ack_within=1.0)
+            arm.jog_angle(1, 1, 30)
+            raise error
+
+    with PtyServer(simulated) as server:
+        with pytest.raises(type(error)):
+            fail(server.url)
+        assert sent(traffic).count(STOP) == 1
+        assert sent(traffic)[-1] == STOP
+        with MyCobot280(server.url) as arm:
+            time.sleep(0.2)  # the arm needs a moment to stop
+            assert arm.is_moving() is False
+
+
+def move_too_slowly(opening: Opener, url: str, **options: Any) -> None:
+    with opening(url, **options) as arm:
+        arm.power_on(ack_within=1.0)
+        arm.move_angles([150, 0, 0, 0, 0, 0], 10, timeout=0.3)
+
+
+@pytest.mark.parametrize("way", OPENERS)
+def test_motion_that_timed_out_is_stopped_once(simulated: SimulatedArm, way: str) -> None:
+    traffic: list[Traffic] = []
+    with PtyServer(simulated) as server, pytest.raises(MotionTimeout):
+        move_too_slowly(OPENERS[way], server.url, trace=traffic.append)
+    assert sent(traffic).count(STOP) == 1
+
+
+@pytest.mark.parametrize("way", OPENERS)
+def test_arm_is_left_alone_if_its_user_says_so(simulated: SimulatedArm, way: str) -> None:
+    traffic: list[Traffic] = []
+    with PtyServer(simulated) as server:
+        with pytest.raises(MotionTimeout) as caught:
+            move_too_slowly(OPENERS[way], server.url, trace=traffic.append, on_error="leave")
+        assert caught.value.stopped is False
+        assert STOP not in sent(traffic)
+        with MyCobot280(server.url) as arm:
+            assert arm.is_moving() is True
+
+
+@pytest.mark.parametrize("way", OPENERS)
+def test_leaving_the_block_without_an_exception_changes_nothing(
+    simulated: SimulatedArm, way: str
+) -> None:
+    traffic: list[Traffic] = []
+    with PtyServer(simulated) as server:
+        with OPENERS[way](server.url, trace=traffic.append) as arm:
+            arm.power_on(ack_within=1.0)
+            arm.move_angles([150, 0, 0, 0, 0, 0], 10, wait=False)
+        assert STOP not in sent(traffic)
+        with MyCobot280(server.url) as arm:
+            assert arm.is_moving() is True
+
+
+def test_other_word_for_on_error_is_rejected() -> None:
+    with pytest.raises(UsageError, match="on_error is 'halt'; allowed: 'stop' or 'leave'"):
+        MyCobot280("loop://", on_error="halt")  # type: ignore[arg-type]

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from cobotwire import codec as codecs
 from cobotwire.client.aio_connection import AsyncConnection
-from cobotwire.client.opening import check_seconds, settings
+from cobotwire.client.opening import OnError, check_on_error, check_seconds, settings
 from cobotwire.client.traffic import TrafficListener
+from cobotwire.protocol.errors import CobotwireError, MotionTimeout
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
@@ -40,6 +42,7 @@ class AsyncClient:
         limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
         trace: TrafficListener | None = None,
+        on_error: OnError = "stop",
     ) -> None:
         """Note what to open; :meth:`open` opens it. The blocking client takes the same arguments.
 
@@ -47,6 +50,8 @@ class AsyncClient:
             UsageError: an argument is not allowed.
         """
         self._settings = settings(self.table, timeout, retry, codec, limits)
+        self._stops = check_on_error(on_error) == "stop"
+        self._stopped_for: BaseException | None = None
         self.codec = self._settings.codec.name
         self._encoder = RequestEncoder(self._settings.codec)
         self._connection = AsyncConnection(
@@ -81,6 +86,8 @@ class AsyncClient:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
+        if error is not None:
+            await self._stop_for(error)
         await self.close()
 
     def __repr__(self) -> str:
@@ -132,6 +139,23 @@ class AsyncClient:
         from cobotwire.client.aio_streaming import AsyncStream
 
         return AsyncStream(self._connection, self._settings.for_stream(timeout), requests, rate)
+
+    async def _stop_for(self, error: BaseException) -> bool:
+        """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
+
+        Returns:
+            Whether it was sent.
+        """
+        stop = self.table.find_role("stop")
+        done = error is self._stopped_for or (isinstance(error, MotionTimeout) and error.stopped)
+        if not self._stops or stop is None or done:
+            return False
+        self._stopped_for = error
+        # The error is what is reported; one of sending ``stop`` would hide it.
+        with suppress(CobotwireError):
+            await self._send(stop.request_type())
+            return True
+        return False
 
     async def _call(self, request: Request[Result], longest: float | None = None) -> Result:
         """Send a request, wait for its reply, and return the reply's result.

@@ -207,17 +207,20 @@ class AsyncConnection:
 
     def _send_request(self, now: float, drained: bool) -> None:
         data = self._exchange.outgoing(now, drained)
-        if not data:
+        pending = self._exchange.sent_last
+        if not data or pending is None:
             return
         try:
-            self._begin_write(self._transport(), data, self._request_written)
+            self._begin_write(self._transport(), data, partial(self._request_written, pending))
         except LinkError as error:
             self._exchange.fail_waiting(error)
 
-    def _request_written(self, error: LinkError | None) -> None:
+    def _request_written(self, pending: PendingRequest, error: LinkError | None) -> None:
+        """Note that a write ended that was not taken at once."""
+        self._exchange.written(pending, self.now())
         if error is not None:
             self._exchange.fail_waiting(error)
-            self._turn()
+        self._turn()
 
     def _wake_at(self, moment: float) -> None:
         if self._timer is not None:

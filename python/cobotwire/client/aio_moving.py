@@ -9,12 +9,13 @@ from typing import Any
 
 from cobotwire.client.aio import AsyncClient
 from cobotwire.client.opening import check_seconds
-from cobotwire.protocol.errors import CobotwireError, ReplyTimeout
+from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.session.motion import (
     MOTION_SECONDS,
     Outcome,
     Pause,
-    Query,
+    Step,
+    Stop,
     kind_of,
     until_reached,
 )
@@ -23,8 +24,8 @@ from cobotwire.session.motion import (
 class AsyncMovingClient(AsyncClient):
     """Moves the arm and waits until it is there, by commands to which the edition gives a role.
 
-    Cancelling a call sends ``stop`` before CancelledError goes on. The protocol is not an emergency
-    stop: a frame can be lost.
+    A call that fails or is cancelled sends ``stop`` before its error is raised, unless the client
+    was opened with ``on_error="leave"``. It is not an emergency stop: a frame can be lost.
     """
 
     async def move_angles(
@@ -96,8 +97,8 @@ class AsyncMovingClient(AsyncClient):
         check_seconds("timeout", timeout)
         try:
             await self._wait(target, kind, timeout)
-        except asyncio.CancelledError:
-            await self._stop()
+        except asyncio.CancelledError as error:
+            await self._stop_for(error)
             raise
 
     async def _move(
@@ -108,8 +109,8 @@ class AsyncMovingClient(AsyncClient):
             await self._connection.send(self._encoder.encode(name, values), None)
             if wait:
                 await self._wait(values[0], kind_of(self.table, label), timeout)
-        except asyncio.CancelledError:
-            await self._stop()
+        except asyncio.CancelledError as error:
+            await self._stop_for(error)
             raise
 
     async def _wait(self, target: Sequence[float], kind: int, timeout: float) -> None:
@@ -120,16 +121,13 @@ class AsyncMovingClient(AsyncClient):
                 outcome = await self._take(step)
                 step = steps.send(outcome)
 
-    async def _take(self, step: Query | Pause) -> Outcome:
+    async def _take(self, step: Step) -> Outcome:
         now, result = self._connection.now, None
         if isinstance(step, Pause):
             await self._connection.sleep(max(0.0, step.until - now()))
+        elif isinstance(step, Stop):
+            result = await self._stop_for(TimeoutError())
         else:
             with suppress(ReplyTimeout):
                 result = await self._call(step.request, step.longest)
         return Outcome(now(), result)
-
-    async def _stop(self) -> None:
-        # The interrupt is reported; an error of sending `stop` would hide it.
-        with suppress(CobotwireError):
-            await self._send(self.table.in_role("stop").request_type())

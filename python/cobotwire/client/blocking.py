@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from cobotwire import codec as codecs
 from cobotwire.client.connection import Connection
-from cobotwire.client.opening import check_seconds, settings
+from cobotwire.client.opening import OnError, check_on_error, check_seconds, settings
 from cobotwire.client.traffic import TrafficListener
+from cobotwire.protocol.errors import CobotwireError, MotionTimeout
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
@@ -45,6 +47,7 @@ class Client:
         limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
         trace: TrafficListener | None = None,
+        on_error: OnError = "stop",
     ) -> None:
         """Open the port.
 
@@ -58,12 +61,17 @@ class Client:
             limits: where the arm may be sent, narrower or wider than the edition says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.
+            on_error: ``stop`` sends stop once when an exception leaves the ``with`` block, Ctrl-C
+                included, and when a waited motion fails; ``leave`` leaves the arm as it is. Leaving
+                the block without an exception changes nothing.
 
         Raises:
             UsageError: an argument is not allowed.
             LinkError: the port does not exist, or cannot be opened.
         """
         self._settings = settings(self.table, timeout, retry, codec, limits)
+        self._stops = check_on_error(on_error) == "stop"
+        self._stopped_for: BaseException | None = None
         self.codec = self._settings.codec.name
         self._encoder = RequestEncoder(self._settings.codec)
         self._connection = Connection(
@@ -86,6 +94,8 @@ class Client:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
+        if error is not None:
+            self._stop_for(error)
         self.close()
 
     def __repr__(self) -> str:
@@ -137,6 +147,23 @@ class Client:
         from cobotwire.client.streaming import Stream
 
         return Stream(self._connection, self._settings.for_stream(timeout), requests, rate)
+
+    def _stop_for(self, error: BaseException) -> bool:
+        """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
+
+        Returns:
+            Whether it was sent.
+        """
+        stop = self.table.find_role("stop")
+        done = error is self._stopped_for or (isinstance(error, MotionTimeout) and error.stopped)
+        if not self._stops or stop is None or done:
+            return False
+        self._stopped_for = error
+        # The error is what is reported; one of sending ``stop`` would hide it.
+        with suppress(CobotwireError):
+            self._send(stop.request_type())
+            return True
+        return False
 
     def _call(self, request: Request[Result], longest: float | None = None) -> Result:
         """Send a request, wait for its reply, and return the reply's result.

@@ -23,10 +23,13 @@ from cobotwire.protocol.errors import LinkError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.session.exchange import DRAIN_SECONDS
 from cobotwire.transport import Transport, forks
+from cobotwire.transport.interface import PollableTransport
 from cobotwire.transport.timing import times_of
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
 SLICE_SECONDS = 0.02
+# A write that takes longer than this was held up by a full line.
+SLOW_WRITE_SECONDS = 0.005
 # The longest that the others wait before they check whether a thread reads.
 CHECK_SECONDS = 0.05
 
@@ -194,16 +197,26 @@ class Connection:
     def _send_request(self, drained: bool) -> None:
         with self._writing:
             with self._state:
-                data = self._exchange.outgoing(self.now(), drained)
-            if not data:
+                now = self.now()
+                data = self._exchange.outgoing(now, drained)
+                pending = self._exchange.sent_last
+            if not data or pending is None:
                 return
             try:
-                align = self._write(data)
+                if pending.repeated:
+                    align = self._write_if_free(data)
+                else:
+                    align = self._write(data)
             except LinkError as error:
                 with self._state:
                     self._exchange.fail_waiting(error)
                 return
-        self.listeners.sent(align, data)
+            finally:
+                if self.now() - now > SLOW_WRITE_SECONDS:
+                    with self._state:
+                        self._exchange.written(pending, self.now())
+        if align is not None:
+            self.listeners.sent(align, data)
 
     def _write(self, request: bytes) -> bytes:
         """Write a request; the caller holds the lock.
@@ -222,6 +235,27 @@ class Connection:
         except BaseException:
             self._alignment.cut(align, request, None)
             raise
+        return align
+
+    def _write_if_free(self, request: bytes) -> bytes | None:
+        """Write a repeated query, unless the line is full: its deadline would pass meanwhile.
+
+        Returns:
+            As :meth:`_write`; None if the line did not take all of it.
+        """
+        if not isinstance(self._transport, PollableTransport):
+            return self._write(request)
+        align = self._alignment.align
+        taken: int | None = None
+        try:
+            taken = self._transport.write_some(align + request)
+        finally:
+            if taken != len(align + request):
+                self._alignment.cut(align, request, taken)
+        if taken < len(align + request):
+            return None
+        if align:
+            self._alignment.end()
         return align
 
     def _drain(self, until: float) -> None:

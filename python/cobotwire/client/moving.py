@@ -9,12 +9,13 @@ from typing import Any
 
 from cobotwire.client.blocking import Client
 from cobotwire.client.opening import check_seconds
-from cobotwire.protocol.errors import CobotwireError, ReplyTimeout
+from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.session.motion import (
     MOTION_SECONDS,
     Outcome,
     Pause,
-    Query,
+    Step,
+    Stop,
     kind_of,
     until_reached,
 )
@@ -23,8 +24,8 @@ from cobotwire.session.motion import (
 class MovingClient(Client):
     """Moves the arm and waits until it is there, by commands to which the edition gives a role.
 
-    Ctrl-C during a call sends ``stop`` before KeyboardInterrupt goes on. The protocol is not an
-    emergency stop: a frame can be lost.
+    A call that fails or is interrupted sends ``stop`` before its error is raised, unless the client
+    was opened with ``on_error="leave"``. It is not an emergency stop: a frame can be lost.
     """
 
     def move_angles(
@@ -96,8 +97,8 @@ class MovingClient(Client):
         check_seconds("timeout", timeout)
         try:
             self._wait(target, kind, timeout)
-        except KeyboardInterrupt:
-            self._stop()
+        except KeyboardInterrupt as error:
+            self._stop_for(error)
             raise
 
     def _move(
@@ -108,8 +109,8 @@ class MovingClient(Client):
             self._connection.send(self._encoder.encode(name, values), None)
             if wait:
                 self._wait(values[0], kind_of(self.table, label), timeout)
-        except KeyboardInterrupt:
-            self._stop()
+        except KeyboardInterrupt as error:
+            self._stop_for(error)
             raise
 
     def _wait(self, target: Sequence[float], kind: int, timeout: float) -> None:
@@ -120,16 +121,13 @@ class MovingClient(Client):
                 outcome = self._take(step)
                 step = steps.send(outcome)
 
-    def _take(self, step: Query | Pause) -> Outcome:
+    def _take(self, step: Step) -> Outcome:
         now, result = self._connection.now, None
         if isinstance(step, Pause):
             self._connection.sleep(max(0.0, step.until - now()))
+        elif isinstance(step, Stop):
+            result = self._stop_for(TimeoutError())
         else:
             with suppress(ReplyTimeout):
                 result = self._call(step.request, step.longest)
         return Outcome(now(), result)
-
-    def _stop(self) -> None:
-        # The interrupt is reported; an error of sending `stop` would hide it.
-        with suppress(CobotwireError):
-            self._send(self.table.in_role("stop").request_type())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
@@ -14,6 +14,9 @@ from cobotwire.transport import Transport, open_transport
 
 if TYPE_CHECKING:
     from cobotwire.protocol.limits import Limits
+
+
+OnError = Literal["stop", "leave"]
 
 
 class Settings(NamedTuple):
@@ -73,6 +76,17 @@ def check_seconds(argument: str, value: float | None) -> None:
     right = isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < 3600
     if value is not None and not right:
         raise UsageError(argument, value, "seconds above 0 and below 3600")
+
+
+def check_on_error(value: OnError) -> OnError:
+    """Check what becomes of a moving arm when the program fails.
+
+    Raises:
+        UsageError: it is neither "stop" nor "leave".
+    """
+    if value not in ("stop", "leave"):
+        raise UsageError("on_error", value, "'stop' or 'leave'")
+    return value
 
 
 def check_port(port: str | Transport) -> None:

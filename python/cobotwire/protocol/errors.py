@@ -7,7 +7,7 @@ data, and this module alone makes the text from them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire.protocol.printable import printable
 
@@ -147,23 +147,68 @@ class EditionUnknown(CobotwireError):
         )
 
 
+class ArmState(NamedTuple):
+    """What an arm reported about itself; None where it did not reply, or cannot report it.
+
+    Attributes:
+        position: its angles or coordinates, of the same kind as the target.
+        powered: whether it has power.
+        paused: whether its motion is paused.
+        error: its error register.
+        error_meaning: what the numbers of the error register mean.
+    """
+
+    position: tuple[float, ...] | None = None
+    powered: bool | None = None
+    paused: bool | None = None
+    error: int | None = None
+    error_meaning: str = ""
+
+    def sentences(self) -> list[str]:
+        """Return what explains that an arm is not where it should be."""
+        found = []
+        if self.position is not None:
+            found.append(f"it is at {list(self.position)}")
+        if self.powered is False:
+            found.append("it has no power")
+        if self.paused:
+            found.append("its motion is paused")
+        if self.error:
+            found.append(f"its error register is {self.error} ({self.error_meaning})")
+        return found
+
+
+UNKNOWN = ArmState()
+
+
 class MotionTimeout(CobotwireError, TimeoutError):
     """The arm did not reach its target in time, or it stopped short of the target.
-
-    This error does not stop the arm: call ``stop()`` if the arm must not continue.
 
     Attributes:
         target: the target of the motion.
         waited: seconds from the start of the wait to the error.
         standing: whether the arm stood still at the end; False if this is not known.
+        stopped: whether the client then sent ``stop``; see ``on_error`` of the client.
+        state: what the arm reported about itself after that.
     """
 
-    def __init__(self, target: tuple[float, ...], waited: float, standing: bool) -> None:
+    def __init__(
+        self,
+        target: tuple[float, ...],
+        waited: float,
+        standing: bool,
+        stopped: bool = False,
+        state: ArmState = UNKNOWN,
+    ) -> None:
         self.target = target
         self.waited = waited
         self.standing = standing
+        self.stopped = stopped
+        self.state = state
         how = "stands still short of" if standing else "has not reached"
-        super().__init__(f"the arm {how} {list(target)} after {waited:.1f} s")
+        first = f"the arm {how} {list(target)} after {waited:.1f} s"
+        sent = ["stop was sent"] if stopped else []
+        super().__init__("; ".join([first, *state.sentences(), *sent]))
 
 
 class CaptureError(CobotwireError, ValueError):

@@ -55,6 +55,8 @@ Role = Literal[
     "joints",
     "coordinates",
     "powered",
+    "paused",
+    "error",
     "version",
 ]
 
@@ -225,15 +227,19 @@ class Table:
         """
         return self.command(name).reply_type
 
+    def find_role(self, role: Role) -> Command | None:
+        """Return the first command with a role; None if the edition has none."""
+        return next((command for command in self.commands if command.role == role), None)
+
     def in_role(self, role: Role) -> Command:
         """Return the first command with a role.
 
         Raises:
             UsageError: no command of the edition has the role.
         """
-        for command in self.commands:
-            if command.role == role:
-                return command
+        command = self.find_role(role)
+        if command is not None:
+            return command
         roles = ", ".join(sorted({command.role for command in self.commands} - {""}))
         message = f"edition {self.edition} has no command with the role {role!r}; it has {roles}"
         raise UsageError("role", role, roles, message=message)

@@ -194,6 +194,18 @@ class Exchange:
         repeat_at = self._repeat_at(waiting)
         return repeat_at is not None and repeat_at <= now
 
+    @property
+    def sent_last(self) -> PendingRequest | None:
+        """The request that :meth:`outgoing` gave last; it may be done by now."""
+        return self._last
+
+    def written(self, pending: PendingRequest, now: float) -> None:
+        """Note that writing a request ended only now: its reply may be late from now on."""
+        if pending.done:
+            self._outstanding.expect(pending.request, now + pending.policy.grace)
+        else:
+            pending.written(now)
+
     def outgoing(self, now: float, drained: bool) -> bytes:
         """Return the bytes of the request to be sent now, for the first time or again.
 

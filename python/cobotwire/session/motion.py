@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import Any, NamedTuple
 
-from cobotwire.protocol.errors import MotionTimeout
+from cobotwire.protocol.errors import ArmState, MotionTimeout
 from cobotwire.protocol.messages import Request
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.table import Role, Table
 
 # Ten rounds a second of at most two requests: a moving arm replies to 10 to 20 a second.
 POLL_SECONDS = 0.1
@@ -19,6 +19,8 @@ POLL_SECONDS = 0.1
 MOTION_SECONDS = 30.0
 # An arm that stands still for this long does not continue by itself.
 STILL_SECONDS = 1.0
+# How long each query after a failed motion may take.
+STATE_SECONDS = 0.2
 
 
 class Query(NamedTuple):
@@ -34,14 +36,22 @@ class Pause(NamedTuple):
     until: float
 
 
+class Stop(NamedTuple):
+    """Send ``stop``, unless the user of the client chose to leave the arm alone."""
+
+
 class Outcome(NamedTuple):
-    """How a step went: the time after it, and the request's result; None where no reply came."""
+    """How a step went: the time after it, and the result; None where no reply came.
+
+    The result of :class:`Stop` is whether it was sent.
+    """
 
     now: float
     result: Any = None
 
 
-Steps = Generator[Query | Pause, Outcome, None]
+Step = Query | Pause | Stop
+Steps = Generator[Step, Outcome, None]
 
 
 def kind_of(table: Table, label: str) -> int:
@@ -79,8 +89,39 @@ def until_reached(
         standing = still_since is not None
         stuck = still_since is not None and now - still_since >= STILL_SECONDS
         if stuck or now - started >= limit:
-            raise MotionTimeout(tuple(target), now - started, standing)
+            waited = now - started
+            if standing:
+                # A stop ends a pause, which would explain why the arm stands still.
+                state = yield from _state(table, kind)
+                stopped = yield Stop()
+            else:
+                stopped = yield Stop()
+                state = yield from _state(table, kind)
+            raise MotionTimeout(tuple(target), waited, standing, bool(stopped.result), state)
         now, _ = yield Pause(max(now, begun + POLL_SECONDS))
+
+
+def _state(table: Table, kind: int) -> Generator[Step, Outcome, ArmState]:
+    """Yield queries for what explains that the arm is not there; return the answers."""
+    where: Role = "joints" if kind == kind_of(table, "ANGLES") else "coordinates"
+    roles: tuple[Role, ...] = (where, "powered", "paused", "error")
+    found: list[Any] = []
+    for role in roles:
+        command = table.find_role(role)
+        if command is None:
+            found.append(None)
+        else:
+            outcome = yield Query(command.request_type(), STATE_SECONDS)
+            found.append(outcome.result)
+    place, powered, paused, error = found
+    position = None if place is None else tuple(place)
+    return ArmState(position, powered, paused, error, _meaning(table))
+
+
+def _meaning(table: Table) -> str:
+    """Return what the edition says about the numbers of its error register."""
+    command = table.find_role("error")
+    return "" if command is None else command.reply[0].fields[-1].doc.rstrip(".")
 
 
 def _left(started: float, limit: float, now: float) -> float:

@@ -165,6 +165,18 @@ class PendingRequest(Pending):
         self._deadline = now + self._wait
         self.attempt_times = (now,)
 
+    def written(self, now: float) -> None:
+        """Note that the last attempt was written only now."""
+        *earlier, _ = self.attempt_times
+        if not earlier:
+            self._deadline = now + self._wait
+        self.attempt_times = (*earlier, now)
+
+    @property
+    def repeated(self) -> bool:
+        """Whether it was sent more than once."""
+        return len(self.attempt_times) > 1
+
     def repeat(self, now: float) -> None:
         """Note that it is sent again."""
         self.attempt_times = (*self.attempt_times, now)

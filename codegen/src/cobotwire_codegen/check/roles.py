@@ -46,6 +46,12 @@ def _reads_number(command: Command) -> bool:
     )
 
 
+def _error(command: Command) -> bool:
+    last = [variant[-1] for variant in command.replies if variant]
+    ends = bool(last) and all(not _parts(field) for field in last)
+    return command.requests == ((),) and ends
+
+
 def _reads_row(parts: int) -> Callable[[Command], bool]:
     def reads(command: Command) -> bool:
         rows = all(len(variant) == 1 and _parts(variant[0]) == parts for variant in command.replies)
@@ -77,6 +83,11 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
         ),
         "moving": ("it must take no arguments and reply with a flag", _reads_flag),
         "powered": ("it must take no arguments and reply with a flag", _reads_flag),
+        "paused": ("it must take no arguments and reply with a flag", _reads_flag),
+        "error": (
+            "it must take no arguments, and the last of its replies must be a number",
+            _error,
+        ),
         "version": ("it must take no arguments and reply with one number", _reads_number),
         "joints": (
             "it must take no arguments and reply with a number for each joint",

@@ -25,6 +25,8 @@ ROLES = {
     "joints": "Reports the angles of all joints.",
     "coordinates": "Reports the pose of the end.",
     "powered": "Reports whether the motors have power.",
+    "paused": "Reports whether the motion is paused.",
+    "error": "Reports why the arm did not move; 0 is no error.",
     "version": "Reports the version of the firmware.",
 }
 UNITS = (
