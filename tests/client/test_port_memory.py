@@ -82,6 +82,22 @@ def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(
     pty.close()
 
 
+def test_late_reply_is_expected_on_a_link_whose_device_has_another_name_by_now(
+    tmp_path: Path,
+) -> None:
+    link = tmp_path / "by-id"
+    with ScriptedPeer() as before, ScriptedPeer() as after:
+        link.symlink_to(before.url)
+        with MyCobot(str(link), timeout=0.2) as arm, pytest.raises(ReplyTimeout):
+            arm.get_encoder(1)
+        link.unlink()
+        link.symlink_to(after.url)
+        started = time.monotonic()
+        with MyCobot(str(link), timeout=0.2) as arm, pytest.raises(ReplyTimeout):
+            arm.get_encoder(2)
+        assert time.monotonic() - started > 0.8
+
+
 def test_session_that_leaves_nothing_writes_no_file(folder: Path) -> None:
     with ScriptedPeer([bytes.fromhex("FE FE 03 12 01 FA")]) as peer, MyCobot(peer.url) as arm:
         assert arm.is_power_on()
@@ -139,7 +155,7 @@ def test_damaged_note_is_no_note(memory: PortMemory, folder: Path, text: str) ->
     memory.leave(Leftover((), (Part(MOTION, 8),)))
     port_memory._here.clear()
     [path] = folder.iterdir()
-    path.write_text(text.replace("PORT", json.dumps(memory._key)))
+    path.write_text(text.replace("PORT", json.dumps(memory._keys[0])))
     assert memory.recall().empty
 
 

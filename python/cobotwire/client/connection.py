@@ -203,10 +203,7 @@ class Connection:
             if not data or pending is None:
                 return
             try:
-                if pending.repeated:
-                    align = self._write_if_free(data)
-                else:
-                    align = self._write(data)
+                align = self._write_if_free(data) if pending.repeated else self._write(data)
             except LinkError as error:
                 with self._state:
                     self._exchange.fail_waiting(error)

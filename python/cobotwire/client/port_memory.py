@@ -49,16 +49,16 @@ class PortMemory:
             and transport.kind in LASTING
             and times_of(transport).real
         )
-        self._key = _key(transport.url) if same_again else ""
+        self._keys = _keys(transport.url) if same_again else ()
 
     def recall(self) -> Leftover:
         """Return the notes on the port, and remove them."""
-        if not self._key:
-            return Leftover()
-        found = [_here.pop(self._key, Leftover())]
-        # A file that is missing or damaged has no notes; nor has a folder that others can write.
-        with suppress(OSError, ValueError, TypeError, KeyError, RecursionError):
-            found.append(_read(_path(self._key), self._key))
+        found: list[Leftover] = []
+        for key in self._keys:
+            found.append(_here.pop(key, Leftover()))
+            # A file that is missing or damaged has no notes; nor has a folder that others can write.
+            with suppress(OSError, ValueError, TypeError, KeyError, RecursionError):
+                found.append(_read(_path(key), key))
         now = time.monotonic()
         late = {late for note in found for late in note.late if now < late.until <= now + LONGEST}
         parts = {part for note in found for part in note.parts}
@@ -66,32 +66,34 @@ class PortMemory:
 
     def leave(self, leftover: Leftover) -> None:
         """Leave a note on the port, unless the line is aligned and silent."""
-        if not self._key or leftover.empty:
+        if leftover.empty:
             return
         leftover = Leftover(leftover.late[-MOST_ENTRIES:], leftover.parts[-MOST_ENTRIES:])
-        _here[self._key] = leftover
-        # Without a folder of its own, this process alone remembers.
-        with suppress(OSError):
-            _write(_path(self._key, create=True), self._key, leftover)
+        for key in self._keys:
+            _here[key] = leftover
+            # Without a folder of its own, this process alone remembers.
+            with suppress(OSError):
+                _write(_path(key, create=True), key, leftover)
 
     def leave_to_parent(self) -> None:
         """Leave no note from now on: after a fork the session is the parent's."""
-        self._key = ""
+        self._keys = ()
 
 
 _here: dict[str, Leftover] = {}
 
 
-def _key(url: str) -> str:
-    """Return what identifies a port, however it is spelled."""
+def _keys(url: str) -> tuple[str, ...]:
+    """Return what identifies a port: its device, and a link that keeps its name after a replug."""
     if "://" in url:
-        return url
-    device = os.path.realpath(url)
+        return (url,)
+    device, link = os.path.realpath(url), os.path.abspath(url)
+    links = (link,) if link != device else ()
     if device.startswith(PSEUDO_TERMINALS):
         # The next pseudo-terminal with this number is another line.
         with suppress(OSError):
-            return f"{device} {os.stat(device).st_ctime_ns}"
-    return device
+            return f"{device} {os.stat(device).st_ctime_ns}", *links
+    return device, *links
 
 
 def _path(key: str, create: bool = False) -> str:
