@@ -115,3 +115,17 @@ def test_illegal_frame_that_may_be_a_late_reply_ends_no_request(session: OneCall
     [event] = session.receive(bytes.fromhex("FE FE 05 4A 09 F9 F2 FA"), 0.3)
     assert isinstance(event, UnexpectedFrame)
     assert session.waiting
+
+
+@pytest.mark.parametrize("ended", [False, True])
+def test_grace_begins_when_a_blocked_write_has_ended(codec: Codec, ended: bool) -> None:
+    exchange, encoder = Exchange(codec), RequestEncoder(codec)
+    pending = exchange.submit(encoder.encode("get_encoder", (1,)), 0.0, RetryPolicy(1), 0.4)
+    assert exchange.outgoing(0.0, drained=True)
+    if ended:
+        exchange.give_up(pending)
+    exchange.written(pending, 0.9)
+    exchange.give_up(pending)
+    exchange.submit(encoder.encode("get_encoder", (2,)), 1.0, RetryPolicy(1), 0.4)
+    assert exchange.outgoing(0.89 + GRACE_SECONDS, drained=True) == b""
+    assert exchange.outgoing(0.91 + GRACE_SECONDS, drained=True)

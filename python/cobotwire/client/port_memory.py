@@ -56,7 +56,7 @@ class PortMemory:
         found: list[Leftover] = []
         for key in self._keys:
             found.append(_here.pop(key, Leftover()))
-            # A file that is missing or damaged has no notes; nor has a folder that others can write.
+            # A missing or damaged file has no notes, nor has a folder that others can write.
             with suppress(OSError, ValueError, TypeError, KeyError, RecursionError):
                 found.append(_read(_path(key), key))
         now = time.monotonic()
