@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 import cobotwire
+from cobotwire.cli.shared.completers import complete_editions
 from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors
 from cobotwire.editions import DEFAULT
 
@@ -25,6 +26,7 @@ VERBS = (
     "plot",
     "conform",
     "commands",
+    "completion",
 )
 
 
@@ -58,6 +60,7 @@ def _print_version(context: click.Context, option: click.Parameter, wanted: bool
     "--edition",
     default=DEFAULT,
     show_default=True,
+    shell_complete=complete_editions,
     help="The protocol edition of the arm, or a package (name or folder) built by cobotwire-gen.",
 )
 @click.option(

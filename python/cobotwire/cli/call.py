@@ -9,6 +9,7 @@ import click
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.call_arguments import parse
+from cobotwire.cli.shared.completers import complete_commands, complete_ports
 from cobotwire.cli.shared.output import as_json_value, format_result
 
 
@@ -17,8 +18,8 @@ from cobotwire.cli.shared.output import as_json_value, format_result
     short_help="Send one command; print the result.",
     context_settings={"ignore_unknown_options": True},
 )
-@click.argument("port", metavar="URL")
-@click.argument("name")
+@click.argument("port", metavar="URL", shell_complete=complete_ports)
+@click.argument("name", shell_complete=complete_commands)
 @click.argument("args", nargs=-1, metavar="[ARGS]...")
 @arm_options
 @click.option(

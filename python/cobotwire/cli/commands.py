@@ -9,12 +9,13 @@ import click
 from rich.table import Table as Grid
 
 from cobotwire import editions
+from cobotwire.cli.shared.completers import complete_commands
 from cobotwire.cli.shared.output import plain_console
 from cobotwire.protocol.table import Command, Field, FrameFormat, Number, Variant
 
 
 @click.command(short_help="List the commands, or describe one.")
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=complete_commands)
 @click.option("--json", "as_json", is_flag=True, help="Print the commands as JSON.")
 @click.pass_obj
 def commands(edition: str, name: str | None, as_json: bool) -> None:

@@ -11,6 +11,7 @@ from rich.progress import Progress
 
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import baudrate_option
+from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.conform_report import (
     ReportFiles,
     conclude,
@@ -39,7 +40,7 @@ IN_MEMORY = "simulated arm in memory"
 
 
 @click.command()
-@click.argument("port", metavar="URL", required=False)
+@click.argument("port", metavar="URL", required=False, shell_complete=complete_ports)
 @click.option(
     "--allow",
     default="",

@@ -48,7 +48,7 @@ class Options(NamedTuple):
 
 
 @click.command(short_help="Explain bytes, streams and recordings.")
-@click.argument("input", nargs=-1, required=True, metavar="HEX...|FILE...|-")
+@click.argument("input", nargs=-1, required=True, type=click.Path(), metavar="HEX...|FILE...|-")
 @click.option("--raw", "format", flag_value="raw", help="FILE holds raw bytes.")
 @click.option("--hex", "format", flag_value="hex", help="FILE holds hex text.")
 @click.option(

@@ -11,6 +11,7 @@ import click
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
+from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.exit_codes import LINK_FAILED
 from cobotwire.cli.shared.output import as_json_value, format_result
 from cobotwire.client import Client
@@ -22,7 +23,7 @@ MOST = 10_000
 
 
 @click.command(short_help="Examine an arm and its port; give advice.")
-@click.argument("port", metavar="URL")
+@click.argument("port", metavar="URL", shell_complete=complete_ports)
 @arm_options
 @click.option(
     "--timeout", type=float, default=0.5, show_default=True, help="Seconds to wait for a reply."

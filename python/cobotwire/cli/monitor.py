@@ -14,12 +14,13 @@ from rich.text import Text
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
+from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.output import as_json_value, print_line
 from cobotwire.inspect import Monitor, Observation
 
 
 @click.command(short_help="Show joints, coordinates, rate, errors.")
-@click.argument("port", metavar="URL")
+@click.argument("port", metavar="URL", shell_complete=complete_ports)
 @arm_options
 @click.option(
     "--rate", type=float, default=5.0, show_default=True, help="Samples a second, at most."

@@ -13,6 +13,7 @@ import click
 
 from cobotwire import codec as codecs
 from cobotwire import editions
+from cobotwire.cli.shared.completers import complete_scenarios
 from cobotwire.cli.shared.joint_table import JointTable
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.serving import serve
@@ -58,7 +59,9 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf file.")
 @click.option(
-    "--scenario", help="Inject faults: a YAML file, or a name that --list-scenarios prints."
+    "--scenario",
+    shell_complete=complete_scenarios,
+    help="Inject faults: a YAML file, or a name that --list-scenarios prints.",
 )
 @click.option("--seed", type=int, help="With --scenario: replace the seed of the scenario.")
 @click.option(
