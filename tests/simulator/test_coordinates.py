@@ -191,7 +191,7 @@ def test_arm_outside_its_limits_stays_there_until_it_is_sent_inside(
 
 def test_arm_without_geometry_moves_joints_and_rejects_coordinates() -> None:
     clock = SteppedClock()
-    arm = SimulatedArm(replace(TABLE, edition="another"), clock=clock)
+    arm = SimulatedArm(replace(TABLE, geometry=None), clock=clock)
 
     def query(name: str, *values: Any) -> Any:
         reply = arm.receive(REFERENCE.encode(name, "request", values))

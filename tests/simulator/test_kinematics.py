@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cobotwire.simulator.kinematics import MYCOBOT_280, Pose, coords_of, flange, nearest
+from cobotwire.simulator.kinematics import Pose, coords_of, flange, nearest
 from cobotwire.simulator.kinematics.straight import straight_line
 from cobotwire.simulator.kinematics.ticks import (
     DEGREES_PER_TICK,
@@ -22,7 +22,7 @@ from cobotwire.simulator.kinematics.ticks import (
     reported_angles,
     reported_coords,
 )
-from kinematic_samples import LIMITS, random_angles, within_limits
+from kinematic_samples import LIMITS, MYCOBOT_280, random_angles, within_limits
 
 # Two pairs read from a real arm with firmware 6.5 (the protocol notes on kinematics).
 RECORDED = [

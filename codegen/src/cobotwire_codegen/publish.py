@@ -81,6 +81,7 @@ def _document(edition: Edition) -> Record:
             firmware=edition.firmware,
             base=edition.base,
             joints=edition.joints,
+            geometry=_geometry(edition),
         ),
         "frame": _given(
             header=_hex(frame.header),
@@ -104,6 +105,19 @@ def _document(edition: Edition) -> Record:
             for family in edition.families
             for command in family.commands
         ],
+    }
+
+
+def _geometry(edition: Edition) -> Record | None:
+    if edition.geometry is None:
+        return None
+    return {
+        "links": [
+            [_exact(part) for part in (link.offset, link.alpha, link.a, link.d)]
+            for link in edition.geometry.links
+        ],
+        "encoder_signs": list(edition.geometry.encoder_signs),
+        "doc": edition.geometry.doc,
     }
 
 

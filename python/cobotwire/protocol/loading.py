@@ -10,6 +10,7 @@ from typing import Any
 from cobotwire.protocol.table import (
     Case,
     Command,
+    Dimensions,
     Field,
     FrameFormat,
     Number,
@@ -46,7 +47,21 @@ def load_table(package: str) -> Table:
             tuple([value for _, value, _ in frame.get("addresses", ())]),
         ),
         tuple([reader.command(record) for record in document["commands"]]),
+        _dimensions(edition.get("geometry")),
     )
+
+
+def _dimensions(record: Record | None) -> Dimensions | None:
+    if record is None:
+        return None
+    links = [(_real(o), _real(alpha), _real(a), _real(d)) for o, alpha, a, d in record["links"]]
+    return Dimensions(tuple(links), tuple(record["encoder_signs"]))
+
+
+def _real(number: int | str) -> float:
+    """Return the nearest float to an exact number, such as ``-552/5``."""
+    numerator, _, denominator = str(number).partition("/")
+    return int(numerator) / int(denominator or 1)
 
 
 def load_places(package: str) -> dict[str, str]:

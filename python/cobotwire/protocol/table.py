@@ -9,7 +9,7 @@ a message and the rules for reading them.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.errors import UsageError, did_you_mean
 from cobotwire.protocol.fields import Case, Field, FieldKind, Number, Variant
@@ -27,6 +27,7 @@ __all__ = [
     "Case",
     "Check",
     "Command",
+    "Dimensions",
     "Direction",
     "Field",
     "FieldKind",
@@ -187,9 +188,23 @@ def _annotation(field: Field) -> str:
     return f"Sequence[{word}]" if field.many else word
 
 
+class Dimensions(NamedTuple):
+    """The geometry of an arm.
+
+    Attributes:
+        links: standard Denavit-Hartenberg parameters of each joint's link, from the base on: offset
+            and alpha in degrees, a and d in millimetres.
+        encoder_signs: for each joint, whether its encoder counts up (+1) or down (-1) while the
+            angle grows.
+    """
+
+    links: tuple[tuple[float, float, float, float], ...]
+    encoder_signs: tuple[int, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Table:
-    """One edition of the protocol."""
+    """One edition of the protocol; ``geometry`` is None if the edition does not state it."""
 
     edition: str
     title: str
@@ -197,6 +212,7 @@ class Table:
     baudrate: int
     frame: FrameFormat
     commands: tuple[Command, ...]
+    geometry: Dimensions | None = None
 
     def command(self, name: str) -> Command:
         """Return the command called ``name``.

@@ -69,8 +69,8 @@ class SimulatedArm:
             on_event: called with everything that the arm receives, and with its reply.
             acks: whether the arm sends the acknowledgements that the edition allows.
             powered: whether the arm has power from the start; after a restart it has none.
-            geometry: the lengths of the links; None: those of the arm that speaks this edition. If
-                they are not known either, the arm reports all coordinates as 0, rejects motions to
+            geometry: the lengths of the links; None: those that the edition states. If
+                it states none, the arm reports all coordinates as 0, rejects motions to
                 coordinates, and its joints do not snap to encoder ticks.
             on_note: called with each new note; ``notes`` keeps the last 1000.
         """

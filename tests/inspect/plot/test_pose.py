@@ -49,7 +49,9 @@ def test_picture_states_joint_angles_and_flange_position(tmp_path: Path) -> None
 
 def test_pose_of_an_arm_with_unknown_geometry_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="the geometry of the arm of edition mine is not known"):
-        draw_pose(replace(TABLE, edition="mine"), [0] * 6, str(tmp_path / "pose.png"))
+        draw_pose(
+            replace(TABLE, edition="mine", geometry=None), [0] * 6, str(tmp_path / "pose.png")
+        )
 
 
 def test_pose_of_a_recording_without_joints_is_rejected(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from cobotwire_codegen import language
 from cobotwire_codegen.build.commands import build_family
 from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.frame import build_frame_format
+from cobotwire_codegen.build.geometry import build_geometry
 from cobotwire_codegen.build.parts import Files, Parts, add_own
 from cobotwire_codegen.build.types import Types
 from cobotwire_codegen.build.vectors import build_erratum, build_vector
@@ -68,6 +69,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         firmware=reader.get(spec.firmware),
         base=_base_name(reader),
         joints=parts.joints or 0,
+        geometry=build_geometry(parts, problems),
         frame=frame,
         wires=tuple(types.wires.values()),
         types=tuple(types.types.values()),

@@ -39,6 +39,7 @@ class Parts:
     frame: Node | None = None
     transport: Node | None = None
     joints: int | None = None
+    geometry: Node | None = None
     acks: Node | None = None
     types: dict[str, Named] = field(
         default_factory=lambda: {name: {} for name in language.SECTIONS}
@@ -110,7 +111,10 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
     _add_frame(parts, reader, files)
     spec = language.WholeEdition
     if reader.node(spec.joints) is not None or parts.joints is None:
-        parts.joints = reader.get(spec.joints)
+        joints, parts.joints = parts.joints, reader.get(spec.joints)
+        # An arm with another number of joints has another geometry.
+        parts.geometry = parts.geometry if joints == parts.joints else None
+    parts.geometry = reader.get(spec.geometry) or parts.geometry
     parts.acks = reader.get(spec.acks) or parts.acks
     node = reader.get(spec.types)
     if node is not None:

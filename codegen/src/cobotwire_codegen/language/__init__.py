@@ -27,6 +27,7 @@ from cobotwire_codegen.language.edition import (
 )
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
+from cobotwire_codegen.language.geometry import Geometry, Link
 from cobotwire_codegen.language.messages import (
     FIELDS,
     Case,
@@ -89,7 +90,9 @@ __all__ = [
     "Flag",
     "Frame",
     "FrameFile",
+    "Geometry",
     "Key",
+    "Link",
     "Member",
     "NamedVector",
     "Quantity",

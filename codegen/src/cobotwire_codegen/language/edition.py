@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cobotwire_codegen.language.changes import CHANGE, ChangesFile
 from cobotwire_codegen.language.frame import FrameFile
+from cobotwire_codegen.language.geometry import Geometry
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField
 from cobotwire_codegen.language.names import CLASS, LOWER, METHOD
@@ -66,6 +67,10 @@ class _Edition(Record):
         "The places where the document is wrong or contradicts itself.",
     )
     acks = optional(Part(Acks), "How commands without a reply are acknowledged.")
+    geometry = optional(
+        Part(Geometry),
+        "The arm's geometry. A delta with as many joints inherits that of its base.",
+    )
 
 
 class WholeEdition(_Edition):

@@ -188,6 +188,22 @@ class Exact(Shape[Fraction]):
         return {"type": ["number", "string"], "pattern": _EXACT}
 
 
+class Real(Shape[Fraction]):
+    """Any number with an exact value: -110.4, 1/100 or 0."""
+
+    blank = Fraction(0)
+    words = "a number"
+
+    def read(self, node: Node, subject: str, note: Note) -> Fraction:
+        """Return the number as a fraction."""
+        value = as_fraction(node)
+        return self._wrong(node, subject, note, "bad-number") if value is None else value
+
+    def schema(self) -> Schema:
+        """Return a number, or a string with a fraction."""
+        return {"type": ["number", "string"], "pattern": _EXACT}
+
+
 class Range(Shape[tuple[Fraction, Fraction] | None]):
     """A pair of numbers, the lowest and the highest."""
 

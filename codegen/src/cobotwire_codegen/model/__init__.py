@@ -12,7 +12,7 @@ from cobotwire_codegen.model.commands import (
     Text,
     Variant,
 )
-from cobotwire_codegen.model.edition import Edition, Erratum, Frame, Vector
+from cobotwire_codegen.model.edition import Edition, Erratum, Frame, Geometry, Link, Vector
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Type, Value, Wire
 
@@ -28,7 +28,9 @@ __all__ = [
     "Field",
     "Flag",
     "Frame",
+    "Geometry",
     "Lines",
+    "Link",
     "Member",
     "Quantity",
     "ReadBack",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Literal
 
 from cobotwire_codegen.errors import Place
@@ -65,6 +66,25 @@ class Vector:
 
 
 @dataclass(frozen=True, slots=True)
+class Link:
+    """A row of standard Denavit-Hartenberg parameters, in degrees and millimetres."""
+
+    offset: Fraction
+    alpha: Fraction
+    a: Fraction
+    d: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """The links of an arm, and for each joint the direction in which its encoder counts."""
+
+    links: tuple[Link, ...]
+    encoder_signs: tuple[int, ...]
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
 class Edition:
     """One edition of a protocol."""
 
@@ -77,6 +97,7 @@ class Edition:
     firmware: str
     base: str
     joints: int
+    geometry: Geometry | None
     frame: Frame
     wires: tuple[Wire, ...]
     types: tuple[Type, ...]

@@ -1,0 +1,33 @@
+"""The geometry of an arm: its links, and the directions of its encoders."""
+
+from __future__ import annotations
+
+from cobotwire_codegen.language.records import Listed, Record, required
+from cobotwire_codegen.language.shapes import Numbers, Real, Text
+
+
+class Link(Record):
+    """A row of standard Denavit-Hartenberg parameters."""
+
+    offset = required(Real(), "What is added to the joint's angle, in degrees.")
+    alpha = required(Real(), "The angle between the axes of this joint and the next, in degrees.")
+    a = required(Real(), "The distance between these axes, in millimetres.")
+    d = required(Real(), "The shift along the axis of this joint, in millimetres.")
+    EXAMPLE = "{offset: -90, alpha: 0, a: -110.4, d: 0}"
+
+
+class Geometry(Record):
+    """The geometry of the arm, by which a simulated arm calculates coordinates."""
+
+    links = required(Listed(Link), "The links from the base on, one for each joint.")
+    encoder_signs = required(
+        Numbers(), "For each joint: 1 if its encoder counts up while the angle grows, else -1."
+    )
+    doc = required(Text(), "Where the geometry is taken from.")
+    EXAMPLE = """\
+links:
+  - {offset: 0, alpha: 90, a: 0, d: 131.22}
+  - {offset: -90, alpha: 0, a: -110.4, d: 0}
+encoder_signs: [-1, 1]
+doc: Measured on an arm with two joints.
+"""
