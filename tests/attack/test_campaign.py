@@ -21,8 +21,6 @@ from attack.tally import Tally
 SECONDS = 0.5
 PROCESSES = 4
 RUNS = [(name, client) for name, profile in PROFILES.items() for client in profile.clients]
-# A new client knows nothing of the one before it if the port has another name behind its link.
-KNOWN = {("unplug", "asyncio"), ("unplug", "blocking")}
 
 
 @pytest.fixture(scope="module")
@@ -38,13 +36,7 @@ def tallies() -> Iterator[dict[tuple[str, str], Future[Tally]]]:
         yield {run: pool.submit(attack, chosen) for run, chosen in plans.items()}
 
 
-@pytest.mark.parametrize(
-    ("name", "client"),
-    [
-        pytest.param(*run, marks=pytest.mark.xfail(run in KNOWN, reason="known", strict=False))
-        for run in RUNS
-    ],
-)
+@pytest.mark.parametrize(("name", "client"), RUNS)
 def test_nothing_forbidden_happens(
     tallies: dict[tuple[str, str], Future[Tally]], name: str, client: str
 ) -> None:
