@@ -28,6 +28,8 @@ from cobotwire.transport.timing import times_of
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
 SLICE_SECONDS = 0.02
+# How long the leader leaves the line to a thread that writes, before it reads again.
+TURN_SECONDS = 0.0005
 # A write that takes longer than this was held up by a full line.
 SLOW_WRITE_SECONDS = 0.005
 # The longest that the others wait before they check whether a thread reads.
@@ -189,7 +191,11 @@ class Connection:
                 events += exchange.wake(now)
                 outgoing = exchange.has_outgoing(now)
             if outgoing:
-                self._send_request(drained=not data)
+                if self._writing.locked():
+                    # Another thread writes, perhaps to a full line. Deadlines go on meanwhile.
+                    time.sleep(TURN_SECONDS)
+                else:
+                    self._send_request(drained=not data)
             if events:
                 self._wake_followers()
                 self.listeners.received(events, now)
