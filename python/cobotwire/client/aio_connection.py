@@ -41,7 +41,8 @@ class AsyncConnection:
         """
         check_port(port)
         if not times_of(port).real:
-            raise UsageError("port", port, "a transport in real time; an event loop has no other")
+            message = "asyncio runs in real time, and this transport has a clock of its own"
+            raise UsageError("port", port, message=message)
         self._port = port
         self._baudrate = baudrate
         self.url = port if isinstance(port, str) else port.url

@@ -96,9 +96,11 @@ class Rows:
             UsageError: the variant has no such field.
         """
         if name not in self.names:
-            argument = f"column of {self.command.name}"
-            message = "" if self.names else f"{self.command.name} {self.direction} has no fields"
-            raise UsageError(argument, name, ", ".join(self.names), message=message)
+            what = f"{self.command.name} {self.direction}"
+            message = f"{what} has no column {name!r}; choose from {', '.join(self.names)}"
+            if not self.names:
+                message = f"{what} has no fields"
+            raise UsageError("column", name, message=message)
         return memoryview(self._columns[self.names.index(name)])
 
     def __repr__(self) -> str:

@@ -120,15 +120,16 @@ def _bad_check(frame: FrameFormat) -> str:
 def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
     at = table.frame.length_at
     id = data[at + 1] if len(data) > at + 1 else None
+    commands = [command for command in table.commands if command.id == id]
     legal = {
-        table.frame.length(variant.size): command.name
-        for command in table.commands
+        table.frame.length(variant.size)
+        for command in commands
         for variant in command.variants(direction)
-        if command.id == id
     }
     if not legal:
         return f"no {direction} of edition {table.edition} has LEN {data[at]:02X}"
-    name = next(iter(legal.values()))
+    # Commands that share an id are all named: the frame does not tell which one was called.
+    name = " or ".join([command.name for command in commands if command.variants(direction)])
     lengths = " or ".join([f"{length:02X}" for length in sorted(legal)])
     return f"LEN of the {direction} {id:02X} ({name}) is {data[at]:02X}; allowed: {lengths}"
 

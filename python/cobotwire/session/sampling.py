@@ -57,7 +57,8 @@ class Sampler:
             UsageError: another consumer waits for a sample.
         """
         if self._free is None:
-            raise UsageError("stream", "in use", "one consumer; others have streams of their own")
+            message = "a stream has one consumer, and one waits already; open another stream"
+            raise UsageError("stream", message=message)
         if self._started is None:
             self._started = self._free = now
         overrun, unread = self._passed(now)
@@ -133,7 +134,8 @@ def check_requests(requests: Sequence[Request[Any]], table: Table) -> None:
         if command.safety != "query" or not command.answers:
             raise UsageError(name, request, f"a query: {_queries(table)}")
         if request in requests[:index]:
-            raise UsageError(name, request, "each query once")
+            message = f"{name} repeats {request!r}; a stream sends each query once"
+            raise UsageError(name, request, message=message)
 
 
 def _queries(table: Table) -> str:

@@ -112,9 +112,9 @@ class _Changed(OurCodec):
 @pytest.mark.parametrize(
     ("hello", "wrong"),
     [
-        ({"protocol": 2}, "protocol is 2"),
-        ({"edition": "mycobot280"}, "edition is 'mycobot280'"),
-        ({"can": "everything"}, "can is 'everything'"),
+        ({"protocol": 2}, "the implementation speaks protocol 2, not 1"),
+        ({"edition": "mycobot280"}, "the implementation has edition 'mycobot280', not mycobot"),
+        ({"can": "everything"}, "the implementation lists 'everything' under can, not words"),
         ({"error": "not today"}, "not today"),
     ],
 )

@@ -43,12 +43,15 @@ def greet(implementation: Implementation, table: Table) -> Greeting:
         message = f"the implementation rejected the greeting: {hello['error']}"
         raise UsageError("implementation", message=message)
     if hello.get("protocol") != PROTOCOL:
-        raise UsageError("implementation: protocol", hello.get("protocol"), str(PROTOCOL))
+        message = f"the implementation speaks protocol {hello.get('protocol')!r}, not {PROTOCOL}"
+        raise UsageError("implementation", message=message)
     if hello.get("edition") != table.edition:
-        raise UsageError("implementation: edition", hello.get("edition"), table.edition)
+        message = f"the implementation has edition {hello.get('edition')!r}, not {table.edition}"
+        raise UsageError("implementation", message=message)
     can = hello.get("can")
     if not isinstance(can, list) or not all(isinstance(word, str) for word in can):
-        raise UsageError("implementation: can", can, "a list of words (docs/codec-protocol.md)")
+        message = f"the implementation lists {can!r} under can, not words: docs/codec-protocol.md"
+        raise UsageError("implementation", can, message=message)
     return Greeting(str(hello.get("name", "unnamed")), frozenset(can))
 
 

@@ -45,8 +45,9 @@ def from_json(text: str) -> Report:
     try:
         data = json.loads(text)
         if data["format"] != FORMAT or data["version"] != VERSION:
-            given = (data["format"], data["version"])
-            raise UsageError("report", given, f"{FORMAT}, version {VERSION}")
+            given = f"{data['format']}, version {data['version']}"
+            message = f"the report is in the format {given}; needed: {FORMAT}, version {VERSION}"
+            raise UsageError("report", given, message=message)
         results = [_read_result(item) for item in data["results"]]
         plain = {name: _checked(data[name], kind) for name, kind in PLAIN.items()}
         plain["reply_seconds"] = {

@@ -30,6 +30,6 @@ def find(wanted: str, table: Table | None = None) -> Scenario:
         return load(wanted, table)
     known = shipped()
     if wanted not in known:
-        allowed = f"a file, or one of {', '.join(known)}{did_you_mean(wanted, known)}"
-        raise UsageError("scenario", wanted, allowed)
+        hint = did_you_mean(wanted, known) or f"; choose from {', '.join(known)}, or name a file"
+        raise UsageError("scenario", wanted, message=f"there is no scenario {wanted!r}{hint}")
     return load(known[wanted], table)

@@ -78,8 +78,9 @@ def combined(
             raise UsageError("simulated_arm", value, message=message)
         for name in names:
             if name not in known:
-                allowed = f"one of {', '.join(known)}{did_you_mean(name, known)}"
-                raise UsageError("simulated_arm", name, allowed)
+                hint = did_you_mean(name, known)
+                message = f"simulated_arm has no argument {name}; it takes {', '.join(known)}{hint}"
+                raise UsageError("simulated_arm", name, message=message)
         given |= names
     result = ArmOptions(**given, folder=folder)
     if result.transport not in (*TRANSPORTS, None):

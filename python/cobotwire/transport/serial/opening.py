@@ -45,7 +45,8 @@ def opening(url: str) -> Iterator[None]:
     except Exception as error:
         cause = _innermost(error)
         if isinstance(cause, ValueError | KeyError) and not isinstance(cause, OSError):
-            raise UsageError("port", url, f"what pyserial opens ({cause})") from None
+            message = f"pyserial cannot open {url}: {cause}"
+            raise UsageError("port", url, message=message) from None
         raise LinkError(url, f"cannot be opened: {reason_of(error)}") from error
 
 

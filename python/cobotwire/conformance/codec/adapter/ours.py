@@ -97,9 +97,9 @@ def encode_named(
             return codec.encode(command, direction, values, variant=index)
         except UsageError as error:
             rejection = rejection or error
-    raise rejection or UsageError(
-        f"{command} {direction}: fields", sorted(fields), "those of a variant"
-    )
+    given = ", ".join(sorted(fields)) or "none"
+    message = f"no variant of the {direction} of {command} has these fields: {given}"
+    raise rejection or UsageError("fields", sorted(fields), message=message)
 
 
 def plain_fields(message: DecodedMessage) -> dict[str, Any]:
