@@ -114,19 +114,23 @@ class _CommandAcks:
 
 
 class Acks:
-    """The acknowledgements of the requests that were sent lately, and the callers that wait."""
+    """The acknowledgements of the requests that were sent lately, and the callers that wait.
+
+    Attributes:
+        waiting: what callers wait for; some may be done.
+    """
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
         self._commands: dict[int, _CommandAcks] = {}
-        self._waiting: list[PendingAck] = []
+        self.waiting: list[PendingAck] = []
         # Whether this firmware was seen to acknowledge a motion at its start.
         self._motions_at_once = False
 
     @property
     def next_end(self) -> float:
         """When the first wait ends; infinity if nobody waits."""
-        return min((p.until for p in self._waiting if not p.done), default=inf)
+        return min((p.until for p in self.waiting if not p.done), default=inf)
 
     def expect(
         self, request: EncodedRequest, now: float, offset: int, within: float | None
@@ -150,7 +154,7 @@ class Acks:
         if within is None:
             return ack, None
         pending = PendingAck(ack, now + within)
-        self._waiting.append(pending)
+        self.waiting.append(pending)
         return ack, pending
 
     def note_copy(self, frame: Frame) -> None:
@@ -200,7 +204,7 @@ class Acks:
             acks.shorten(GRACE_SECONDS, now)
 
     def _end_certain(self, message: DecodedMessage) -> None:
-        for pending in self._waiting:
+        for pending in self.waiting:
             if pending.ack.certain and not pending.done:
                 self._end(pending, message)
         self.drop_done()
@@ -216,7 +220,7 @@ class Acks:
 
     def wake(self, now: float, echoes: bool) -> None:
         """End the waits whose time is over: a copy counts, unless the line ``echoes``."""
-        for pending in self._waiting:
+        for pending in self.waiting:
             if pending.until <= now and not pending.done:
                 copied = self._commands[pending.request.command.id].copied is pending.ack
                 if copied and not echoes:
@@ -227,16 +231,16 @@ class Acks:
 
     def fail(self, error: LinkError) -> None:
         """End every wait: the transport is gone."""
-        for pending in self._waiting:
+        for pending in self.waiting:
             if not pending.done:
                 pending.fail(error)
         self.drop_done()
 
     def note(self, event: FrameEvent | Noise) -> None:
         """Have those who wait remember an event, for the text of a timeout."""
-        for pending in self._waiting:
+        for pending in self.waiting:
             pending.note(event)
 
     def drop_done(self) -> None:
         """Forget the waits that have ended."""
-        self._waiting = [pending for pending in self._waiting if not pending.done]
+        self.waiting = [pending for pending in self.waiting if not pending.done]

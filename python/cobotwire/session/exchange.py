@@ -171,7 +171,8 @@ class Exchange:
         """Let time pass; return what ends by it. Receive first what has come by now."""
         waiting = self._waiting()
         events = self._end_wait(waiting, now) if waiting and waiting.ends_at <= now else []
-        self._acks.wake(now, self._echo.proven)
+        if self._acks.waiting:
+            self._acks.wake(now, self._echo.proven)
         return events
 
     def idle_seconds(self, now: float) -> float | None:
@@ -183,7 +184,8 @@ class Exchange:
                 soonest = repeat_at
         else:
             soonest = min([self._free_at(p, now) for p in self._queued()], default=inf)
-        soonest = min(soonest, self._acks.next_end)
+        if self._acks.waiting:
+            soonest = min(soonest, self._acks.next_end)
         return None if soonest == inf else max(0.0, soonest - now)
 
     def has_outgoing(self, now: float) -> bool:
@@ -246,7 +248,8 @@ class Exchange:
 
     def _drop_done(self) -> None:
         self._queue = [pending for pending in self._queue if not pending.done]
-        self._acks.drop_done()
+        if self._acks.waiting:
+            self._acks.drop_done()
 
     def _free_at(self, pending: PendingRequest, now: float) -> float:
         """Return from when on no late reply can be mistaken for the request's."""
@@ -393,5 +396,6 @@ class Exchange:
         waiting = self._waiting()
         if waiting is not None:
             waiting.note(event)
-        self._acks.note(event)
+        if self._acks.waiting:
+            self._acks.note(event)
         return event
