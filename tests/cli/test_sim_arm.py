@@ -6,12 +6,13 @@ import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
 from cobotwire.editions.mycobot280 import MyCobot280
 from cobotwire.transport.opening import open_transport
-from command_line import PROGRAM
+from command_line import PROGRAM, run_program
 
 
 @contextmanager
@@ -61,3 +62,21 @@ def test_powered_arm_moves_without_power_on(port: list[str], powered: bool) -> N
 def test_arm_without_acks_replies_to_queries_alone(options: list[str], expected: str) -> None:
     with _serving("--quiet", *options) as url:
         assert _received(url, "FE FE 03 16 01 FA FE FE 02 12 FA", 5) == expected
+
+
+def test_arm_that_is_led_moves_when_it_is_released(tmp_path: Path) -> None:
+    path = tmp_path / "hand.txt"
+    path.write_text("0.1 10 0 0 0 0 0\n0.2 10 -20 0 0 0 0\n")
+    with _serving("--quiet", "--powered", "--led", str(path)) as url:
+        with MyCobot280(url, timeout=5.0) as arm:
+            assert tuple(arm.get_angles()) == (0.0,) * 6
+            arm.release_all_servos()
+            time.sleep(0.4)
+            assert tuple(arm.get_angles()) == pytest.approx((10, -20, 0, 0, 0, 0), abs=0.1)
+
+
+def test_file_that_is_missing_is_reported_in_one_line() -> None:
+    result = run_program("sim", "--led", "/nowhere/hand.txt")
+    assert result.returncode != 0
+    assert "/nowhere/hand.txt: No such file" in result.stderr
+    assert "Traceback" not in result.stderr

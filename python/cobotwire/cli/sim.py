@@ -24,6 +24,7 @@ from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
 from cobotwire.simulator.faults import AppliedFault, Scenario, find, shipped
 from cobotwire.simulator.kinematics import prepare
+from cobotwire.simulator.motion.hand import read_points
 from cobotwire.simulator.peer import Peer
 from cobotwire.simulator.tcp import address
 
@@ -55,6 +56,11 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
 )
 @click.option("--powered", is_flag=True, help="The arm has power from the start.")
 @click.option("--no-acks", is_flag=True, help="Send no acknowledgements, as older firmware.")
+@click.option(
+    "--led",
+    metavar="FILE",
+    help="Lead the arm by hand when it is released: lines of seconds and angles.",
+)
 @click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf file.")
@@ -80,6 +86,7 @@ def sim(
     speed: float,
     powered: bool,
     no_acks: bool,
+    led: str | None,
     quiet: bool,
     as_json: bool,
     view: str | None,
@@ -108,6 +115,8 @@ def sim(
     arm = SimulatedArm(
         package.TABLE, clock=clock, on_note=on_note, powered=powered, acks=not no_acks
     )
+    if led is not None:
+        arm.lead(read_points(led, package.TABLE.joints))
     faults = None if scenario is None else find(scenario, package.TABLE)
     peers = _Peers(arm, clock, faults, seed, None if quiet else output, lines)
     server = _server(peers, clock, tcp)

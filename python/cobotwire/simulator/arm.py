@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
@@ -15,6 +15,7 @@ from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator.behaviour import BEHAVIOURS, Sized
 from cobotwire.simulator.kinematics import Geometry, geometry_of
+from cobotwire.simulator.motion.hand import checked
 from cobotwire.simulator.peer import IDLE_SECONDS
 from cobotwire.simulator.replies import clamped, completed
 from cobotwire.simulator.state import ArmState
@@ -94,6 +95,21 @@ class SimulatedArm:
         """
         return ArmConnection(self, on_event or self._on_event)
 
+    def lead(self, points: Iterable[tuple[float, Sequence[float]]]) -> None:
+        """Lead the arm by hand whenever no joint is held; if none is now, begin at once.
+
+        Args:
+            points: for each point, the seconds since the release, and the joints' angles. From
+                where they are, the joints turn evenly to the first, then to the next. They stay at
+                the last point, and stop as soon as a joint is held. Empty: nobody leads the arm.
+
+        Raises:
+            UsageError: a time is not after the one before, or a point has not one angle per joint.
+        """
+        self.state.hand = checked(points, self.table.joints)
+        if self.state.released:
+            self.state.release(self.clock())
+
     def restart(self) -> None:
         """Lose all settings, as in a power cycle. The joints and the gripper keep their positions.
 
@@ -104,6 +120,7 @@ class SimulatedArm:
         self.state.angles.place(before.standing(now), now)
         self.state.gripper.place(before.gripper.position(now), now)
         self.state.starts = before.starts + 1
+        self.state.hand = before.hand
         self._own_connection.reset()
 
     @property
@@ -141,8 +158,9 @@ class SimulatedArm:
         behaviour = BEHAVIOURS.get(command.name)
         if behaviour is None:
             return None
-        request = behaviour.request_type.from_fields(fields)
-        reply = behaviour.behave(self.state, self.clock(), request)
+        request, now = behaviour.request_type.from_fields(fields), self.clock()
+        self.state.record(now)
+        reply = behaviour.behave(self.state, now, request)
         for text in self.state.remarks:
             self.note(command, text)
         self.state.remarks.clear()

@@ -15,6 +15,7 @@ from cobotwire.simulator.kinematics.ticks import (
     reported_coords,
 )
 from cobotwire.simulator.motion import Axes
+from cobotwire.simulator.motion.hand import TimedPoint
 
 # Facts of the 280, from the protocol notes on kinematics.
 DEGREES_PER_SECOND = 1.5  # for each percent of speed
@@ -25,6 +26,9 @@ ACCELERATION = 200.0  # degrees per square second
 OPENING_PER_SECOND = 1.5
 OPENING_ACCELERATION = 10_000.0
 HIGHEST_ENCODER = 4096
+# No source says how often a point is recorded; their number is a word.
+RECORD_EVERY_SECONDS = 0.1
+MOST_POINTS = 32767
 
 # The document's chart of servo registers with their initial values (lines 1280-1291).
 SERVO_REGISTERS = {20: 0, 21: 10, 22: 0, 23: 1, 24: 0}
@@ -66,6 +70,10 @@ class ArmState:
     # The encoders and speeds of each recorded point, and how many points were read back.
     recorded: list[tuple[tuple[int, ...], tuple[int, ...]]] = field(default_factory=list)
     played: int = 0
+    # When the next point is recorded.
+    record_at: float = 0.0
+    # How somebody leads the arm whenever it is released.
+    hand: tuple[TimedPoint, ...] = ()
     # The registers of backed up servos, counted from 0.
     backups: dict[int, dict[int, int]] = field(default_factory=dict)
     # How often the controller has started.
@@ -106,6 +114,38 @@ class ArmState:
         """
         pairs = list(zip(self.minimum, self.maximum))
         return [inside(low, high) for low, high in pairs] if self.geometry else pairs
+
+    @property
+    def held(self) -> bool:
+        """Whether every joint has power and torque."""
+        return self.powered and not self.free and all(self.enabled)
+
+    @property
+    def released(self) -> bool:
+        """Whether no joint has power and torque."""
+        return not self.powered or self.free or not any(self.enabled)
+
+    def release(self, now: float) -> None:
+        """End every motion of the arm; if no joint is held now, somebody may lead the arm."""
+        self.angles.halt(now)
+        if self.released:
+            self.angles.lead(self.hand, now)
+
+    def hold(self, now: float) -> None:
+        """End the motion by hand when a joint is held again."""
+        if not self.released:
+            self.angles.halt(now)
+
+    def record(self, now: float) -> None:
+        """Record the points that were due by now; the sources do not define how often."""
+        while self.recording and self.record_at <= now and len(self.recorded) < MOST_POINTS:
+            self.record_point(self.record_at)
+            self.record_at += RECORD_EVERY_SECONDS
+
+    def record_point(self, now: float) -> None:
+        """Record the encoders and speeds of the joints."""
+        encoders = tuple(self.encoder(joint, now) for joint in range(self.joints))
+        self.recorded.append((encoders, self.servo_speeds(now)))
 
     def power_on(self) -> None:
         """Power and hold every joint where it is; connect the Atom."""

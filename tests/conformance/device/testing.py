@@ -61,7 +61,7 @@ class Altered:
 # An interrupted run does not restore the power, since an arm without power would fall.
 HELD = ("powered",)
 # Not settings: where the arm is, what has happened to it, and what it is.
-NOT_SET = ("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry")
+NOT_SET = ("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry", "record_at")
 
 
 def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> dict[str, object]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.registry import behaviour, query, row
-from cobotwire.simulator.state import ArmState
+from cobotwire.simulator.state import MOST_POINTS, ArmState
 
 
 @behaviour(m.DragStartRecord)
@@ -13,15 +13,16 @@ def drag_start_record(
 ) -> m.DragStartRecordReply:
     """Begin to record; reply with the number of points."""
     arm.recording = True
-    _record(arm, now)
+    arm.record_at = now
+    arm.record(now)
     return m.DragStartRecordReply(points=len(arm.recorded))
 
 
 @behaviour(m.DragEndRecord)
 def drag_end_record(arm: ArmState, now: float, request: m.DragEndRecord) -> m.DragEndRecordReply:
     """End the recording; reply with the number of points."""
-    if arm.recording:
-        _record(arm, now)
+    if arm.recording and len(arm.recorded) < MOST_POINTS:
+        arm.record_point(now)
     arm.recording = False
     return m.DragEndRecordReply(points=len(arm.recorded))
 
@@ -52,8 +53,3 @@ def drag_get_record_data(
     return m.DragGetRecordDataReply(
         point=row(part for pair in zip(encoders, speeds) for part in pair)
     )
-
-
-def _record(arm: ArmState, now: float) -> None:
-    encoders = tuple(arm.encoder(joint, now) for joint in range(arm.joints))
-    arm.recorded.append((encoders, (0,) * arm.joints))

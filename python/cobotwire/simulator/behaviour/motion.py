@@ -87,8 +87,8 @@ def is_in_position(arm: ArmState, now: float, request: m.IsInPosition) -> m.IsIn
     return m.IsInPositionReply(reached=reached)
 
 
-# A braking arm still moves.
-query(m.IsMoving, lambda arm, now, request: arm.angles.moving(now))
+# A braking arm still moves; one that is led by hand does not move by itself.
+query(m.IsMoving, lambda arm, now, request: arm.angles.moving(now) and not arm.released)
 
 
 def moves_straight(arm: ArmState) -> bool:

@@ -78,4 +78,6 @@ def set_encoders_drag(arm: ArmState, now: float, request: m.SetEncodersDrag) -> 
 @behaviour(m.FocusAllServos)
 def focus_all_servos(arm: ArmState, now: float, request: m.FocusAllServos) -> None:
     """Hold every joint."""
-    arm.enabled = [arm.powered] * arm.joints
+    led, arm.enabled = arm.released, [arm.powered] * arm.joints
+    if led:
+        arm.hold(now)

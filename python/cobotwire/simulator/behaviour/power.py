@@ -10,16 +10,19 @@ from cobotwire.simulator.state import ArmState
 @behaviour(m.PowerOn)
 def power_on(arm: ArmState, now: float, request: m.PowerOn) -> None:
     """Power and hold every joint where it is; connect the Atom."""
+    led = arm.released
     arm.power_on()
+    if led:
+        arm.hold(now)
 
 
 @behaviour(m.PowerOff)
 def power_off(arm: ArmState, now: float, request: m.PowerOff) -> None:
     """End every motion, release the joints, and disconnect the Atom."""
-    arm.angles.halt(now)
     arm.gripper.halt(now)
     arm.powered, arm.connected = False, False
     arm.enabled = [False] * arm.joints
+    arm.release(now)
 
 
 query(m.IsPowerOn, lambda arm, now, request: arm.powered)
@@ -28,8 +31,8 @@ query(m.IsPowerOn, lambda arm, now, request: arm.powered)
 @behaviour(m.ReleaseAllServos)
 def release_all_servos(arm: ArmState, now: float, request: m.ReleaseAllServos) -> None:
     """Release every joint."""
-    arm.angles.halt(now)
     arm.enabled = [False] * arm.joints
+    arm.release(now)
 
 
 # The Atom is connected, except between power_off and power_on.
@@ -39,9 +42,11 @@ query(m.IsControllerConnected, lambda arm, now, request: arm.connected)
 @behaviour(m.SetFreeMode)
 def set_free_mode(arm: ArmState, now: float, request: m.SetFreeMode) -> None:
     """Switch the torque off or on."""
-    arm.free = bool(request.free)
+    led, arm.free = arm.released, bool(request.free)
     if arm.free:
-        arm.angles.halt(now)
+        arm.release(now)
+    elif led:
+        arm.hold(now)
 
 
 query(m.IsFreeMode, lambda arm, now, request: arm.free)

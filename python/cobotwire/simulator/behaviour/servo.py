@@ -102,15 +102,17 @@ def joint_brake(arm: ArmState, now: float, request: m.JointBrake) -> None:
 def release_servo(arm: ArmState, now: float, request: m.ReleaseServo) -> None:
     """Release one joint."""
     if request.joint <= arm.joints:
-        arm.angles.halt(now)
         arm.enabled[request.joint - 1] = False
+        arm.release(now)
 
 
 @behaviour(m.FocusServo)
 def focus_servo(arm: ArmState, now: float, request: m.FocusServo) -> None:
     """Hold one joint."""
     if request.joint <= arm.joints:
-        arm.enabled[request.joint - 1] = arm.powered
+        led, arm.enabled[request.joint - 1] = arm.released, arm.powered
+        if led:
+            arm.hold(now)
 
 
 def _obey_limits(arm: ArmState, now: float) -> None:

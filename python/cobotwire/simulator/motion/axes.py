@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 
+from cobotwire.simulator.motion.hand import Hand, TimedPoint
 from cobotwire.simulator.motion.legs import Leg, Plan, Point, Route, Turn
 
 
@@ -19,7 +20,7 @@ class Axes:
         """``acceleration`` is the largest one, in units per square second."""
         self._rest: Point = tuple(position)
         self._acceleration = acceleration
-        self._leg: Leg | None = None
+        self._leg: Leg | Hand | None = None
         self._since = 0.0
         self._waiting: deque[Plan] = deque()
         self._paused = False
@@ -99,6 +100,16 @@ class Axes:
         self._leg = None
         self._waiting.clear()
 
+    def lead(self, points: Sequence[TimedPoint], now: float) -> None:
+        """Let a hand lead the axes from where they are; forget every target."""
+        self.halt(now)
+        if points:
+            start = [] if points[0][0] == 0 else [(0.0, self._rest)]
+            if len(start) + len(points) == 1:
+                self._rest = points[0][1]
+                return
+            self._leg, self._since = Hand([*start, *points]), now
+
     def forget(self, now: float) -> None:
         """Forget the waiting targets; the present motion continues."""
         self._at(now)
@@ -115,9 +126,10 @@ class Axes:
         if self._paused:
             return
         self._paused = True
-        if leg is not None:
-            self._leg, self._since = self._braked(leg, now), now
-            self._waiting.appendleft(self._leg.rest())
+        if leg is not None and not isinstance(leg, Hand):
+            self._leg = braked = leg.braked(now - self._since, self._acceleration)
+            self._since = now
+            self._waiting.appendleft(braked.rest())
 
     def resume(self, now: float) -> None:
         """Continue towards the targets, from standstill."""
@@ -127,10 +139,10 @@ class Axes:
         if self._leg is None:
             self._start()
 
-    def _braked(self, leg: Leg, now: float) -> Leg:
+    def _braked(self, leg: Leg | Hand, now: float) -> Leg | Hand:
         return leg.braked(now - self._since, self._acceleration)
 
-    def _at(self, now: float) -> Leg | None:
+    def _at(self, now: float) -> Leg | Hand | None:
         """Return the present leg; end those that are over by now."""
         while self._leg is not None and now >= self._since + self._leg.duration:
             self._since += self._leg.duration
