@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from cobotwire import editions
 from cobotwire.capture import read
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
@@ -23,6 +24,7 @@ STILL = bytes.fromhex("FE FE 03 2B 00 FA")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 COORDS = bytes.fromhex("FE FE 0E 23 01 BC FD A0 10 0D DC 66 FF 54 DE 21 FA")
 HEALTHY: list[list[Step]] = [[POWERED], [STILL], [ANGLES], [COORDS], [ANGLES], [ANGLES]]
+SPEED = bytes.fromhex("FE FE 03 40 32 FA")
 PANIC = (
     b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n"
     b"Rebooting...\r\n" + bytes(277)
@@ -116,11 +118,12 @@ def test_doctor_without_a_port_exits_with_3_and_reports_what_it_found() -> None:
 
 def test_doctor_works_over_tcp_and_records(tmp_path: Path) -> None:
     path = tmp_path / "doctor.pcapng"
-    with ScriptedTcpPeer(*HEALTHY) as peer:
+    # After the requests that are counted, the doctor checks the edition.
+    with ScriptedTcpPeer(*HEALTHY, [SPEED]) as peer:
         result = run(peer.url, "--count", "2", "--record", path)
     assert result.returncode == 0, result.stdout
     capture = read(path)
-    assert [packet.direction for packet in capture] == ["sent", "received"] * 6
+    assert [packet.direction for packet in capture] == ["sent", "received"] * 7
     assert capture.finished
 
 
@@ -139,3 +142,18 @@ def test_doctor_diagnoses_noise_before_the_first_request() -> None:
         thread.join()
     assert result.returncode == 1
     assert "servo bus leak" in result.stdout
+
+
+@pytest.mark.parametrize(("client", "arm"), [("mycobot280", "mycobot"), ("mycobot", "mycobot280")])
+def test_doctor_with_the_wrong_edition_names_the_arms_edition(client: str, arm: str) -> None:
+    with PtyServer(SimulatedArm(editions.load(arm).TABLE)) as server:
+        result = run_program(
+            "--edition", client, "doctor", server.url, "--json", "--count", "2", "--timeout", "0.2"
+        )
+        assert result.returncode == 1, result.stdout
+        (problem,) = [p for p in json.loads(result.stdout)["problems"] if p["serious"]]
+        assert problem["kind"] == "other-edition"
+        assert f"the arm speaks edition {arm}, not {client}" in problem["text"]
+        assert f"--edition {arm}" in problem["advice"]
+        right = run_program("--edition", arm, "doctor", server.url, "--count", "2")
+        assert (right.returncode, right.stdout.endswith("healthy\n")) == (0, True)

@@ -27,6 +27,7 @@ NO_REPLIES = (
 LOST = "retries make up for it; fix the other problems listed here, then check cable and hub"
 LATE = "the arm is busy or the line is slow: use a longer timeout=, or send fewer requests"
 ILLEGAL = "the firmware may use another edition: try --edition mycobot280"
+OTHER_EDITION = "use cobotwire --edition {edition}; in a program, cobotwire.connect(port)"
 NO_POWER = "cobotwire call power_on switches it on; keep clear of the arm"
 LATENCY_TIMER = "echo 1 | sudo tee {path}   (cobotwire tried this when it opened the port)"
 SLOW = "if this is a USB adapter, its latency timer may be 16 ms; set it to 1 ms"

@@ -11,6 +11,7 @@ from cobotwire.client import Client
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect import advice
 from cobotwire.inspect.advice import Problem
+from cobotwire.inspect.identification import other_edition
 from cobotwire.inspect.latency_timer import latency_timer
 from cobotwire.inspect.traffic_listener import DiagnosingListener
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
@@ -23,6 +24,8 @@ QUIET_SECONDS = 0.3
 SILENT = 3
 # An adapter that holds replies back takes 16 ms or more; otherwise a round trip is below 13 ms.
 SLOW_SECONDS = 0.0155
+# The time that an arm has for a query by which its edition is recognised, in seconds.
+EDITION_SECONDS = 0.5
 ROLES: tuple[Role, ...] = ("powered", "moving", "joints", "coordinates")
 
 
@@ -98,7 +101,8 @@ class Doctor:
     def __init__(
         self, arm: Client, transport: OpenedTransport, codec: Codec, report: Report
     ) -> None:
-        self._arm, self._queries = arm, harmless_queries(codec.table)
+        self._arm, self._transport, self._table = arm, transport, codec.table
+        self._queries = harmless_queries(codec.table)
         self._listener = DiagnosingListener(codec)
         self._times: list[float] = []
         self._silent = 0
@@ -115,6 +119,8 @@ class Doctor:
             for command in [*self._queries, *timed * count]:
                 self._send(command)
             self._arm.listen(QUIET_SECONDS)
+            if self._report.replies:
+                self._check_edition()
         finally:
             remove_listener()
             self._conclude()
@@ -137,6 +143,17 @@ class Doctor:
             self._report.replies += 1
             self._report.values[command.name] = value
         self._silent = 0
+
+    def _check_edition(self) -> None:
+        """Report an arm that speaks another edition: most of its replies are legal in this one."""
+        own, other = other_edition(self._arm, self._table, self._transport, timeout=EDITION_SECONDS)
+        if other is not None:
+            text = (
+                f"the arm speaks edition {other.edition}, not {self._table.edition}: it replies to "
+                f"{other.query}, but not to {own.query}; values can be wrong by a factor of ten"
+            )
+            how = advice.OTHER_EDITION.format(edition=other.edition)
+            self._report.problems.append(Problem("other-edition", text, how))
 
     def _conclude(self) -> None:
         report, listener = self._report, self._listener

@@ -102,6 +102,30 @@ def own_evidence(transport: Transport, names: list[str], **options: Any) -> Iter
                 return
 
 
+def other_edition(
+    client: Client, table: Table, transport: Transport, *, timeout: float
+) -> tuple[Evidence, Evidence | None]:
+    """Check that an arm speaks the edition of its client.
+
+    Returns:
+        What the edition's own query shows, and the evidence that the arm speaks another edition;
+        None: there is none. An own query of another edition is only sent if that of the client's
+        edition gets no legal reply.
+
+    Raises:
+        LinkError: the transport is gone.
+    """
+    command = own_query(table)
+    own = Evidence("", table.edition, False, None, "the edition has no query of its own")
+    if command is not None:
+        own = ask(client, command, table.edition)
+    if command is None or own.replied:
+        return own, None
+    others = [name for name in newest_first() if name != table.edition]
+    found = list(own_evidence(transport, others, timeout=timeout))
+    return own, found[-1] if found and found[-1].replied else None
+
+
 def newest_first() -> list[str]:
     """Return the names of the editions: first those that can report their version."""
     return sorted(
