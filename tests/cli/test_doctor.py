@@ -18,7 +18,7 @@ from cobotwire.simulator import PtyServer, SimulatedArm
 from command_line import run_program
 from scripted_peer import ScriptedPeer, ScriptedTcpPeer, Step
 
-run = partial(run_program, "doctor")
+run = partial(run_program, "--edition", "mycobot", "doctor")
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
 STILL = bytes.fromhex("FE FE 03 2B 00 FA")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from cobotwire.editions import mycobot
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm
 from cobotwire.simulator.kinematics import prepare
@@ -33,7 +32,7 @@ def test_example_of_the_readme_moves_the_arm_and_prints_readings() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     [example] = [block["text"] for block in BLOCK.finditer(text) if block["kind"] == "python"]
     clock = RunningClock(4.0)
-    with PtyServer(SimulatedArm(mycobot.TABLE, clock=clock), clock) as server:
+    with PtyServer(SimulatedArm(TABLE, clock=clock), clock) as server:
         done = subprocess.run(
             [sys.executable, "-c", example.replace(PORT, server.url)],
             capture_output=True,

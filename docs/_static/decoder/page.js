@@ -15,6 +15,7 @@
     "noise between": "FF FF 01 04 02 38 02 BE FE FE 03 12 01 FA 00 00",
     "a false header": "FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA 00",
   };
+  const FIRST_EDITION = "mycobot280"; // that of today's arm
   const UNITS = { degree: "°", degree_celsius: " °C", millimetre: " mm", percent: " %", volt: " V",
     milliampere: " mA", hertz: " Hz", step_per_second: " steps/s", tick: " ticks" };
 
@@ -271,6 +272,7 @@
   function restore(root) {
     const state = new URLSearchParams(location.hash.slice(1));
     const { text, edition, direction } = parts(root);
+    edition.value = FIRST_EDITION;
     text.value = state.get("hex") || EXAMPLES["get_angles"];
     if (state.get("edition") in cobotwire.tables) edition.value = state.get("edition");
     if (["both", "request", "reply"].includes(state.get("direction"))) direction.value = state.get("direction");

@@ -14,7 +14,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the options; without the first of them nothing is collected."""
     group = parser.getgroup("conform", HELP)
     group.addoption("--conform-device", metavar="URL", help="Test the device at URL.")
-    group.addoption("--conform-edition", help="The edition [mycobot].")
+    group.addoption("--conform-edition", help="The edition [mycobot280].")
     group.addoption("--conform-allow", default="", help="Permissions, separated by commas.")
     group.addoption("--conform-max-speed", type=int, help="Percent; motion needs it.")
     group.addoption("--conform-workspace", help="LOW:HIGH in degrees; motion needs it.")

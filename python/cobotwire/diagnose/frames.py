@@ -56,7 +56,7 @@ class UnlistedFrame(Finding):
     id: int
     command: str | None
     kind: ClassVar[str] = "unlisted-frame"
-    advice: ClassVar[str] = "the firmware may use another edition: try --edition mycobot280"
+    advice: ClassVar[str] = "the firmware may use another edition: cobotwire identify URL finds out"
     summary_noun: ClassVar[str] = "frame"
 
     def describe(self) -> str:

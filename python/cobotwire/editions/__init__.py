@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from cobotwire.client.aio import AsyncClient
     from cobotwire.protocol.table import Table
 
-DEFAULT = "mycobot"
+DEFAULT = "mycobot280"
 
 
 class Edition(Protocol):

@@ -26,7 +26,7 @@ NO_REPLIES = (
 )
 LOST = "retries make up for it; fix the other problems listed here, then check cable and hub"
 LATE = "the arm is busy or the line is slow: use a longer timeout=, or send fewer requests"
-ILLEGAL = "the firmware may use another edition: try --edition mycobot280"
+ILLEGAL = "the firmware may use another edition: cobotwire identify URL finds out"
 OTHER_EDITION = "use cobotwire --edition {edition}; in a program, cobotwire.connect(port)"
 NO_POWER = "cobotwire call power_on switches it on; keep clear of the arm"
 LATENCY_TIMER = "echo 1 | sudo tee {path}   (cobotwire tried this when it opened the port)"

@@ -147,4 +147,4 @@ def test_it():
 
 def test_mark_is_listed_by_pytest(tmp_path: Path) -> None:
     printed = run(tmp_path, "", "--markers")
-    assert "@pytest.mark.simulated_arm(edition='mycobot'" in printed
+    assert "@pytest.mark.simulated_arm(edition='mycobot280'" in printed

@@ -101,6 +101,11 @@ def test_each_byte_of_a_frame_is_labelled(page: Path) -> None:
     assert "request at 0: <code>send_angle</code>" in shown
 
 
+def test_page_without_an_edition_in_its_address_decodes_as_todays_arm(page: Path) -> None:
+    # 0x02 is a command of mycobot280 only.
+    assert "get_system_version" in _shown(page, hex="FE FE 02 02 FA", direction="request")
+
+
 @pytest.mark.parametrize("edition", sorted(TABLES))
 def test_decoder_page_shows_the_events_of_the_codec(typed: dict[str, str], edition: str) -> None:
     for record in _longest(edition):

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 MARK = "simulated_arm"
 ABOUT = (
-    f"{MARK}(edition='mycobot', scenario=None, transport=None, speed=1.0, seed=None): which arm "
+    f"{MARK}(edition='mycobot280', scenario=None, transport=None, speed=1.0, seed=None): which arm "
     "the fixtures simulated_arm and simulated_arm_url create; scenario is a YAML file, the name "
     "of one that comes with cobotwire, or an object with wrap(); transport is memory, pty or tcp"
 )
