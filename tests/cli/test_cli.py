@@ -11,6 +11,7 @@ import sys
 import pytest
 
 from cobotwire import __version__
+from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
 from command_line import run_program as run
@@ -166,7 +167,7 @@ def test_help_of_call_keeps_the_lines_of_its_examples() -> None:
 
 def test_commands_prints_text_of_the_spec_without_markup() -> None:
     script = (
-        "import dataclasses, cobotwire.editions.mycobot as e\n"
+        "import dataclasses, cobotwire.editions.mycobot280 as e\n"
         "word = 'the [bold]first[/] of :warning: [/nothing]'\n"
         "stop = dataclasses.replace(e.TABLE.command('stop'), title=word, doc=word, notes=(word,))\n"
         "e.TABLE = dataclasses.replace(e.TABLE, commands=(stop,))\n"
@@ -181,13 +182,22 @@ def test_commands_prints_text_of_the_spec_without_markup() -> None:
 
 
 def test_commands_lists_every_command() -> None:
-    result = run("commands")
-    assert len(result.stdout.splitlines()) == len(TABLE.commands) + 1
-    assert "0x2A  is_in_position" in result.stdout
+    for words, table in ((["--edition", "mycobot"], TABLE), ([], mycobot280.TABLE)):
+        result = run(*words, "commands")
+        assert len(result.stdout.splitlines()) == len(table.commands) + 1
+        assert "0x2A  is_in_position" in result.stdout
+
+
+def test_edition_that_is_not_named_is_that_of_todays_arm() -> None:
+    assert "[default: mycobot280]" in " ".join(run("--help").stdout.split())
+    assert "get_system_version" in run("decode", "FE FE 02 02 FA").stdout
+    assert (
+        "get_system_version" not in run("--edition", "mycobot", "decode", "FE FE 02 02 FA").stdout
+    )
 
 
 def test_commands_describes_one_command_byte_by_byte() -> None:
-    result = run("commands", "send_coord")
+    result = run("--edition", "mycobot", "commands", "send_coord")
     for words in ("0x24  motion", "5-6   coord", "-3253.5..3300 millimetre (x 10)", "1 X, 2 Y"):
         assert words in result.stdout
     assert "Disputed" in result.stdout

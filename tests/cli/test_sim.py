@@ -137,7 +137,7 @@ def test_sim_over_tcp_numbers_the_clients(sim: subprocess.Popen[str]) -> None:
     assert sim.stderr.read() == ""
 
 
-@pytest.mark.parametrize("sim", [["--tcp", "0.0.0.0:0", "--json"]], indirect=True)
+@pytest.mark.parametrize("sim", [["--tcp", "0.0.0.0:0", "--json", "--no-acks"]], indirect=True)
 def test_sim_on_all_interfaces_prints_json_and_a_warning(sim: subprocess.Popen[str]) -> None:
     assert sim.stdout is not None
     assert sim.stderr is not None

@@ -7,6 +7,7 @@ after another, one query that no other edition has. A legal reply to it decides.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cobotwire import editions
@@ -121,7 +122,9 @@ def other_edition(
         own = ask(client, command, table.edition)
     if command is None or own.replied:
         return own, None
+    # A device whose frames differ is no arm of the others, and is not sent their frames.
     others = [name for name in newest_first() if name != table.edition]
+    others = [name for name in others if _same_frames(editions.load(name).TABLE, table)]
     found = list(own_evidence(transport, others, timeout=timeout))
     return own, found[-1] if found and found[-1].replied else None
 
@@ -245,6 +248,11 @@ def _bare_queries(table: Table) -> list[Command]:
         and command.reply
         and not any(v.fields for v in command.request)
     ]
+
+
+def _same_frames(one: Table, other: Table) -> bool:
+    first, second = one.frame, other.frame
+    return replace(first, maximum_length=second.maximum_length) == second
 
 
 def _version(table: Table) -> bool:
