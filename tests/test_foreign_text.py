@@ -86,6 +86,7 @@ VALUES: dict[str, Any] = {
     "tuple[str, ...]": (HOSTILE, HOSTILE),
     "Sequence[str]": (HOSTILE, HOSTILE),
     "tuple[float, ...]": (1.0, 2.0),
+    "ArmState": errors.ArmState((1.0, 2.0), False, True, 3, HOSTILE),
 }
 
 
