@@ -135,6 +135,16 @@ def test_target_beyond_a_joint_limit_is_rejected(bench: Bench) -> None:
     assert bench.query("get_joint_max_angle", 2) == 45.0
 
 
+def test_new_limit_ends_a_motion_that_leads_beyond_it_before_the_last_target(bench: Bench) -> None:
+    bench.send("send_angle", 3, -60.0, 20)
+    bench.send("send_angle", 3, 40.0, 20)
+    bench.clock.sleep(0.4)
+    bench.send("set_joint_min", 3, 0.0)
+    bench.clock.sleep(1.0)
+    assert bench.query("is_moving") == 0
+    assert -15.0 < bench.query("get_angles")[2] < -8.0
+
+
 def test_jog_continues_until_it_is_stopped(bench: Bench) -> None:
     bench.send("jog_angle", 1, 0, 20)
     bench.clock.sleep(1.0)

@@ -9,6 +9,7 @@ import pytest
 
 from cobotwire import editions
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
+from cobotwire.simulator.arm import Note
 from cobotwire.transport.interface import OpenedTransport
 from cobotwire.transport.opening import open_transport
 
@@ -61,3 +62,26 @@ def test_servo_register_has_two_bytes_with_mode_1_and_else_one(
     port: OpenedTransport, request_words: str, reply: str
 ) -> None:
     assert _replies(port, WRITE_A_BYTE, WRITE_A_WORD, request_words) == reply
+
+
+@pytest.mark.parametrize(
+    ("words", "reply", "name", "why"),
+    [
+        ("FE FE 02 D4 FA", "FE FE 03 D4 01 FA", "move_round", "no source says"),
+        ("FE FE 02 D7 FA", "FE FE 03 D7 01 FA", "set_four_pieces_zero", "four-piece motor"),
+    ],
+)
+def test_command_without_effect_is_acknowledged_with_a_note(
+    words: str, reply: str, name: str, why: str
+) -> None:
+    notes: list[Note] = []
+    arm = SimulatedArm(editions.load("mycobot280").TABLE, powered=True, on_note=notes.append)
+    with PtyServer(arm) as server:
+        transport = open_transport(server.url, 115200)
+        try:
+            assert _replies(transport, words) == reply
+        finally:
+            transport.close()
+    [note] = notes
+    assert note.command == name
+    assert why in note.text

@@ -75,6 +75,12 @@ def set_encoders_drag(arm: ArmState, now: float, request: m.SetEncodersDrag) -> 
     go_to_angles(arm, target, DRAG_SPEED if any(request.speeds) else 0, now)
 
 
+@behaviour(m.MoveRound)
+def move_round(arm: ArmState, now: float, request: m.MoveRound) -> None:
+    """Do not move: no source describes the motion."""
+    arm.remarks.append("ignored: no source says how the arm moves")
+
+
 @behaviour(m.FocusAllServos)
 def focus_all_servos(arm: ArmState, now: float, request: m.FocusAllServos) -> None:
     """Hold every joint."""

@@ -117,7 +117,11 @@ def focus_servo(arm: ArmState, now: float, request: m.FocusServo) -> None:
 
 def _obey_limits(arm: ArmState, now: float) -> None:
     """End a motion that would lead a joint beyond its new limits."""
-    pairs = zip(arm.angles.stop_at(now), arm.angles.target(now), arm.limits())
-    if any(at != to and not low <= to <= high for at, to, (low, high) in pairs):
+    stop, limits = arm.angles.stop_at(now), arm.limits()
+    if any(
+        at != to and not low <= to <= high
+        for point in arm.angles.ways(now)
+        for at, to, (low, high) in zip(stop, point, limits)
+    ):
         arm.angles.brake(now)
         arm.remarks.append("stopped: the motion leads beyond the new limits")

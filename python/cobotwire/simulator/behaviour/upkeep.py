@@ -36,8 +36,13 @@ def restore_servo_params(arm: ArmState, now: float, request: m.RestoreServoParam
         arm.registers[index] = dict(arm.backups.get(index, SERVO_REGISTERS))
 
 
-# The four-piece motor is not a joint, and no command reads it.
-query(m.SetFourPiecesZero, lambda arm, now, request: True)
+@behaviour(m.SetFourPiecesZero)
+def set_four_pieces_zero(
+    arm: ArmState, now: float, request: m.SetFourPiecesZero
+) -> m.SetFourPiecesZeroReply:
+    """Succeed without effect: the four-piece motor is not a joint, and no command reads it."""
+    arm.remarks.append("no effect: the simulated arm has no four-piece motor")
+    return m.SetFourPiecesZeroReply(succeeded=True)
 
 
 def _servos(arm: ArmState, servo: int) -> range:

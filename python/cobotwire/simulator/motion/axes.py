@@ -42,6 +42,14 @@ class Axes:
             return self._waiting[-1].points[-1]
         return self._rest if leg is None else leg.end
 
+    def ways(self, now: float) -> list[Point]:
+        """Return the points that the axes will pass: those of the motion, and waiting ones."""
+        leg = self._at(now)
+        points = [point for plan in self._waiting for point in plan.points]
+        if isinstance(leg, Route):
+            points += leg.braked(now - self._since, self._acceleration).rest().points
+        return points if leg is None else [leg.end, *points]
+
     def stop_at(self, now: float) -> Point:
         """Return where the axes would stop if they braked now."""
         leg = self._at(now)
