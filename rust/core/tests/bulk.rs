@@ -229,7 +229,7 @@ fn raw_columns_hold_raw_values_in_small_types() {
     let plans = Arc::new(Plans::new(&table, Listening::To(Direction::Reply)));
     let reader = |old| ColumnReader::new(Arc::clone(&table), Arc::clone(&plans), Numbers::Raw, old);
     let frame = [
-        0xFE, 0xFE, 0x0E, 0x20, 0, 1, 0xFF, 0xFF, 0x80, 0, 0x7F, 0xFF, 0, 0, 1, 0, 0xFA,
+        0xFE, 0xFE, 0x0E, 0x23, 0, 1, 0xFF, 0xFF, 0x80, 0, 0x7F, 0xFF, 0, 0, 1, 0, 0xFA,
     ];
     let mut first = reader(None);
     first.feed(&frame);
