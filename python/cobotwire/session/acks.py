@@ -9,6 +9,7 @@ and in time. An acknowledgement that was lost causes doubt only until it is too 
 
 from __future__ import annotations
 
+from bisect import insort
 from collections import deque
 from math import inf
 from typing import NamedTuple
@@ -39,14 +40,12 @@ class ExpectedAck:
 
     __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")
 
-    def __init__(
-        self, request: EncodedRequest, now: float, until: float, offset: int, doubts: list[float]
-    ) -> None:
+    def __init__(self, request: EncodedRequest, now: float, until: float, offset: int) -> None:
         self.request = request
         self.sent_at = now
         self.until = until
         self.offset = offset
-        self.doubts = doubts
+        self.doubts: list[float] = []
         self.certain = False
 
     def count(self, frame: Frame, began_at: float) -> None:
@@ -86,7 +85,7 @@ class _CommandAcks:
 
     Attributes:
         expected: those whose acknowledgement may still come, if each one belongs to the oldest.
-        uncertain: those that are not certain to be acknowledged, and may still be.
+        uncertain: those that a caller waits for, while it is not certain that they came.
         copied: the request of which a copy came.
         began_at: since when acknowledgements have been expected without a break.
     """
@@ -145,14 +144,15 @@ class Acks:
         acks.forget_expired(now)
         if not acks.expected:
             acks.began_at = now
-        doubts = sorted(earlier.until for earlier in acks.expected)
-        ack = ExpectedAck(request, now, now + max(within or 0.0, usual), offset, doubts)
+        ack = ExpectedAck(request, now, now + max(within or 0.0, usual), offset)
         for earlier in acks.uncertain:
-            earlier.doubts = sorted((*earlier.doubts, ack.until))
+            insort(earlier.doubts, ack.until)
+        if within is None:
+            acks.expected.append(ack)
+            return ack, None
+        ack.doubts = sorted(earlier.until for earlier in acks.expected)
         acks.expected.append(ack)
         acks.uncertain.append(ack)
-        if within is None:
-            return ack, None
         pending = PendingAck(ack, now + within)
         self.waiting.append(pending)
         return ack, pending
