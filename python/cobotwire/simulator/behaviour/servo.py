@@ -117,11 +117,11 @@ def focus_servo(arm: ArmState, now: float, request: m.FocusServo) -> None:
 
 def _obey_limits(arm: ArmState, now: float) -> None:
     """End a motion that would lead a joint beyond its new limits."""
-    stop, limits = arm.angles.stop_at(now), arm.limits()
-    if any(
-        at != to and not low <= to <= high
-        for point in arm.angles.ways(now)
-        for at, to, (low, high) in zip(stop, point, limits)
-    ):
+    angles = arm.angles
+    points = [angles.position(now), angles.stop_at(now), *angles.ways(now)]
+    for turns, (low, high) in zip(zip(*points), arm.limits()):
+        if len(set(turns)) == 1 or all(low <= angle <= high for angle in turns):
+            continue
         arm.angles.brake(now)
         arm.remarks.append("stopped: the motion leads beyond the new limits")
+        return
