@@ -41,6 +41,9 @@ ARGUMENT = model.Field(
 NEW: dict[str, Any] = {
     "text": model.Text(PLACE, "Said", ("a ",), (("b", "B."),), "", 5),
     "request_text": model.Text(PLACE, "", ("a ",), (("b", "B."),), "", 0),
+    "geometry": model.Geometry(
+        (model.Link(Fraction(0), Fraction(90), Fraction(0), Fraction(100)),), (1,), "One link."
+    ),
     "range": (Fraction(1), Fraction(2)),
     "requests": ((ARGUMENT,),),
     "replies": ((ARGUMENT,),),

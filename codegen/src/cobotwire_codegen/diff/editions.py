@@ -12,7 +12,7 @@ from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.frame import frame_changes
 from cobotwire_codegen.diff.named import named_types
 from cobotwire_codegen.diff.rules import LEVELS
-from cobotwire_codegen.model import Edition
+from cobotwire_codegen.model import Edition, Geometry
 
 _SEVERITY = {level: index for index, level in enumerate(LEVELS)}
 
@@ -63,6 +63,26 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
     for rule, where, before, after in facts:
         if before != after:
             yield finding(rule, where, before, after)
+    yield from _geometry(old.geometry, new.geometry)
     yield from prose.doc("edition/title", old.title, new.title)
     yield from prose.doc("edition", old.doc, new.doc)
     yield from prose.doc("edition/document", old.document, new.document)
+
+
+def _geometry(old: Geometry | None, new: Geometry | None) -> Iterator[Finding]:
+    """Compare the links and the encoders' directions, and how they are explained."""
+    if _lengths(old) != _lengths(new):
+        yield finding("geometry-changed", "edition/geometry", _lengths(old), _lengths(new))
+    elif old is not None and new is not None:
+        yield from prose.doc("edition/geometry", old.doc, new.doc)
+
+
+def _lengths(geometry: Geometry | None) -> str:
+    """Return the numbers of a geometry in one line."""
+    if geometry is None:
+        return "not stated"
+    links = "; ".join(
+        f"offset {link.offset}, alpha {link.alpha}, a {link.a}, d {link.d}"
+        for link in geometry.links
+    )
+    return f"{links}; encoder signs {', '.join(map(str, geometry.encoder_signs))}"

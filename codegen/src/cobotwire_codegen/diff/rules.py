@@ -86,6 +86,7 @@ _BEHAVIOUR = {
     "choices-narrowed": "legal raw values were {old}, are {new}: some are now rejected",
     "choices-widened": "legal raw values were {old}, are {new}: an old peer rejects some",
     "deadline-changed": "the deadline of the reply was {old} ms, is {new} ms",
+    "geometry-changed": "the geometry was {old}, is {new}",
     "joints-changed": "the arm had {old} joints, has {new}",
     "maximum-data-changed": "a frame carried up to {old} data bytes, carries {new}",
     "range-moved": "the range was {old}, is {new}: values on either side are rejected",
