@@ -158,7 +158,7 @@ class AnyOrder(RuleBasedStateMachine):
     def joints_stay_within_limits_and_below_the_fastest_speed(self) -> None:
         before, seen = self.seen
         now, state = self.clock(), self.arm.state
-        position = state.angles.position(now)
+        position, stop = state.angles.position(now), state.angles.stop_at(now)
         self.seen = now, position
         most = FASTEST * (now - before) + ROUNDING
         pairs = zip(position, state.minimum, state.maximum)
@@ -166,7 +166,8 @@ class AnyOrder(RuleBasedStateMachine):
             least, greatest = self.excused[joint]
             assert min(low, least) - ROUNDING <= angle <= max(high, greatest) + ROUNDING
             assert abs(angle - seen[joint]) <= most, "no joint jumps"
-            if low <= angle <= high:
+            # A joint that is still inside may be about to brake beyond a new limit.
+            if low <= angle <= high and low <= stop[joint] <= high:
                 self.excused[joint] = (low, high)
 
     @invariant()
