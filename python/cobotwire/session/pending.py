@@ -99,6 +99,7 @@ class PendingRequest(Pending):
     __slots__ = (
         "_attempts",
         "_deadline",
+        "_requested_at",
         "_undrained_since",
         "_wait",
         "attempt_times",
@@ -123,6 +124,7 @@ class PendingRequest(Pending):
         self.policy = policy
         self.queued_at = now
         self.attempt_times: tuple[float, ...] = ()
+        self._requested_at = 0.0
         self.offset = 0
         self.candidate: DecodedMessage | None = None
         self.text = None if command.text is None else TextCollector(command.text)
@@ -131,7 +133,7 @@ class PendingRequest(Pending):
     @property
     def requested_at(self) -> float:
         """When it was first sent."""
-        return self.attempt_times[0]
+        return self._requested_at
 
     @property
     def ends_at(self) -> float:
@@ -163,6 +165,7 @@ class PendingRequest(Pending):
         """Note that it is sent for the first time; its reply can begin at ``offset``."""
         self.offset = offset
         self._deadline = now + self._wait
+        self._requested_at = now
         self.attempt_times = (now,)
 
     def written(self, now: float) -> None:

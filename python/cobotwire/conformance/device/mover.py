@@ -9,6 +9,7 @@ from typing import Any
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import request_of
+from cobotwire.conformance.device.response import ReceivedReply
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Role
 
@@ -89,6 +90,17 @@ class Mover:
         """Return the joints' angles, in degrees."""
         return tuple(self.device.require(self.joints.request_type()).result)
 
+    def differences(self, wanted: Pose) -> list[str]:
+        """Describe the joints that are not where they should be, or reported illegally.
+
+        Raises:
+            NotSupported: no reply came.
+        """
+        response = self.device.request(self.joints.request_type())
+        if response.valid is None and response.replies:
+            return [f"{self.joints.name}: expected legal values; {response.replies[0].error}"]
+        return off_by(self.angles() if response.valid is None else _pose(response.valid), wanted)
+
     def _in_role(self, role: Role) -> Command:
         command = self.device.command(role)
         if command is None:
@@ -102,6 +114,11 @@ class Mover:
         inside = all(low <= angle <= high for angle, (low, high) in zip(pose, ranges))
         if inside and "pose" not in self.device.restore_at_end:
             self.device.restore_at_end["pose"] = lambda: self.go(pose)
+
+
+def _pose(reply: ReceivedReply) -> Pose:
+    assert reply.message is not None, "a valid reply has a message"
+    return tuple(reply.message.result)
 
 
 def off_by(pose: Pose, wanted: Pose) -> list[str]:

@@ -38,7 +38,7 @@ def _to_poses(probe: Probe) -> None:
         request_change(probe, request_of(probe.command, pose, mover.speed))
         expect_moving(probe, mover, moving, True)
         mover.wait()
-        wrong = off_by(mover.angles(), pose)
+        wrong = mover.differences(pose)
         probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
         expect_moving(probe, mover, moving, False)
         _expect_reached(probe, pose, True)
@@ -54,7 +54,7 @@ def _to_angles(probe: Probe) -> None:
         request_change(probe, request_of(probe.command, at + 1, angle, mover.speed))
         mover.wait()
         expected = (*expected[:at], angle, *expected[at + 1 :])
-        wrong = off_by(mover.angles(), expected)
+        wrong = mover.differences(expected)
         call = f"{probe.command.name}(joint {at + 1}, {angle} degree)"
         probe.expect(ARRIVES, not wrong, f"{call}: {'; '.join(wrong)}")
 
