@@ -54,12 +54,15 @@ def test_late_reply_to_a_closed_client_is_not_used_by_the_next_one(
         assert arm.get_encoder(2) == 2
 
 
-def test_late_reply_to_one_program_is_not_printed_by_the_next_one(late_arm: SlowArm) -> None:
-    first, second = (
-        run_program("call", late_arm.url, "get_encoder", joint) for joint in ("1", "2")
-    )
+def test_late_reply_to_one_program_is_not_printed_by_the_next_one(folder: Path) -> None:
+    # So late that the next program has started by then.
+    arm = SlowArm({1: 0.95})
+    first = run_program("call", arm.url, "get_encoder", "1")
     assert "no reply" in first.stderr
+    assert len(list(folder.iterdir())) == 1, "the program leaves a note"
+    second = run_program("call", arm.url, "get_encoder", "2")
     assert second.stdout.strip() == "2", second
+    arm.close()
 
 
 def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(

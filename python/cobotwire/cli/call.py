@@ -52,8 +52,12 @@ def call(
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     package = editions.load(edition)
     arguments = parse(package.TABLE.command(name), args)
-    with open_arm(port, package.TABLE, baudrate, record) as transport:
-        result = getattr(package.CLIENT(transport, timeout=timeout), name)(**arguments)
+    with (
+        open_arm(port, package.TABLE, baudrate, record) as transport,
+        # A query that fails must not stop a motion that an earlier call began.
+        package.CLIENT(transport, timeout=timeout, on_error="leave") as arm,
+    ):
+        result = getattr(arm, name)(**arguments)
     if as_json:
         click.echo(json.dumps({"command": name, "result": as_json_value(result)}))
     elif result is not None:

@@ -57,10 +57,12 @@ def doctor(
     package = editions.load(edition)
     report, port_failed = Report(port, package.TABLE.edition), False
     try:
+        # Without retries, so that the report shows lost replies.
+        once = RetryPolicy(attempts=1)
         with open_arm(port, package.TABLE, baudrate, record) as transport:
-            # Without retries, so that the report shows lost replies.
-            arm: Client = package.CLIENT(transport, timeout=timeout, retry=RetryPolicy(attempts=1))
-            Doctor(arm, transport, codecs.load(package.TABLE), report).examine(count)
+            arm: Client = package.CLIENT(transport, timeout=timeout, retry=once, on_error="leave")
+            with arm:
+                Doctor(arm, transport, codecs.load(package.TABLE), report).examine(count)
     except LinkError as error:
         port_failed = True
         report.add_port_failure(error)

@@ -47,8 +47,11 @@ def monitor(
     package = editions.load(edition)
     table = package.TABLE
     try:
-        with open_arm(port, table, baudrate, record) as transport:
-            samples = Monitor(package.CLIENT(transport), codecs.load(table), rate).samples(count)
+        with (
+            open_arm(port, table, baudrate, record) as transport,
+            package.CLIENT(transport, on_error="leave") as arm,
+        ):
+            samples = Monitor(arm, codecs.load(table), rate).samples(count)
             if as_json or not sys.stdout.isatty():
                 for sample in samples:
                     print_line(_as_json(sample) if as_json else _line(sample))
