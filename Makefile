@@ -3,8 +3,8 @@ PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
 # The Python tests run in three lanes at once: two that compute, and one that mostly waits for ports.
-COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec targets typing)
-SIMULATING := $(addprefix tests/,conformance docs inspect peers simulator)
+COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec typing)
+SIMULATING := $(addprefix tests/,conformance docs inspect peers simulator targets/c targets/decoder)
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60

@@ -93,7 +93,7 @@ NARROW = [variant for variant in EVERY if _narrowed(variant)]
 def _with_new_numbers() -> Iterator[str]:
     """Yield the first variant for each kind of number: its scale, sign, order and bounds."""
     seen: set[Number] = set()
-    for variant in WIDE:
+    for variant in EVERY:
         numbers = {slot.number for slot in variant.slots}
         if not numbers <= seen:
             seen |= numbers
@@ -148,8 +148,8 @@ def test_raw_value_of_a_limited_field_survives_or_is_rejected(
     for slot in variant.slots:
         number = slot.number
         frame = bytearray(variant.frame)
-        legal = 0
-        for word in range(WORDS):
+        legal, step = 0, 1 if variant.name in FIRST else 97
+        for word in range(0, WORDS, step):
             frame[slot.position : slot.position + 2] = word.to_bytes(2, number.order)
             data = bytes(frame)
             if not number.minimum <= number.unpack(data, slot.position) <= number.maximum:
@@ -159,7 +159,9 @@ def test_raw_value_of_a_limited_field_survives_or_is_rejected(
             values = codec.decode(variant.direction, data, of=variant.command.name).values
             legal += 1
             assert codec.encode(variant.command.name, variant.direction, values) == data
-        assert legal == number.maximum - number.minimum + 1
+        assert legal > 0
+        if step == 1:
+            assert legal == number.maximum - number.minimum + 1
 
 
 @pytest.mark.parametrize("variant", EVERY, ids=str)
