@@ -256,4 +256,4 @@ def _same_frames(one: Table, other: Table) -> bool:
 
 
 def _version(table: Table) -> bool:
-    return any(command.role == "version" for command in table.commands)
+    return table.find_role("version") is not None

@@ -61,7 +61,7 @@ class Device:
 
     def command(self, role: Role) -> Command | None:
         """Return the first command in a role; None if the edition has none."""
-        return next((c for c in self.table.commands if c.role == role), None)
+        return self.table.find_role(role)
 
     def request(self, request: Request[Any]) -> Response:
         """Send a request and return what came; a query is repeated as often as the run allows."""

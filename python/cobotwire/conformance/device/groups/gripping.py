@@ -46,7 +46,7 @@ def _ends(probe: Probe, motion: Setting, position: Request[Any], speed: int) -> 
 
 def _moving(table: Table, command: Command) -> Command | None:
     """Return the query of the family that has the same field as the arm's own query."""
-    arm = next((c for c in table.commands if c.role == "moving"), None)
+    arm = table.find_role("moving")
     names = [field.name for field in arm.reply[0].fields] if arm else []
     for query in _queries(table, command):
         if query is not arm and [field.name for field in query.reply[0].fields] == names:
