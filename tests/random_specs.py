@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model import (
     Command,
     Edition,
@@ -25,7 +26,6 @@ from cobotwire_codegen.wire import build_frame
 
 # Scales with finite decimals as multiples, so that a vector can state them exactly.
 SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
-UNITS = ["degree", "millimetre", "percent", "volt"]
 
 
 @st.composite
@@ -96,7 +96,7 @@ def quantity(draw: st.DrawFn, wires: dict[str, Any]) -> dict[str, Any]:
         made["choices"] = draw(st.lists(steps, min_size=1, max_size=4, unique=True))
         return made
     scale = draw(st.sampled_from(SCALES))
-    made |= {"scale": scale, "unit": draw(st.sampled_from(UNITS))}
+    made |= {"scale": scale, "unit": draw(st.sampled_from(sorted(UNITS)))}
     if draw(st.booleans()):
         ends = sorted([draw(steps), draw(steps)])
         made["range"] = [decimal(end * Fraction(scale)) for end in ends]

@@ -15,7 +15,7 @@ from cobotwire_codegen.language.shapes import (
     Whole,
     Word,
 )
-from cobotwire_codegen.language.words import UNITS
+from cobotwire_codegen.language.units import UNITS
 
 _WIRE = Known("wire_name", "the name of a wire type")
 _QUANTITY = Known("quantity_name", "the name of a quantity")
@@ -47,7 +47,11 @@ class Quantity(Record):
     wire = required(_WIRE, "How the raw value is encoded.")
     doc = required(Text(), _DOC)
     scale = optional(Exact(), "The physical value of one raw step: 1/100, 0.01 or 3.")
-    unit = optional(Word(UNITS), "The unit of the physical value. Left out: none.", "")
+    unit = optional(
+        Word(UNITS, (f"{unit.plural} ({unit.symbol})" for unit in UNITS.values())),
+        "The unit of the physical value. Left out: none.",
+        "",
+    )
     range = optional(
         Range(), "The lowest and highest physical value. Left out: every raw value is legal."
     )

@@ -29,17 +29,6 @@ ROLES = {
     "error": "Reports why the arm did not move; 0 is no error.",
     "version": "Reports the version of the firmware.",
 }
-UNITS = (
-    "degree",
-    "degree_celsius",
-    "hertz",
-    "millimetre",
-    "milliampere",
-    "percent",
-    "step_per_second",
-    "tick",
-    "volt",
-)
 CONFIDENCE = ("high", "medium", "low")
 VERDICTS = ("consistent", "erratum", "label only", "text and byte disagree")
 REASONS = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from cobotwire_codegen import lower
+from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model import Enum, Field, Flag, Lines, Quantity, Type
 
 
@@ -50,17 +51,6 @@ def lines(spans: Lines) -> str:
     return f"line {text}" if one else f"lines {text}"
 
 
-UNITS = {
-    "degree": "degrees",
-    "degree_celsius": "degrees Celsius",
-    "millimetre": "millimetres",
-    "milliampere": "milliamperes",
-    "step_per_second": "steps per second",
-    "tick": "ticks",
-    "volt": "volts",
-}
-
-
 def units(unit: str) -> str:
     """Return a unit's plural, which follows a number."""
-    return UNITS.get(unit, unit)
+    return UNITS[unit].plural
