@@ -9,7 +9,18 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Literal
 
-from cobotwire_codegen.model import Command, Enum, Field, Flag, Frame, Quantity, Type, Value, Wire
+from cobotwire_codegen.model import (
+    Command,
+    Enum,
+    Field,
+    Flag,
+    Frame,
+    Quantity,
+    Type,
+    Value,
+    Variant,
+    Wire,
+)
 
 
 def build_frame(
@@ -23,17 +34,26 @@ def build_frame(
     Raises:
         ValueError: the message has no such variant, or a value cannot be encoded.
     """
+    _, data = encode_variant(command, direction, values)
+    return enclose(frame, command.id, data)
+
+
+def encode_variant(
+    command: Command, direction: Literal["request", "reply"], values: dict[str, object]
+) -> tuple[Variant, bytes]:
+    """Return the first variant that has these fields and allows their values, and its data bytes.
+
+    Raises:
+        ValueError: the message has no such variant, or a value cannot be encoded.
+    """
     problem = f"no {direction} of {command.name} has the fields {', '.join(values)}"
-    data = None
     for variant in command.variants(direction):
-        if data is None and [field.name for field in variant] == list(values):
+        if [field.name for field in variant] == list(values):
             try:
-                data = b"".join(_field(field, values) for field in variant)
+                return variant, b"".join(_field(field, values) for field in variant)
             except ValueError as error:
                 problem = str(error)
-    if data is None:
-        raise ValueError(problem)
-    return enclose(frame, command.id, data)
+    raise ValueError(problem)
 
 
 def enclose(frame: Frame, id: int, data: bytes) -> bytes:
@@ -63,9 +83,20 @@ def _field(field: Field, values: dict[str, object]) -> bytes:
     if field.selector:
         picked = str(values[field.selector])
         type = next((case for member, case in field.cases if member.name == picked), field.type)
-    if field.const is not None and value != field.const:
-        raise ValueError(f"{field.name} is always {field.const}")
+    if field.const is not None:
+        return _constant(type, field.name, field.const, value)
     return encode_value(type, field.name, value)
+
+
+def _constant(type: Type, name: str, const: int, value: object) -> bytes:
+    """Return the bytes of a constant; a vector states its value, or the number of a member."""
+    assert not isinstance(type, Value), "a value type has no constant"
+    written = [type.from_raw(const)]
+    if not isinstance(type, Quantity):
+        written.append(const)
+    if value not in written:
+        raise ValueError(f"{name} is always {written[0]}")
+    return _word(type.wire, Fraction(const), name)
 
 
 def encode_value(type: Type, name: str, value: object) -> bytes:

@@ -175,7 +175,7 @@ def _values_of(
     """Return a vector's values: of the captured frame, else the listed ones, else the smallest."""
     if frame:
         return read(edition, command, direction, frame)
-    values = {field.name: field.type.smallest for field in variant}
+    values = {field.name: field.smallest for field in variant}
     values.update(_values(listed) if listed and variant == command.variants(direction)[0] else {})
     return values
 

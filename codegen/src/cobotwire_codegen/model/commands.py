@@ -7,7 +7,7 @@ from typing import Literal
 
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model.facts import Change, Dispute, Lines
-from cobotwire_codegen.model.types import Member, Type
+from cobotwire_codegen.model.types import Member, Type, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,13 @@ class Field:
     const: int | None
     selector: str
     cases: tuple[tuple[Member, Type], ...]
+
+    @property
+    def smallest(self) -> object:
+        """The constant, or else the smallest legal value, as a vector writes it."""
+        if self.const is None or isinstance(self.type, Value):
+            return self.type.smallest
+        return self.type.from_raw(self.const)
 
 
 Variant = tuple[Field, ...]

@@ -8,6 +8,7 @@ from typing import Any
 
 from cobotwire_codegen.lower import table
 from cobotwire_codegen.model import Edition, Enum, Vector
+from cobotwire_codegen.wire import encode_variant
 
 
 def vectors_json(edition: Edition) -> str:
@@ -40,12 +41,16 @@ def plain(edition: Edition, vector: Vector, name: str, value: object) -> Any:
         return [plain(edition, vector, name, item) for item in value]
     if isinstance(value, Fraction):
         return float(value)
+    if vector.frame is None:
+        return value
     command = next(command for command in edition.commands if command.name == vector.command)
-    fields = (f for variant in command.variants(vector.direction) for f in variant)
-    type = next((field.type for field in fields if field.name == name), None)
-    if isinstance(type, Enum):
-        return next(member.value for member in type.members if member.name == value)
-    return value
+    variant, _ = encode_variant(command, vector.direction, dict(vector.values))
+    field = next(field for field in variant if field.name == name)
+    if not isinstance(field.type, Enum):
+        return value
+    if field.const is not None:
+        return field.const
+    return next(member.value for member in field.type.members if member.name == value)
 
 
 def _hex(data: bytes | None) -> str | None:
