@@ -59,12 +59,14 @@ def test_report_groups_findings_by_level() -> None:
     [
         (BREAKING, "major (before 1.0: minor)", 1),
         (("class: Axis", "class: Way"), "major (before 1.0: minor)", 1),
-        (("range: [0, 100]", "range: [0, 50]"), "minor (before 1.0: minor)", 0),
-        (("joints: 2", "joints: 3"), "minor (before 1.0: minor)", 0),
-        (("[2, 5, 35]", "[2, 5, 35, 36]"), "minor (before 1.0: minor)", 0),
-        (("scale: 1/100", "scale: 1/10"), "minor (before 1.0: minor)", 0),
-        (("safety: query", "safety: motion"), "minor (before 1.0: minor)", 0),
-        (("echo: required", "echo: optional"), "minor (before 1.0: patch)", 0),
+        (("range: [0, 100]", "range: [0, 50]"), "minor (before 1.0: minor)", 1),
+        (("joints: 2", "joints: 3"), "minor (before 1.0: minor)", 1),
+        (("[2, 5, 35]", "[2, 5, 35, 36]"), "minor (before 1.0: minor)", 1),
+        (("scale: 1/100", "scale: 1/10"), "major (before 1.0: minor)", 1),
+        (("unit: degree", "unit: volt"), "major (before 1.0: minor)", 1),
+        (("deadline_ms: 500", "deadline_ms: 900"), "minor (before 1.0: minor)", 1),
+        (("safety: query", "safety: motion"), "minor (before 1.0: minor)", 1),
+        (("echo: required", "echo: optional"), "minor (before 1.0: minor)", 1),
         (("doc: A frame.", "doc: Frame."), "patch (before 1.0: patch)", 0),
     ],
 )
@@ -76,12 +78,29 @@ def test_version_bump_and_exit_code_follow_from_the_findings(
     assert result.exit_code == code
 
 
+@pytest.mark.parametrize(
+    ("fail_on", "codes"),
+    [
+        ("wire", (1, 0, 0)),
+        ("api", (1, 1, 0)),
+        ("behaviour", (1, 1, 1)),
+        ("none", (0, 0, 0)),
+    ],
+)
+def test_fail_on_names_the_least_severe_level_that_fails(
+    fail_on: str, codes: tuple[int, int, int]
+) -> None:
+    swaps = BREAKING, ("class: Axis", "class: Way"), ("safety: query", "safety: motion")
+    found = tuple(run(swap, words=("--fail-on", fail_on)).exit_code for swap in swaps)
+    assert found == codes
+
+
 def test_diff_prints_json() -> None:
     result = run(BREAKING, words=("--format", "json"))
     assert result.exit_code == 1
     assert json.loads(result.output) == {
         "format": "cobotwire-diff",
-        "version": 1,
+        "version": 2,
         "old": "old.yaml",
         "new": "new.yaml",
         "bump": "major",
@@ -188,7 +207,7 @@ def test_diff_lists_rules_and_help_names_the_exit_codes() -> None:
     listed = CliRunner().invoke(main, ["diff", "--rules"])
     assert listed.exit_code == 0
     assert "  id-changed: the id was OLD, is NEW: the request reaches another" in listed.output
-    assert "Exit codes: 0 nothing breaks;" in CliRunner().invoke(main, ["diff", "--help"]).output
+    assert "Exit codes: 0 no finding fails;" in CliRunner().invoke(main, ["diff", "--help"]).output
 
 
 def test_diff_uses_colour_only_on_terminals() -> None:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Literal
 
 import click
 
 from cobotwire_codegen.cli.shared import report_problems
-from cobotwire_codegen.diff import LEVELS, RULES, Finding, breaking, diff_all
+from cobotwire_codegen.diff import LEVELS, RULES, Finding, diff_all, fails
 from cobotwire_codegen.diff import diff as diff_two
 from cobotwire_codegen.diff import report as reports
+from cobotwire_codegen.diff.rules import Level
 from cobotwire_codegen.diff.sources import Source, SourceError, paired, read
 from cobotwire_codegen.diff.waivers import Judged, judge, read_waivers
 
@@ -18,6 +20,7 @@ _COLOURS = {
     "wire": "red",
     "api": "red",
     "behaviour": "yellow",
+    "peer": "yellow",
     "addition": "green",
     "docs": "blue",
     "waived": "cyan",
@@ -46,6 +49,13 @@ def _show_rules(ctx: click.Context, param: click.Parameter, wanted: bool) -> Non
     help="A YAML list of {rule, where, reason}: findings that are accepted.",
 )
 @click.option(
+    "--fail-on",
+    type=click.Choice((*LEVELS, "none")),
+    default="peer",
+    show_default=True,
+    help="The least severe level that makes the exit code 1.",
+)
+@click.option(
     "--format",
     "variant",
     type=click.Choice(("text", "json", "markdown")),
@@ -61,7 +71,9 @@ def _show_rules(ctx: click.Context, param: click.Parameter, wanted: bool) -> Non
     callback=_show_rules,
     help="List every rule with its level, and exit.",
 )
-def diff(old: str, new: str, waivers: str | None, variant: str) -> None:
+def diff(
+    old: str, new: str, waivers: str | None, fail_on: Level | Literal["none"], variant: str
+) -> None:
     """Report what changed from OLD to NEW, how severe it is, and the version bump that follows.
 
     OLD and NEW are each an edition file, a folder that contains spec/, or a git revision of the
@@ -69,13 +81,17 @@ def diff(old: str, new: str, waivers: str | None, variant: str) -> None:
     or revisions, editions of the same name are compared. A single file is compared with the edition
     of the same name. The specs are not checked: `cobotwire-gen check` does that.
 
-    Findings that break the wire or the API require a major version; changes of behaviour and
-    additions require a minor version; changes of docs require a patch. Before 1.0, where SemVer
-    promises nothing, breaking and behaviour findings raise the minor number, and all others the
-    patch number.
+    Findings that break the wire or the API require a major version; changes of behaviour, what
+    peers of another version do not know, and additions require a minor version; changes of docs
+    require a patch. Before 1.0, where SemVer promises nothing, additions and docs raise the patch
+    number, and all others the minor number.
 
-    Exit codes: 0 nothing breaks; 1 a finding breaks the wire or the API and is not waived; 2 the
-    command line, the spec or the waivers are wrong.
+    By default the exit code is 1 unless every finding is an addition or concerns docs, as a
+    release requires. `--fail-on wire` or `--fail-on api` accepts changes of behaviour, such as
+    another safety class, deadline or range; `--rules` lists the levels from the most severe on.
+
+    Exit codes: 0 no finding fails; 1 a finding has the level of --fail-on or a more severe one,
+    and is not waived; 2 the command line, the spec or the waivers are wrong.
     """
     with report_problems("json" if variant == "json" else "text"):
         accepted = read_waivers(Path(waivers)) if waivers else ()
@@ -85,7 +101,7 @@ def diff(old: str, new: str, waivers: str | None, variant: str) -> None:
             raise click.UsageError(str(error)) from error
     judged = judge(findings, accepted)
     _print(judged, old, new, variant)
-    sys.exit(1 if breaking(judged.findings) else 0)
+    sys.exit(1 if fails(judged.findings, None if fail_on == "none" else fail_on) else 0)
 
 
 def _compare(old: Source, new: Source) -> tuple[Finding, ...]:

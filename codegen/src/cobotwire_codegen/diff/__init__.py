@@ -5,16 +5,16 @@ version bump.
 """
 
 from cobotwire_codegen.diff.editions import diff, diff_all
-from cobotwire_codegen.diff.finding import Finding, breaking, bump, bump_before_1_0
+from cobotwire_codegen.diff.finding import Finding, bump, bump_before_1_0, fails
 from cobotwire_codegen.diff.rules import LEVELS, RULES
 
 __all__ = [
     "LEVELS",
     "RULES",
     "Finding",
-    "breaking",
     "bump",
     "bump_before_1_0",
     "diff",
     "diff_all",
+    "fails",
 ]

@@ -6,15 +6,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from cobotwire_codegen.diff.rules import RULES, Level
+from cobotwire_codegen.diff.rules import LEVELS, RULES, Level
 
 Bump = Literal["major", "minor", "patch", "none"]
 
-BREAKING: tuple[Level, ...] = ("wire", "api")
 _BUMPS: dict[Level, Bump] = {
     "wire": "major",
     "api": "major",
     "behaviour": "minor",
+    "peer": "minor",
     "addition": "minor",
     "docs": "patch",
 }
@@ -26,6 +26,7 @@ _BUMPS_BEFORE_1_0: dict[Level, Bump] = {
     "wire": "minor",
     "api": "minor",
     "behaviour": "minor",
+    "peer": "minor",
     "addition": "patch",
     "docs": "patch",
 }
@@ -51,9 +52,16 @@ def finding(rule: str, where: str, old: object = "", new: object = "") -> Findin
     return Finding(rule, entry.level, where, before, after, message)
 
 
-def breaking(findings: Iterable[Finding]) -> bool:
-    """Return whether a finding breaks an old peer or an old caller."""
-    return any(found.level in BREAKING for found in findings)
+def fails(findings: Iterable[Finding], fail_on: Level | None) -> bool:
+    """Return whether a finding has the level ``fail_on`` or a more severe one.
+
+    Args:
+        findings: the findings that are not waived.
+        fail_on: the least severe level that fails; None if nothing fails.
+    """
+    levels = list(LEVELS)
+    failing = levels[: levels.index(fail_on) + 1] if fail_on else []
+    return any(found.level in failing for found in findings)
 
 
 def bump(findings: Iterable[Finding]) -> Bump:

@@ -10,11 +10,12 @@ from cobotwire_codegen.diff.finding import Finding, bump, bump_before_1_0
 from cobotwire_codegen.diff.rules import LEVELS, Level
 from cobotwire_codegen.diff.waivers import Judged, Waiver
 
-VERSION = 1
+VERSION = 2
 _TITLES: dict[Level, str] = {
     "wire": "Wire-breaking",
     "api": "API-breaking",
     "behaviour": "Behaviour",
+    "peer": "Peers of other versions",
     "addition": "Additions",
     "docs": "Docs",
 }

@@ -9,13 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Level = Literal["wire", "api", "behaviour", "addition", "docs"]
+Level = Literal["wire", "api", "behaviour", "peer", "addition", "docs"]
 
 # From the most severe to the least, each with its meaning.
 LEVELS: dict[Level, str] = {
     "wire": "breaks the protocol: old and new peers misunderstand each other",
     "api": "breaks callers of the generated Python",
     "behaviour": "the same requests and bytes do or mean something else",
+    "peer": "peers of one version agree; one of another version may get what it does not know",
     "addition": "compatible: what worked keeps working",
     "docs": "words and evidence",
 }
@@ -46,17 +47,18 @@ _WIRE = {
     "id-changed": "the id was {old}, is {new}: the request reaches another command, or none",
     "items-changed": "the parts were {old}, are {new}: numbers are misread or rejected",
     "reply-added": "there was no reply, now there is {new}: old peers never send it",
-    "reply-variant-removed": "the reply ({old}) is now rejected: old peers send it",
     "reply-variant-changed": "the reply was ({old}), is ({new}): misread or rejected",
     "reply-removed": "the reply {old} was removed: replies of old peers are rejected",
     "request-variant-removed": "the request ({old}) is now rejected: old peers send it",
     "request-variant-changed": "the request was ({old}), is ({new}): misread or rejected",
     "result-added": "the reply now carries {new}: replies of old peers are rejected",
     "result-removed": "the reply no longer carries {old}: replies of old peers are rejected",
+    "scale-changed": "the scale was {old}, is {new}: the same bytes are another value",
     "selector-changed": "the selector was {old}, is {new}: numbers are misread",
     "sign-rule-changed": "raw values were {old}, are {new}: some are misread",
     "text-changed": "the text was `{old}`, is `{new}`: it is misread",
     "type-bytes-changed": "was {old} on the wire, is {new}: the frame is misread or rejected",
+    "unit-changed": "the unit was {old}, is {new}: the same number means something else",
     "width-changed": "bytes were {old}, are {new}: the frame is rejected",
 }
 _API = {
@@ -94,12 +96,15 @@ _BEHAVIOUR = {
     "range-widened": "the range was {old}, is {new}: an old peer rejects more values",
     "role-changed": "the role was {old}, is {new}: waits and limits apply to other commands",
     "safety-changed": "was {old}, is {new}: retries and conformance runs treat it differently",
-    "scale-changed": "the scale was {old}, is {new}: the same bytes are another value",
     "selector-added": "its type now depends on {new}; the effects are listed separately",
     "selector-removed": "its type depended on {old}; the effects are listed separately",
     "shared-id-order-changed": "frames of this id had the first name of {old}; now that of {new}",
     "silence-changed": "the text ended after {old} ms of silence, ends after {new} ms",
-    "unit-changed": "the unit was {old}, is {new}: the same number means something else",
+}
+_PEER = {
+    "enum-member-added": "the member {new} was added: an old peer does not know it",
+    "reply-variant-added": "the reply may also be ({new}): an old client rejects it",
+    "reply-variant-removed": "the reply ({old}) is now rejected: an old device sends it",
 }
 _ADDITION = {
     "address-added": "the address {new} was added",
@@ -110,8 +115,6 @@ _ADDITION = {
     "command-added": "the command {new} was added",
     "echo-loosened": "the echo was {old}, is {new}: replies without it are accepted as well",
     "edition-added": "the edition {new} was added",
-    "enum-member-added": "the member {new} was added: an old peer does not know it",
-    "reply-variant-added": "the reply may also be ({new})",
     "request-variant-added": "the request may also be ({new})",
     "result-now-required": "could be missing, is always present",
 }
@@ -149,6 +152,7 @@ _TABLES: dict[Level, dict[str, str]] = {
     "wire": _WIRE,
     "api": _API,
     "behaviour": _BEHAVIOUR,
+    "peer": _PEER,
     "addition": _ADDITION,
     "docs": _DOCS,
 }
