@@ -5,25 +5,20 @@ from __future__ import annotations
 import errno
 import logging
 import os
-import select
-import socket
 import threading
 import time
 from abc import ABC, abstractmethod
-from contextlib import suppress
 from typing import NoReturn
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
+from cobotwire.transport.waiter import Waiter
 
 READ_SIZE = 4096
 # A write may take this long, and twice the time besides that the line needs for the bytes.
 WRITE_SECONDS = 1.0
 # Start bit, eight data bits, stop bit.
 BITS_A_BYTE = 10
-# select() fails from this number of open files on. Below, it is preferred to poll(), which waits
-# for whole milliseconds.
-SELECTABLE = 1024
 
 _log = logging.getLogger("cobotwire.transport")
 
@@ -128,7 +123,7 @@ class DescriptorTransport(ABC):
                 self._fail("cannot be written", error)
 
     def fileno(self) -> int | None:
-        """Return the descriptor that select() can wait for."""
+        """Return the descriptor that an event loop can wait for."""
         self._must_be_open("cannot be waited for")
         return self._descriptor
 
@@ -187,50 +182,6 @@ class DescriptorTransport(ABC):
 
     def _send(self, data: bytes) -> int:
         return os.write(self._descriptor, data)
-
-
-class Waiter:
-    """Waits until a descriptor can be read or written, the time is over, or :meth:`wake`."""
-
-    def __init__(self) -> None:
-        # A pair of sockets, not a pipe: every platform can wait for these.
-        self._wake_in, self._wake_out = socket.socketpair()
-        self._wake_out.setblocking(False)
-
-    def wait(self, descriptor: int, timeout: float, *, writing: bool = False) -> bool:
-        """Return whether it is ready, or gone: reading or writing it tells that.
-
-        A timeout of zero or less does not wait. After :meth:`wake` every wait ends at once; its
-        result means nothing then.
-        """
-        timeout = max(0.0, timeout)
-        if descriptor < SELECTABLE or not hasattr(select, "poll"):
-            incoming: list[int | socket.socket] = [self._wake_in]
-            outgoing: list[int] = []
-            if writing:
-                outgoing.append(descriptor)
-            else:
-                incoming.append(descriptor)
-            read, write, _ = select.select(incoming, outgoing, [], timeout)
-            return bool(read or write)
-        poll = select.poll()
-        poll.register(descriptor, select.POLLOUT if writing else select.POLLIN)
-        poll.register(self._wake_in, select.POLLIN)
-        return bool(poll.poll(timeout * 1000))
-
-    def wake(self) -> None:
-        """End the wait, and every later one."""
-        with suppress(OSError):
-            self._wake_out.send(b"x")
-
-    def close(self) -> None:
-        """Close the pair. Closing twice is harmless."""
-        self._wake_in.close()
-        self._wake_out.close()
-
-    def __del__(self) -> None:
-        # A transport that was not closed warns for itself; the pair is not the user's concern.
-        self.close()
 
 
 def reason_of(error: BaseException | None) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import select
 import stat
 import sys
 import time
@@ -11,6 +10,7 @@ from collections import deque
 from collections.abc import Callable
 
 from cobotwire.cli.shared.output import discard_output, print_line
+from cobotwire.transport.waiter import is_ready
 
 # Bytes that are kept for a reader that is slow: some thousand lines.
 KEPT = 1 << 20
@@ -72,7 +72,7 @@ class LineOutput:
 
     def _can_write(self, seconds: float) -> bool:
         assert self._pipe is not None, "lines wait only for a pipe"
-        return bool(select.select([], [self._pipe], [], seconds)[1])
+        return is_ready(self._pipe, seconds, writing=True)
 
     def _write(self) -> None:
         assert self._pipe is not None, "lines wait only for a pipe"
@@ -90,7 +90,7 @@ class LineOutput:
 
 
 def _pipe() -> int | None:
-    """Return the descriptor of standard output if it is a pipe or socket that select() takes."""
+    """Return the descriptor of standard output if it is a pipe or socket that can be waited for."""
     try:
         descriptor = sys.stdout.fileno()
         mode = os.fstat(descriptor).st_mode

@@ -19,11 +19,26 @@ HARDWARE = "hwgrep://"
 
 
 class _QuietPort(serial.Serial):
-    """Lowers DTR and RTS in one step.
+    """Lowers DTR and RTS in one step, and has one descriptor.
 
     Linux raises both when a port is opened. Lowering DTR first passes through DTR low and RTS high:
     with the usual two transistors that resets an ESP32.
     """
+
+    def open(self) -> None:
+        super().open()
+        # Only pyserial's own read() and write() need these two pipes.
+        for name in ("pipe_abort_read", "pipe_abort_write"):
+            for end in ("r", "w"):
+                os.close(getattr(self, f"{name}_{end}"))
+                setattr(self, f"{name}_{end}", None)
+
+    def close(self) -> None:
+        if self.is_open:
+            self.is_open = False
+            descriptor, self.fd = self.fd, None
+            if descriptor is not None:
+                os.close(descriptor)
 
     def _update_dtr_state(self) -> None:
         # Opening calls this for DTR, then the same for RTS, which changes nothing any more.
