@@ -38,6 +38,11 @@ class Number:
     maximum: int
     unit: str
 
+    def alike(self, other: Number) -> bool:
+        """Return whether the same bytes hold the same raw value in both numbers."""
+        mine = self.width, self.order, self.signed_at
+        return mine == (other.width, other.order, other.signed_at)
+
     @property
     def scaled(self) -> bool:
         """Whether the physical value is a float (True) or the raw value itself (False)."""
@@ -148,6 +153,14 @@ class Field:
             return raw in self.choices
         return number.minimum <= raw <= number.maximum
 
+    def meets(self, number: Number, other: Field, other_number: Number) -> bool:
+        """Return whether a raw value is legal in a number of this field and in one of another."""
+        for one, two, end in ((self, other, other_number), (other, self, number)):
+            if one.choices:
+                return any(two.allows(end, raw) for raw in one.choices)
+        lowest = max(number.minimum, other_number.minimum)
+        return lowest <= min(number.maximum, other_number.maximum)
+
 
 @dataclass(frozen=True, slots=True)
 class Variant:
@@ -178,6 +191,31 @@ class Variant:
     def raw_case(self, field: Field, rows: RawRows) -> Case | None:
         """Return the case of a field in a message with these raw values; None if none applies."""
         return field.case(None if field.selector < 0 else rows[field.selector][0])
+
+    def excludes(self, other: Variant) -> bool:
+        """Return whether no data bytes are legal in both variants.
+
+        That is known if their sizes differ, or if a number of each, at the same place, have no raw
+        value in common, such as two constants.
+        """
+        if self.size != other.size:
+            return True
+        there = other.places()
+        return any(
+            number.alike(there[place][1]) and not field.meets(number, *there[place])
+            for place, (field, number) in self.places().items()
+            if place in there
+        )
+
+    def places(self) -> dict[int, tuple[Field, Number]]:
+        """Return the fields and numbers that no selector decides, by their offset."""
+        found: dict[int, tuple[Field, Number]] = {}
+        for index, field in enumerate(self.fields):
+            at = self.start(index)
+            for number in field.cases[0].numbers if field.selector < 0 else ():
+                found[at] = field, number
+                at += number.width
+        return found
 
     def start(self, index: int) -> int:
         """Return the offset of the field at ``index`` in the data bytes."""

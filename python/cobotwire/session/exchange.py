@@ -45,7 +45,7 @@ from cobotwire.session.events import (
     UnexpectedFrame,
 )
 from cobotwire.session.leftover import LateFrame, Leftover
-from cobotwire.session.matching import repeats_arguments
+from cobotwire.session.matching import repeats_arguments, replies_elsewhere
 from cobotwire.session.outstanding import OutstandingReplies, late_replies
 from cobotwire.session.pending import Pending, PendingRequest
 from cobotwire.session.policy import RetryPolicy
@@ -341,6 +341,8 @@ class Exchange:
         try:
             message = frame.decode("reply", of=request.command.name)
         except ProtocolError as error:
+            if replies_elsewhere(frame, request.command, self._codec.table):
+                return self._match_other(frame, now, is_copy)
             return self._reject(waiting, frame, is_copy, error)
         if is_copy:
             return self._weigh_copy(waiting, frame, message)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cobotwire.codec.interface import DecodedMessage, Frame
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Command, Table, Variant
 from cobotwire.session.request import EncodedRequest
 
 
@@ -28,12 +29,42 @@ def can_reply_to(frame: Frame, request: EncodedRequest) -> bool:
     return repeats_arguments(message, request)
 
 
+def replies_elsewhere(frame: Frame, command: Command, table: Table) -> bool:
+    """Return whether a frame that is no legal reply of a command replies to one that shares its id.
+
+    A constant in each reply tells them apart, for instance the number of the register that a device
+    behind the arm reports. The rest of such a reply may be illegal.
+    """
+    data = table.frame.data(frame.data)
+    others = [c for c in table.commands if c.id == frame.command and c is not command and c.reply]
+    return bool(others) and not any(_has_constants(v, data) for v in command.reply)
+
+
+def _has_constants(variant: Variant, data: bytes) -> bool:
+    """Return whether data bytes can be this variant, as far as its constants show."""
+    return variant.size == len(data) and all(
+        field.allows(number, number.unpack(data, at))
+        for at, (field, number) in variant.places().items()
+        if len(field.choices) == 1
+    )
+
+
+def _exclusive(one: Command, other: Command) -> bool:
+    """Return whether no frame is a legal reply to both commands."""
+    if not one.reply or not other.reply:
+        # A text has no constants.
+        return False
+    return all(variant.excludes(known) for variant in one.reply for known in other.reply)
+
+
 def replies_differ(one: EncodedRequest, other: EncodedRequest) -> bool:
     """Return whether no reply to one request can be mistaken for a reply to the other."""
     command = other.command
     if one.command.id != command.id:
         return True
-    if one.command.name != command.name or not command.reply:
+    if one.command.name != command.name:
+        return _exclusive(one.command, command)
+    if not command.reply:
         return False
     names = {
         name

@@ -63,7 +63,8 @@ class RequestEncoder:
             sent_text = text.encode(command.request_text, text_values or {})
             return EncodedRequest(command, frame, sent_text, {})
         # Decoding our own frame gives the arguments as a reply would repeat them.
-        arguments = self._codec.decode("request", frame).fields if can_repeat else {}
+        message = self._codec.decode("request", frame, of=name) if can_repeat else None
+        arguments = message.fields if message is not None else {}
         request = EncodedRequest(command, frame, b"", arguments)
         if not values:
             self._known[name] = request

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from cobotwire_codegen.check import commands, evidence, names, read_back, reserved, roles, types
+from cobotwire_codegen.check import (
+    commands,
+    evidence,
+    names,
+    read_back,
+    reserved,
+    roles,
+    types,
+    variants,
+)
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.model import Edition
 
@@ -15,6 +24,7 @@ RULES: tuple[Rule, ...] = (
     *reserved.RULES,
     *types.RULES,
     *commands.RULES,
+    *variants.RULES,
     *read_back.RULES,
     *roles.RULES,
     *evidence.RULES,

@@ -1,4 +1,4 @@
-"""Rules for commands: their messages fit the frame, and decoders can distinguish them."""
+"""Rules for commands: their messages fit the frame, and their ids, aliases and replies agree."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Literal
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.errors import Problem, nearest
-from cobotwire_codegen.model import Command, Edition, Field, Variant
+from cobotwire_codegen.model import Command, Edition, Field
 
 _DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
 
@@ -33,53 +33,6 @@ def payload_fits(edition: Edition) -> Iterator[Problem]:
                         f"carries {edition.frame.maximum_data}"
                     )
                     yield Problem(command.place, "payload-too-long", message)
-
-
-def variants_apart(edition: Edition) -> Iterator[Problem]:
-    """Report messages of one id, direction and length that a decoder cannot distinguish."""
-    for direction in _DIRECTIONS:
-        seen: dict[tuple[int, int], list[tuple[Command, Variant]]] = {}
-        for command in edition.commands:
-            for variant in command.variants(direction):
-                length = sum(field.type.size for field in variant)
-                others = seen.setdefault((command.id, length), [])
-                for other, known in others:
-                    if not _apart(command, variant, other, known, direction):
-                        message = (
-                            f"the {direction} of {command.name} has the id {command.id:#04x} and "
-                            f"{length} data bytes, like {other.name} at {other.place}"
-                        )
-                        yield Problem(command.place, "ambiguous-variant", message)
-                others.append((command, variant))
-
-
-def _apart(
-    command: Command, variant: Variant, other: Command, known: Variant, direction: str
-) -> bool:
-    """Return whether a decoder can distinguish two messages, or need not distinguish them."""
-    if command is other:
-        return False
-    if other.name == command.alias:
-        return True
-    # Replies with the same numbers and the same rules decode to the same values for both requests.
-    if direction == "reply":
-        return [_rule(field) for field in variant] == [_rule(field) for field in known]
-    constants = [(a.const, b) for a, b in zip(variant, known)] + [
-        (b.const, a) for a, b in zip(variant, known)
-    ]
-    return any(const is not None and _excludes(field, const) for const, field in constants)
-
-
-def _rule(field: Field) -> object:
-    return lower.numbers(field.type), field.selector
-
-
-def _excludes(field: Field, value: int) -> bool:
-    if field.const is not None:
-        return field.const != value
-    [number] = lower.numbers(field.type)
-    inside: bool = number["minimum"] <= value <= number["maximum"]
-    return not inside or value not in (lower.choices(field.type) or (value,))
 
 
 def ids_apart(edition: Edition) -> Iterator[Problem]:
@@ -133,6 +86,10 @@ def _wire(command: Command) -> object:
     return command.id, rules, command.safety
 
 
+def _rule(field: Field) -> object:
+    return lower.numbers(field.type), field.selector
+
+
 def cases_alike(edition: Edition) -> Iterator[Problem]:
     """Report fields with cases of different sizes."""
     for command in edition.commands:
@@ -180,7 +137,6 @@ def queries_not_acked(edition: Edition) -> Iterator[Problem]:
 RULES = (
     ids_fit,
     payload_fits,
-    variants_apart,
     ids_apart,
     shared_ids_exist,
     aliases_match,

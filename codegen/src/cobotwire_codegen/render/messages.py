@@ -81,7 +81,7 @@ def _reply(command: Command) -> MessageClass:
         keywords.append(f"text={_row(map(_quoted, names))}")
     elif len(found) > 1:
         keywords.append(f"result={result_class(command)}")
-    wire = [_quoted(field.name) for field in max(command.replies, key=len, default=())]
+    wire = [_part(field) for field in max(command.replies, key=len, default=())]
     if wire != [_quoted(parameter.name) for parameter in (*found, *others)]:
         keywords.append(f"wire={_row(wire)}")
     keywords += _radians(every)

@@ -41,9 +41,7 @@ class Parameter:
 
 def parameters(command: Command) -> list[Parameter]:
     """Return the arguments of a command: first those that every variant of the request has."""
-    found = _by_name(command.requests)
-    given = [p for p in found if all(field.const is None for field in p.fields)]
-    return sorted(given, key=lambda parameter: parameter.optional)
+    return sorted(_by_name(command.requests), key=lambda parameter: parameter.optional)
 
 
 def results(command: Command) -> list[Parameter]:
@@ -55,18 +53,21 @@ def results(command: Command) -> list[Parameter]:
 
 
 def reply_parameters(command: Command) -> list[Parameter]:
-    """Return every field of the reply, by name."""
+    """Return every field of the reply that is not a constant, by name."""
     return _by_name(command.replies)
 
 
 def _by_name(variants: tuple[Variant, ...]) -> list[Parameter]:
-    longest_first = sorted(variants, key=len, reverse=True)
-    names = dict.fromkeys(field.name for variant in longest_first for field in variant)
-    found = []
-    for name in names:
-        fields = tuple(field for variant in variants for field in variant if field.name == name)
-        found.append(Parameter(name, fields, len(fields) < len(variants)))
-    return found
+    """Return the fields of all variants by name, those of the longest variant first."""
+    found: dict[str, list[Field]] = {}
+    for variant in sorted(variants, key=len, reverse=True):
+        for field in variant:
+            if field.const is None:
+                found.setdefault(field.name, []).append(field)
+    return [
+        Parameter(name, tuple(fields), len(fields) < len(variants))
+        for name, fields in found.items()
+    ]
 
 
 def _radians(type: Type) -> bool:

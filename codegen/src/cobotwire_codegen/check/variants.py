@@ -1,0 +1,78 @@
+"""Rules for variants: decoders can distinguish the messages of one id, direction and length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Literal
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.errors import Problem
+from cobotwire_codegen.model import Command, Edition, Field, Value, Variant
+
+_DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
+
+
+def variants_apart(edition: Edition) -> Iterator[Problem]:
+    """Report messages of one id, direction and length that a decoder cannot distinguish."""
+    for direction in _DIRECTIONS:
+        seen: dict[tuple[int, int], list[tuple[Command, Variant]]] = {}
+        for command in edition.commands:
+            for variant in command.variants(direction):
+                length = sum(field.type.size for field in variant)
+                others = seen.setdefault((command.id, length), [])
+                for other, known in others:
+                    if not _apart(command, variant, other, known, direction):
+                        message = (
+                            f"the {direction} of {command.name} has the id {command.id:#04x} and "
+                            f"{length} data bytes, like {other.name} at {other.place}"
+                        )
+                        yield Problem(command.place, "ambiguous-variant", message)
+                others.append((command, variant))
+
+
+def _apart(
+    command: Command, variant: Variant, other: Command, known: Variant, direction: str
+) -> bool:
+    """Return whether a decoder can distinguish two messages, or need not distinguish them."""
+    if command is not other:
+        if other.name == command.alias:
+            return True
+        # Replies with the same numbers and rules decode to the same values for both requests.
+        if direction == "reply" and _rules(variant) == _rules(known):
+            return True
+    here, there = _places(variant), _places(known)
+    return any(_excluded(field, there[place]) for place, field in here.items() if place in there)
+
+
+def _rules(variant: Variant) -> object:
+    return [(lower.numbers(field.type), field.selector, field.const) for field in variant]
+
+
+def _places(variant: Variant) -> dict[int, Field]:
+    """Return the fields of one number that no selector decides, by their offset."""
+    found: dict[int, Field] = {}
+    at = 0
+    for field in variant:
+        if not field.selector and not isinstance(field.type, Value):
+            found[at] = field
+        at += field.type.size
+    return found
+
+
+def _excluded(one: Field, other: Field) -> bool:
+    """Return whether one of two fields at the same place has a constant that the other excludes."""
+    [a], [b] = lower.numbers(one.type), lower.numbers(other.type)
+    if any(a[key] != b[key] for key in ("width", "order", "signed_at")):
+        return False
+    pairs = ((one.const, other, b), (other.const, one, a))
+    return any(
+        const is not None and not _allows(field, number, const) for const, field, number in pairs
+    )
+
+
+def _allows(field: Field, number: dict[str, Any], raw: int) -> bool:
+    choices = lower.field_choices(field)
+    return raw in choices if choices else number["minimum"] <= raw <= number["maximum"]
+
+
+RULES = (variants_apart,)
