@@ -8,6 +8,7 @@ import pickle
 import pytest
 
 from cobotwire.protocol.errors import (
+    ArmNotReady,
     CaptureError,
     CobotwireError,
     EditionUnknown,
@@ -26,6 +27,7 @@ ERRORS = [
     ReplyTimeout("get_angles", 0.5, ("noise",), 3, "get_angles()"),
     MotionTimeout((1.0, 2.0), 3.0, True),
     EditionUnknown("/dev/ttyACM0", ("is_power_on: no reply",)),
+    ArmNotReady("send_angles", False, ("the arm has no power",)),
     CaptureError("a.pcapng", 12, "it is cut off"),
     ScenarioError(["a.yaml:1:2: there is no fault losst", "a.yaml:2:1: nothing"]),
 ]

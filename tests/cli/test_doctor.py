@@ -20,10 +20,19 @@ from scripted_peer import ScriptedPeer, ScriptedTcpPeer, Step
 
 run = partial(run_program, "--edition", "mycobot", "doctor")
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
+RUNNING = bytes.fromhex("FE FE 03 27 00 FA")
 STILL = bytes.fromhex("FE FE 03 2B 00 FA")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 COORDS = bytes.fromhex("FE FE 0E 23 01 BC FD A0 10 0D DC 66 FF 54 DE 21 FA")
-HEALTHY: list[list[Step]] = [[POWERED], [STILL], [ANGLES], [COORDS], [ANGLES], [ANGLES]]
+HEALTHY: list[list[Step]] = [
+    [POWERED],
+    [RUNNING],
+    [STILL],
+    [ANGLES],
+    [COORDS],
+    [ANGLES],
+    [ANGLES],
+]
 SPEED = bytes.fromhex("FE FE 03 40 32 FA")
 PANIC = (
     b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was unhandled.\r\n"
@@ -45,7 +54,7 @@ def kinds(report: dict[str, Any]) -> list[str]:
 
 def with_noise(noise: bytes) -> list[list[Step]]:
     """Return the scripts of a healthy arm with noise before one reply."""
-    return [*HEALTHY[:2], [noise, *HEALTHY[2]], *HEALTHY[3:]]
+    return [*HEALTHY[:3], [noise, *HEALTHY[3]], *HEALTHY[4:]]
 
 
 def test_doctor_of_a_healthy_arm_sends_only_queries() -> None:
@@ -53,21 +62,12 @@ def test_doctor_of_a_healthy_arm_sends_only_queries() -> None:
         result = run(peer.url, "--count", "2")
         requests = peer.received
     assert (result.returncode, result.stderr) == (0, "")
-    assert "6 replies to 6 requests" in result.stdout
+    assert "7 replies to 7 requests" in result.stdout
     assert "round trip" in result.stdout
     assert result.stdout.endswith("healthy\n")
     sent = {requests[place + 3] for place in range(0, len(requests), 5)}
     by_id = {command.id: command.safety for command in TABLE.commands if command.id in sent}
     assert set(by_id.values()) == {"query"}
-
-
-def test_doctor_of_an_arm_without_power_reports_it_but_exits_with_0(
-    server: PtyServer, simulated: SimulatedArm
-) -> None:
-    result = run(server.url)
-    assert result.returncode == 0
-    assert "no-power: the arm is switched off" in result.stdout
-    assert not simulated.state.powered
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_doctor_diagnoses_noise_and_gives_advice(noise: bytes, kind: str, diagno
     assert code == 1
     assert kind in kinds(report)
     assert diagnosis in report["diagnosis"]
-    assert report["replies"] == report["requests"] == 6
+    assert report["replies"] == report["requests"] == 7
     assert report["noise"] == len(noise)
     assert all(problem["advice"] for problem in report["problems"])
 
@@ -99,21 +99,21 @@ def test_doctor_of_a_silent_arm_stops_after_three_requests() -> None:
 
 def test_doctor_reports_lost_and_illegal_replies() -> None:
     illegal = bytes.fromhex("FE FE 03 2B 07 FA")
-    code, report = examined([[], [illegal], *HEALTHY[2:]])
+    code, report = examined([[], [RUNNING], [illegal], *HEALTHY[3:]])
     assert code == 1
     assert kinds(report) == ["illegal-reply", "lost-replies"]
-    assert report["problems"][1]["text"] == "no reply in time to 1 of 6 requests"
+    assert report["problems"][1]["text"] == ("no reply in time to 1 of 7 requests (is_power_on)")
 
 
 def test_doctor_without_a_port_exits_with_3_and_reports_what_it_found() -> None:
     result = run("/dev/nosuchport", "--json")
     assert result.returncode == 3
     assert kinds(json.loads(result.stdout)) == ["link"]
-    code, report = examined([HEALTHY[0], HEALTHY[1], [LEAK, 0.1, None]])
+    code, report = examined([*HEALTHY[:3], [LEAK, 0.1, None]])
     assert code == 3
     assert kinds(report)[0] == "link"
     assert "servo" in kinds(report)
-    assert report["replies"] == 2
+    assert report["replies"] == 3
 
 
 def test_doctor_works_over_tcp_and_records(tmp_path: Path) -> None:
@@ -123,7 +123,7 @@ def test_doctor_works_over_tcp_and_records(tmp_path: Path) -> None:
         result = run(peer.url, "--count", "2", "--record", path)
     assert result.returncode == 0, result.stdout
     capture = read(path)
-    assert [packet.direction for packet in capture] == ["sent", "received"] * 7
+    assert [packet.direction for packet in capture] == ["sent", "received"] * 8
     assert capture.finished
 
 
@@ -146,12 +146,14 @@ def test_doctor_diagnoses_noise_before_the_first_request() -> None:
 
 @pytest.mark.parametrize(("client", "arm"), [("mycobot280", "mycobot"), ("mycobot", "mycobot280")])
 def test_doctor_with_the_wrong_edition_names_the_arms_edition(client: str, arm: str) -> None:
-    with PtyServer(SimulatedArm(editions.load(arm).TABLE)) as server:
+    with PtyServer(SimulatedArm(editions.load(arm).TABLE, powered=True)) as server:
         result = run_program(
             "--edition", client, "doctor", server.url, "--json", "--count", "2", "--timeout", "0.2"
         )
         assert result.returncode == 1, result.stdout
-        (problem,) = [p for p in json.loads(result.stdout)["problems"] if p["serious"]]
+        # One edition has queries that the other lacks; they get no reply.
+        problem, *lost = [p for p in json.loads(result.stdout)["problems"] if p["serious"]]
+        assert {each["kind"] for each in lost} <= {"lost-replies"}
         assert problem["kind"] == "other-edition"
         assert f"the arm speaks edition {arm}, not {client}" in problem["text"]
         assert f"--edition {arm}" in problem["advice"]

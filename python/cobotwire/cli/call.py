@@ -6,11 +6,14 @@ import json
 
 import click
 
+from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.call_arguments import parse
 from cobotwire.cli.shared.completers import complete_commands, complete_ports
 from cobotwire.cli.shared.output import as_json_value, format_result
+from cobotwire.inspect.readiness import check_accepted, check_ready
+from cobotwire.session.request import RequestEncoder
 
 
 # click reads a negative number as an unknown option; unknown options are passed on as ARGS.
@@ -25,6 +28,9 @@ from cobotwire.cli.shared.output import as_json_value, format_result
 @click.option(
     "--timeout", type=float, help="Seconds to wait for the reply [default: the command's]."
 )
+@click.option(
+    "--force", is_flag=True, help="Send a motion without asking whether the arm will obey it."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.pass_obj
 def call(
@@ -35,6 +41,7 @@ def call(
     baudrate: int | None,
     record: str | None,
     timeout: float | None,
+    force: bool,
     as_json: bool,
 ) -> None:
     """Send the command NAME with its ARGS to the arm at URL, and print the result.
@@ -49,15 +56,28 @@ def call(
       cobotwire call /dev/ttyACM0 set_reference_frame WORLD
 
     `cobotwire commands NAME` shows the arguments of a command.
+
+    Before a motion that has arguments, the arm is asked whether it has power, whether it is paused,
+    and what its error register is. If it would not obey, the motion is not sent; --force sends it.
+    After the motion the error register is read again, since the arm does not say that it rejects a
+    motion.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     package = editions.load(edition)
-    arguments = parse(package.TABLE.command(name), args)
+    command = package.TABLE.command(name)
+    arguments = parse(command, args)
+    # A bad value is reported before the arm is asked whether it obeys.
+    RequestEncoder(codecs.load(package.TABLE)).encode_request(command.request_type(**arguments))
     with (
         open_arm(port, package.TABLE, baudrate, record) as transport,
         # A query that fails must not stop a motion that an earlier call began.
         package.CLIENT(transport, timeout=timeout, on_error="leave") as arm,
     ):
+        checks = command.starts_motion and not force
+        if checks:
+            check_ready(arm, command)
         result = getattr(arm, name)(**arguments)
+        if checks:
+            check_accepted(arm, command)
     if as_json:
         click.echo(json.dumps({"command": name, "result": as_json_value(result)}))
     elif result is not None:

@@ -10,7 +10,7 @@ from cobotwire.diagnose import CLASSES, Summary
 class Problem(NamedTuple):
     """A problem, and what to do about it.
 
-    ``serious`` is False for what is only worth knowing, for example that the arm has no power.
+    ``serious`` is False for what is only worth knowing, for example that a round trip is slow.
     """
 
     kind: str
@@ -28,7 +28,6 @@ LOST = "retries make up for it; fix the other problems listed here, then check c
 LATE = "the arm is busy or the line is slow: use a longer timeout=, or send fewer requests"
 ILLEGAL = "the firmware may use another edition: cobotwire identify URL finds out"
 OTHER_EDITION = "use cobotwire --edition {edition}; in a program, cobotwire.connect(port)"
-NO_POWER = "cobotwire call power_on switches it on; keep clear of the arm"
 LATENCY_TIMER = "echo 1 | sudo tee {path}   (cobotwire tried this when it opened the port)"
 SLOW = "if this is a USB adapter, its latency timer may be 16 ms; set it to 1 ms"
 PORT = (

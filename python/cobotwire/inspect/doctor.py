@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.client import Client
 from cobotwire.codec.interface import Codec
-from cobotwire.inspect import advice
+from cobotwire.inspect import advice, readiness
 from cobotwire.inspect.advice import Problem
 from cobotwire.inspect.identification import other_edition
 from cobotwire.inspect.latency_timer import latency_timer
@@ -26,7 +26,7 @@ SILENT = 3
 SLOW_SECONDS = 0.0155
 # The time that an arm has for a query by which its edition is recognised, in seconds.
 EDITION_SECONDS = 0.5
-ROLES: tuple[Role, ...] = ("powered", "moving", "joints", "coordinates")
+ROLES: tuple[Role, ...] = (*readiness.ROLES, "moving", "joints", "coordinates")
 
 
 class RoundTrip(NamedTuple):
@@ -107,6 +107,8 @@ class Doctor:
         self._times: list[float] = []
         self._silent = 0
         self._illegal: list[str] = []
+        # The names of the queries without a reply, each once.
+        self._unanswered: dict[str, None] = {}
         self._report = report
         report.kind, report.low_latency = transport.kind, transport.low_latency
 
@@ -135,6 +137,7 @@ class Doctor:
             value = getattr(self._arm, command.name)()
         except ReplyTimeout:
             self._silent += 1
+            self._unanswered[command.name] = None
             return
         except ProtocolError as error:
             self._illegal.append(f"{command.name}: {error}")
@@ -176,16 +179,14 @@ class Doctor:
             text = f"no reply to any of {lost} requests"
             found.append(Problem("silence", text, advice.NO_REPLIES))
         elif lost:
-            text = f"no reply in time to {lost} of {report.requests} requests"
+            names = ", ".join(self._unanswered)
+            text = f"no reply in time to {lost} of {report.requests} requests ({names})"
             found.append(Problem("lost-replies", text, advice.LOST))
         if report.late:
             text = f"replies after their deadline: {report.late}"
             found.append(Problem("late-replies", text, advice.LATE))
-        for command in self._queries:
-            if command.role == "powered" and report.values.get(command.name) is False:
-                text = "the arm is switched off"
-                found.append(Problem("no-power", text, advice.NO_POWER, serious=False))
-        return found
+        states = {command.role: report.values.get(command.name) for command in self._queries}
+        return found + readiness.problems(self._table, states)
 
     def _latency_problems(self) -> list[Problem]:
         report = self._report

@@ -211,6 +211,23 @@ class MotionTimeout(CobotwireError, TimeoutError):
         super().__init__("; ".join([first, *state.sentences(), *sent]))
 
 
+class ArmNotReady(CobotwireError):
+    """The arm reports that it does not obey a motion.
+
+    Attributes:
+        command: the name of the command.
+        sent: whether the motion was sent; the arm then reported why it rejected the motion.
+        problems: what the arm reports, and what to do about it, a sentence each.
+    """
+
+    def __init__(self, command: str, sent: bool, problems: tuple[str, ...]) -> None:
+        self.command = command
+        self.sent = sent
+        self.problems = problems
+        how = "was sent, but" if sent else "was not sent:"
+        super().__init__(f"{command} {how} {'. Also, '.join(problems)}")
+
+
 class CaptureError(CobotwireError, ValueError):
     """An error in a recording: it is not a pcapng file, is damaged, or cannot be completed.
 

@@ -155,6 +155,11 @@ class Command:
         return self._types[0]
 
     @property
+    def starts_motion(self) -> bool:
+        """Whether it is a motion with arguments; one without ends, pauses or continues a motion."""
+        return self.safety == "motion" and any(variant.fields for variant in self.request)
+
+    @property
     def answers(self) -> bool:
         """Whether the protocol requires a reply."""
         return (bool(self.reply) and not self.ack) or self.text is not None
@@ -246,6 +251,17 @@ class Table:
     def find_role(self, role: Role) -> Command | None:
         """Return the first command with a role; None if the edition has none."""
         return next((command for command in self.commands if command.role == role), None)
+
+    def find_setter(self, role: Role, raw: int) -> Command | None:
+        """Return the first command that sets what the query of a role reports to a raw value."""
+        query = self.find_role(role)
+        for command in self.commands:
+            back = command.read_by
+            if query is None or back is None or back.query != query.name:
+                continue
+            if raw in [value for _, value in back.fields]:
+                return command
+        return None
 
     def in_role(self, role: Role) -> Command:
         """Return the first command with a role.

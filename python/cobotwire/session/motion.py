@@ -115,10 +115,10 @@ def _state(table: Table, kind: int) -> Generator[Step, Outcome, ArmState]:
             found.append(outcome.result)
     place, powered, paused, error = found
     position = None if place is None else tuple(place)
-    return ArmState(position, powered, paused, error, _meaning(table))
+    return ArmState(position, powered, paused, error, error_meaning(table))
 
 
-def _meaning(table: Table) -> str:
+def error_meaning(table: Table) -> str:
     """Return what the edition says about the numbers of its error register."""
     command = table.find_role("error")
     return "" if command is None else command.reply[0].fields[-1].doc.rstrip(".")

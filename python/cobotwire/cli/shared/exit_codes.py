@@ -9,6 +9,7 @@ from contextlib import contextmanager
 import click
 
 from cobotwire.protocol.errors import (
+    ArmNotReady,
     CaptureError,
     CobotwireError,
     LinkError,
@@ -18,7 +19,7 @@ from cobotwire.protocol.errors import (
     UsageError,
 )
 
-LINK_FAILED, NO_REPLY, INTERRUPTED = 3, 4, 130
+LINK_FAILED, NO_REPLY, NOT_READY, INTERRUPTED = 3, 4, 7, 130
 # What a shell reports for a process that SIGPIPE ended.
 OUTPUT_CLOSED = 141
 
@@ -29,12 +30,13 @@ CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (ReplyTimeout, NO_REPLY),
     (ProtocolError, 5),
     (CaptureError, 6),
+    (ArmNotReady, NOT_READY),
 )
 
 EPILOG = (
     "Exit codes: 0 success; 1 the result is negative (a wrong reply, an illegal frame); 2 wrong "
     "usage; 3 the port failed; 4 no reply; 5 an illegal reply; 6 a damaged recording; "
-    "130 interrupted."
+    "7 the arm does not obey a motion; 130 interrupted."
 )
 
 

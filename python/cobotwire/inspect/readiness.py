@@ -1,0 +1,93 @@
+"""Find out whether an arm obeys a motion, and what to do if it does not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from cobotwire.client import Client
+from cobotwire.inspect.advice import Problem
+from cobotwire.protocol.errors import ArmNotReady, ReplyTimeout
+from cobotwire.protocol.table import Command, Role, Table
+from cobotwire.session.motion import error_meaning
+
+# The queries that tell whether an arm obeys a motion.
+ROLES: tuple[Role, ...] = ("powered", "paused", "error")
+
+
+def problems(table: Table, states: Mapping[Role, Any]) -> list[Problem]:
+    """Return what keeps an arm from moving; ``states`` are the results of the queries in ROLES.
+
+    A state that is missing or None is not known, and is not a problem.
+    """
+    found = []
+    if states.get("powered") is False:
+        advice = _use(table, "powered", 1, "switches it on; keep clear of the arm")
+        found.append(Problem("no-power", "the arm has no power", advice))
+    if states.get("paused"):
+        stop = table.find_role("stop")
+        discard = f"; {_call(stop)} discards it" if stop else ""
+        advice = _use(table, "paused", 0, "continues the old motion at once") + discard
+        found.append(Problem("paused", "the arm's motion is paused", advice))
+    if states.get("error"):
+        text = f"the arm's error register is {states['error']} ({error_meaning(table)})"
+        advice = "find the cause; then " + _use(table, "error", 0, "clears the error")
+        found.append(Problem("error-register", text, advice))
+    return found
+
+
+def check_ready(arm: Client, command: Command) -> None:
+    """Ask the arm whether it obeys a motion.
+
+    If only some queries get no reply, as from firmware that lacks one, their states are not known.
+
+    Raises:
+        ArmNotReady: it does not: it has no power, is paused, or reports an error.
+        ReplyTimeout: the arm did not reply to the first query.
+    """
+    states: dict[Role, Any] = {}
+    for role in ROLES:
+        query = arm.table.find_role(role)
+        if query is None:
+            continue
+        try:
+            states[role] = _ask(arm, query)
+        except ReplyTimeout:
+            if not states:
+                raise
+    _raise_for(command, problems(arm.table, states), sent=False)
+
+
+def check_accepted(arm: Client, command: Command) -> None:
+    """Ask the arm for its error register after a motion was sent; no reply is not an error.
+
+    Raises:
+        ArmNotReady: the register holds an error.
+    """
+    query = arm.table.find_role("error")
+    if query is None:
+        return
+    try:
+        error = _ask(arm, query)
+    except ReplyTimeout:
+        return
+    _raise_for(command, problems(arm.table, {"error": error}), sent=True)
+
+
+def _ask(arm: Client, query: Command) -> Any:
+    return getattr(arm, query.name)()
+
+
+def _raise_for(command: Command, found: list[Problem], *, sent: bool) -> None:
+    if found:
+        texts = tuple(f"{problem.text}; {problem.advice}" for problem in found)
+        raise ArmNotReady(command.name, sent, texts)
+
+
+def _use(table: Table, role: Role, raw: int, effect: str) -> str:
+    command = table.find_setter(role, raw)
+    return f"{_call(command)} {effect}" if command else "see the arm's manual"
+
+
+def _call(command: Command) -> str:
+    return f"cobotwire call URL {command.name}"

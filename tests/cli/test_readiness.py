@@ -1,0 +1,120 @@
+"""Send motions from the command line to arms that do not obey them; examine such arms."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable
+
+import pytest
+
+from cobotwire.editions import mycobot280
+from cobotwire.simulator import PtyServer, SimulatedArm
+from command_line import PROGRAM, run_program
+from scripted_peer import ScriptedPeer
+
+MOTION = ("send_angles", "10,0,0,0,0,0", "30")
+NO_POWER = "the arm has no power; cobotwire call URL power_on switches it on"
+PAUSED = "the arm's motion is paused; cobotwire call URL resume continues the old motion at once"
+ERROR = "the arm's error register is 17 (0 is no error; 1 to 6 a joint beyond its limit; 16 to 19"
+
+
+def _cut(arm: SimulatedArm) -> None:
+    arm.state.powered = False
+
+
+def _pause(arm: SimulatedArm) -> None:
+    arm.state.paused = True
+
+
+def _fail(arm: SimulatedArm) -> None:
+    arm.state.error = 17
+
+
+STATES = [
+    pytest.param(_cut, "no-power", NO_POWER, id="no-power"),
+    pytest.param(_pause, "paused", PAUSED, id="paused"),
+    pytest.param(_fail, "error-register", ERROR, id="error"),
+]
+
+
+@pytest.mark.parametrize(("spoil", "kind", "text"), STATES)
+def test_motion_that_the_arm_does_not_obey_is_not_sent_unless_forced(
+    spoil: Callable[[SimulatedArm], None], kind: str, text: str
+) -> None:
+    arm = SimulatedArm(mycobot280.TABLE, powered=True)
+    spoil(arm)
+    with PtyServer(arm) as server:
+        refused = run_program("call", server.url, *MOTION)
+        target = arm.state.angles.target(0.0)
+        forced = run_program("call", server.url, *MOTION, "--force")
+    assert (refused.returncode, refused.stdout) == (7, "")
+    assert refused.stderr.startswith(f"cobotwire: send_angles was not sent: {text}")
+    assert len(refused.stderr.splitlines()) == 1
+    assert target == (0, 0, 0, 0, 0, 0)
+    assert (forced.returncode, forced.stderr) == (0, "")
+
+
+def test_doctor_reports_why_an_arm_does_not_move_and_not_that_it_is_healthy() -> None:
+    arm = SimulatedArm(mycobot280.TABLE, powered=True)
+    for spoil in (_cut, _pause, _fail):
+        spoil(arm)
+    with PtyServer(arm) as server:
+        human = run_program("doctor", server.url, "--count", "1")
+        machine = run_program("doctor", server.url, "--count", "1", "--json")
+    assert (human.returncode, machine.returncode) == (1, 1)
+    assert "healthy" not in human.stdout
+    report = json.loads(machine.stdout)
+    assert not report["healthy"]
+    found = [(each["kind"], each["text"]) for each in report["problems"] if each["serious"]]
+    for (kind, sentence), state in zip(found, STATES, strict=True):
+        _, expected, text = map(str, state.values)
+        assert (kind, text.startswith(sentence[:40])) == (expected, True)
+        assert f"! {kind}: {sentence}" in human.stdout
+
+
+def test_motion_that_the_arm_rejects_is_reported_after_it_was_sent() -> None:
+    with PtyServer(SimulatedArm(mycobot280.TABLE, powered=True)) as server:
+        result = run_program("call", server.url, "send_coords", "281,281,281,0,0,0", "30")
+    assert result.returncode == 7
+    assert "send_coords was sent, but the arm's error register is 32 (" in result.stderr
+
+
+def test_commands_that_end_a_motion_are_sent_to_any_arm() -> None:
+    arm = SimulatedArm(mycobot280.TABLE)
+    arm.state.paused = True
+    with PtyServer(arm) as server:
+        for name in ("pause", "resume", "stop", "clear_queue", "power_on"):
+            result = run_program("call", server.url, name)
+            assert (result.returncode, result.stderr) == (0, ""), name
+    assert (arm.state.paused, arm.state.powered) == (False, True)
+
+
+def test_motion_to_a_silent_arm_is_not_sent() -> None:
+    with ScriptedPeer() as peer:
+        result = run_program("call", peer.url, *MOTION, "--timeout", "0.1")
+        received = peer.received
+    assert result.returncode == 4
+    assert "no reply to is_power_on" in result.stderr
+    assert received.replace(bytes.fromhex("FE FE 02 12 FA"), b"") == b""
+
+
+def test_state_that_a_firmware_does_not_report_does_not_keep_a_motion_back() -> None:
+    on = bytes.fromhex("FE FE 03 12 01 FA")
+    with ScriptedPeer([on]) as peer:
+        result = run_program("--edition", "mycobot", "call", peer.url, *MOTION, "--timeout", "0.1")
+        received = peer.received
+    assert (result.returncode, result.stderr) == (0, "")
+    assert received.endswith(bytes.fromhex("FE FE 0F 22 03 E8 00 00 00 00 00 00 00 00 00 00 1E FA"))
+
+
+def test_simulated_arm_without_powered_refuses_the_motion_from_the_command_line() -> None:
+    simulator = [*PROGRAM, "sim", "--quiet"]
+    with subprocess.Popen(simulator, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        url = process.stdout.readline().split()[-1]
+        result = run_program("call", url, *MOTION)
+        doctor = run_program("doctor", url, "--count", "1")
+        process.terminate()
+    assert (result.returncode, NO_POWER in result.stderr) == (7, True)
+    assert (doctor.returncode, "healthy" in doctor.stdout) == (1, False)
