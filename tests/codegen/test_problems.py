@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from cobotwire_codegen.author.codes import CODES
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.errors import SpecError
+from cobotwire_codegen.load import MOST_BYTES
 
 HERE = Path(__file__).parent
 LAMP = (HERE / "lamp.yaml").read_text()
@@ -68,9 +70,10 @@ def test_every_code_is_shown_by_a_bad_spec() -> None:
 
 def test_unreadable_and_empty_files_are_reported_as_problems(tmp_path: Path) -> None:
     binary = tmp_path / "lamp.yaml"
-    binary.write_bytes(b"\xff\xfe\x00")
-    [problem] = _problems(binary)
-    assert problem.startswith("lamp.yaml:1:1: unreadable: ")
+    binary.write_bytes("édition: lamp\ntitle: ä ".encode() + b"\xff\xfe\n")
+    assert _problems(binary) == [
+        "lamp.yaml:2:10: unreadable: the byte FF is not UTF-8; save the file as UTF-8"
+    ]
     empty = tmp_path / "empty.yaml"
     empty.write_text("")
     assert "empty.yaml:1:1: wrong-kind: the edition is a plain value, but must be a mapping" in (
@@ -106,3 +109,24 @@ def test_folder_without_an_edition_is_reported_as_no_edition(tmp_path: Path) -> 
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 2
     assert "no-edition: there is no edition here" in result.stderr
+
+
+def test_file_above_the_limit_of_bytes_is_refused_unread(tmp_path: Path) -> None:
+    large = tmp_path / "lamp.yaml"
+    large.write_text(LAMP + "# \N{SNOWMAN}\n" * (MOST_BYTES // 3))
+    assert _problems(large) == [
+        f"lamp.yaml:1:1: too-large: the file has more than {MOST_BYTES} bytes, the limit; divide it"
+    ]
+
+
+def test_aliases_that_stand_for_a_billion_values_are_refused_at_once(tmp_path: Path) -> None:
+    rows = ["a: &a [x, x, x, x, x, x, x, x, x, x]"]
+    rows += [f"{b}: &{b} [{', '.join([f'*{a}'] * 10)}]" for a, b in pairwise("abcdefghi")]
+    (tmp_path / "lamp.yaml").write_text("\n".join(rows))
+    command = [sys.executable, "-m", "cobotwire_codegen", "check", "lamp.yaml"]
+    # Converted without a limit, these values take minutes and gigabytes.
+    result = subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=tmp_path, timeout=60
+    )
+    assert result.returncode == 2
+    assert "too-large: up to here the file has more than 200000 values" in result.stderr

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from cobotwire_codegen.legal import visible
+
 
 @dataclass(frozen=True, slots=True, order=True)
 class Place:
@@ -16,16 +18,22 @@ class Place:
     column: int
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}"
+        return f"{visible(self.file)}:{self.line}:{self.column}"
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Problem:
-    """One problem of a spec. ``code`` is stable; the message may improve."""
+    """One problem of a spec. ``code`` is stable; the message may improve.
+
+    Messages quote the spec, which may contain what a terminal would execute or cannot show.
+    """
 
     place: Place
     code: str
     message: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "message", visible(self.message))
 
     def __str__(self) -> str:
         return f"{self.place}: {self.code}: {self.message}"

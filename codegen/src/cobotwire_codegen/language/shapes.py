@@ -58,13 +58,7 @@ class Text(Shape[str]):
             return str(value)
         if not isinstance(value, str) or not value.strip():
             return self._wrong(node, subject, note)
-        text = " ".join(value.split())
-        odd = next((letter for letter in text if not letter.isprintable()), None)
-        if odd is not None:
-            message = f"{subject} contains U+{ord(odd):04X}, which cannot be printed"
-            note("bad-character", message, node.place)
-            return ""
-        return text
+        return " ".join(value.split())
 
     def schema(self) -> Schema:
         """Return a string or integer that is not blank."""

@@ -14,6 +14,15 @@ EXPLANATIONS = (
         "types: bus_types.yaml",
     ),
     Explanation(
+        "too-large",
+        "A file exceeds a limit: its bytes, its values, or how deeply they are nested.",
+        "A few hundred bytes of aliases can stand for millions of values, which would keep the "
+        "generator busy for hours. The limits are many times what the largest known spec needs.",
+        "Divide the file, or write less deeply nested values.",
+        "title: " + "[" * 50 + "]" * 50,
+        "title: A lamp on two joints",
+    ),
+    Explanation(
         "no-file",
         "The edition names a file that does not exist.",
         "File names are relative to the edition's own file; the edition lacks the file's content.",

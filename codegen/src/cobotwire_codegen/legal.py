@@ -1,0 +1,31 @@
+"""Decides which characters the strings of a spec may contain. The only such rule.
+
+``load`` applies it to every value and every key of every file, so no key of the language can miss
+it. What a name may be is stated by its kind, in ``language/names.py``.
+"""
+
+from __future__ import annotations
+
+
+def odd_character(text: str) -> str:
+    """Return the first character that a spec may not contain, in words; empty if there is none.
+
+    Legal are the characters that can be seen, the space, and the line feed and the tab, which lay
+    out a text of several lines. So control characters (which a terminal executes), invisible and
+    bidirectional formats (which make a reviewer see another text) and lone surrogates (which have
+    no encoding) are not.
+    """
+    odd = next((letter for letter in text if not _legal(letter)), None)
+    return "" if odd is None else f"U+{ord(odd):04X}, which cannot be printed"
+
+
+def _legal(letter: str) -> bool:
+    return letter.isprintable() or letter in "\n\t"
+
+
+def visible(text: str) -> str:
+    """Return text for a message: every character that is not legal as its escape."""
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode("ascii")
+        for letter in text
+    )
