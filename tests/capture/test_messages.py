@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from capture.lines import FRAMES, reader, written
-from cobotwire.capture import Packet, Piece, messages
+from cobotwire.capture import Packet, Piece
 from cobotwire.editions.mycobot.messages import GetAnglesReply, SendAngle
+from cobotwire.inspect.captured import messages
 from cobotwire.protocol.errors import ProtocolError
 
 QUERY, ANGLES, POWERED = FRAMES[:3]

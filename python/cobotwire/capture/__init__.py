@@ -7,13 +7,11 @@ from cobotwire.capture.packet import Direction, Interface, Kind, Packet, Piece
 from cobotwire.capture.reader import CaptureReader, is_capture, read
 from cobotwire.capture.recorder import Recorder
 from cobotwire.capture.recording import Recording
-from cobotwire.capture.streams import CapturedMessage, messages
 from cobotwire.capture.writer import CaptureWriter
 
 __all__ = [
     "CaptureReader",
     "CaptureWriter",
-    "CapturedMessage",
     "Direction",
     "Interface",
     "Kind",
@@ -22,6 +20,5 @@ __all__ = [
     "Recorder",
     "Recording",
     "is_capture",
-    "messages",
     "read",
 ]

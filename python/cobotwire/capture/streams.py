@@ -1,4 +1,4 @@
-"""Cut the packets of a capture into frames again, decode the frames, and diagnose the noise.
+"""Cut the packets of a capture into frames again.
 
 Each direction of each interface is one stream of bytes.
 """
@@ -7,18 +7,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from cobotwire import codec as codecs
-from cobotwire import editions
 from cobotwire.capture.packet import Direction, Packet
 from cobotwire.capture.reader import CaptureReader
 from cobotwire.capture.recorder import IDLE_NS
-from cobotwire.codec.interface import Codec, Event, Frame, Listening
-from cobotwire.diagnose import Diagnoser, Item
-from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.messages import Reply, Request
+from cobotwire.codec.interface import Codec, Event, Listening
+from cobotwire.protocol.errors import UsageError
 
 LISTENING: dict[Direction, Listening] = {"sent": "request", "received": "reply"}
 
@@ -106,93 +101,6 @@ def cut(
         yield StreamEvents(streams[key], streams[key].feed(packet), idle=False)
     for stream in streams.values():
         yield StreamEvents(stream, stream.flush(), idle=True)
-
-
-class CapturedMessage(NamedTuple):
-    """A decoded frame of a capture.
-
-    Attributes:
-        time_ns: when its first byte was sent or received, in nanoseconds since 1970 (UTC).
-        interface: an index into ``CaptureReader.interfaces``.
-        direction: whether it was sent or received.
-        message: the typed message, for ``match``; the error if a field holds a value that the
-            edition does not allow.
-    """
-
-    time_ns: int
-    interface: int
-    direction: Direction
-    message: Request[Any] | Reply[Any] | ProtocolError
-
-
-def messages(capture: CaptureReader, edition: str = editions.DEFAULT) -> Iterator[CapturedMessage]:
-    """Yield the decoded messages of a capture; ``edition`` applies if the capture names none.
-
-    ::
-
-        for captured in messages(read("arm.pcapng")):
-            match captured.message:
-                case SendAngle(joint, angle):
-                    print("request", joint, angle)
-                case GetAnglesReply(angles):
-                    print("reply", angles)
-    """
-    events = cut(capture, lambda interface: codec_of_interface(capture, interface, edition))
-    for stream, cut_events, _ in events:
-        for event in cut_events:
-            if isinstance(event, Frame):
-                time_ns = stream.time_of(event.offset)
-                yield CapturedMessage(time_ns, stream.interface, stream.direction, _typed(event))
-
-
-def _typed(frame: Frame) -> Request[Any] | Reply[Any] | ProtocolError:
-    try:
-        return frame.message.typed
-    except ProtocolError as error:
-        return error
-
-
-def diagnose_capture(
-    capture: CaptureReader,
-    edition: str,
-    listening: Listening = "both",
-    *,
-    accept_unknown: bool = False,
-) -> Iterator[tuple[DirectionStream, list[Item]]]:
-    """Yield the frames and findings of a capture with their streams; see :func:`cut`.
-
-    If a request was sent on an interface, a copy of it that was received there is an echo.
-    """
-    diagnosers: dict[DirectionStream, Diagnoser] = {}
-    sent: dict[int, list[bytes]] = {}
-    for stream, events, idle in cut(
-        capture,
-        lambda interface: codec_of_interface(capture, interface, edition),
-        listening,
-        accept_unknown=accept_unknown,
-    ):
-        if stream not in diagnosers:
-            diagnosers[stream] = Diagnoser(stream.codec, stream.listening)
-        diagnoser = diagnosers[stream]
-        if stream.direction == "received":
-            for data in sent.pop(stream.interface, ()):
-                diagnoser.sent(data)
-        items = diagnoser.feed(events) + (diagnoser.flush() if idle else [])
-        if stream.direction == "sent":
-            frames = [item.data for item in items if isinstance(item, Frame)]
-            sent.setdefault(stream.interface, []).extend(frames)
-        yield stream, items
-
-
-def codec_of_interface(capture: CaptureReader, interface: int, default_edition: str) -> Codec:
-    """Return the codec of the edition that the capture names, or else of the default edition."""
-    return _codec(capture.interfaces[interface].edition, default_edition)
-
-
-@lru_cache
-def _codec(recorded_edition: str, default_edition: str) -> Codec:
-    known = recorded_edition in editions.names()
-    return codecs.load(editions.load(recorded_edition if known else default_edition).TABLE)
 
 
 def packets_of_interface(capture: CaptureReader, interface: int) -> list[Packet]:

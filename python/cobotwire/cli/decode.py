@@ -17,7 +17,7 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture import CaptureReader
 from cobotwire.capture.byte_source import ByteFormat, ByteSource, open_bytes
-from cobotwire.capture.streams import DirectionStream, diagnose_capture
+from cobotwire.capture.streams import DirectionStream
 from cobotwire.cli.shared.exit_codes import OUTPUT_CLOSED
 from cobotwire.cli.shared.hex_colours import frame_colours
 from cobotwire.cli.shared.input_files import input_files
@@ -28,6 +28,7 @@ from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose import Diagnoser, Item
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
+from cobotwire.inspect.captured import diagnose_capture
 from cobotwire.protocol.printable import printable
 
 # Decoding this many bytes takes some seconds, so a progress bar is shown.

@@ -10,9 +10,10 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture import CaptureReader
 from cobotwire.capture.byte_source import open_bytes
-from cobotwire.capture.streams import codec_of_interface, packets_of_interface
+from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.recordings import interface_option, recording_named, warn_if_incomplete
 from cobotwire.codec.interface import Codec
+from cobotwire.inspect.captured import codec_of_interface
 from cobotwire.inspect.plot import (
     Series,
     check_output,

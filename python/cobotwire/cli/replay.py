@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from cobotwire.capture import CaptureReader, Packet, read
-from cobotwire.capture.streams import codec_of_interface, packets_of_interface
+from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.output import as_hex, print_line
 from cobotwire.cli.shared.recordings import ARROWS, interface_option, warn_if_incomplete
@@ -17,6 +17,7 @@ from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import left_out
 from cobotwire.codec.interface import Codec
 from cobotwire.diagnose.explain import format_message
+from cobotwire.inspect.captured import codec_of_interface
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.printable import printable
 from cobotwire.simulator import PtyServer, ReplayedArm, ReplayedRequest
