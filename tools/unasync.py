@@ -67,12 +67,16 @@ PASSAGES = [
             limits: where the arm may be sent, narrower or wider than the edition says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.
+            record: a file that does not exist yet, for all traffic of this client as pcapng;
+                :meth:`close` finishes it. If it cannot be written any more, because the disk is
+                full, say, the arm is still served: the error is logged at once, and ``close``
+                raises it.
             on_error: ``stop`` sends stop once when an exception leaves the ``with`` block, Ctrl-C
                 included, and when a waited motion fails; ``leave`` leaves the arm as it is. Leaving
                 the block without an exception changes nothing.
 
         Raises:
-            UsageError: an argument is not allowed.
+            UsageError: an argument is not allowed, or the file of the recording exists already.
             LinkError: the port does not exist, or cannot be opened.
         """''',
     ),

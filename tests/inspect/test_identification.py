@@ -11,9 +11,11 @@ import pytest
 
 import cobotwire
 from cobotwire import EditionUnknown, LinkError, MyCobot, MyCobot280, connect, identify
+from cobotwire.client.port_memory import PortMemory
 from cobotwire.editions import load, names
-from cobotwire.inspect.identification import own_query
+from cobotwire.inspect.identification import identify_on, own_query
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
+from cobotwire.transport import open_transport
 from command_line import run_program
 from scripted_peer import ScriptedPeer
 
@@ -128,3 +130,12 @@ def test_identify_verb_has_json_and_an_exit_code_for_each_outcome(
 
 def test_identify_verb_without_a_port_exits_with_3() -> None:
     assert run_program("identify", "/dev/nosuchport").returncode == 3
+
+
+def test_late_reply_to_a_query_is_left_to_the_next_client_on_the_port() -> None:
+    with ScriptedPeer() as peer:
+        transport = open_transport(peer.url, 115200)
+        identify_on(transport, timeout=0.05)
+        late = [frame.request for frame in PortMemory(transport).recall().late]
+        transport.close()
+    assert late == [bytes.fromhex("FE FE 02 12 FA")]

@@ -14,6 +14,7 @@ from cobotwire.capture.writer import CaptureWriter
 from cobotwire.codec.interface import Codec, Event, Framer, Noise
 from cobotwire.protocol.errors import CaptureError
 from cobotwire.protocol.printable import printable
+from cobotwire.transport import forks
 
 # An incomplete frame is written after this pause. The longest pause seen within a reply is 0.1 s;
 # a cut that is too early splits a frame into two packets, but loses no byte.
@@ -111,7 +112,8 @@ class Recorder:
     """Writes the traffic of one transport to a capture; pass it to a client as ``trace``.
 
     If a write fails, for example because the disk is full, the client's call does not fail. Instead
-    the error is logged, the recording stops, and :meth:`close` raises an error.
+    the error is logged, the recording stops, and :meth:`close` raises an error. In a forked child
+    it records nothing, since the capture is the parent's.
     """
 
     def __init__(
@@ -142,14 +144,21 @@ class Recorder:
         self._epoch_ns = time.time_ns() - time.monotonic_ns()
         self._lock = threading.Lock()
         self._failure: OSError | ValueError | None = None
+        self._ended = False
+        forks.watch(self)
 
     def __call__(self, moment: Moment) -> None:
         """Record one item of a client's traffic."""
         self.record(moment.direction, moment.data, moment.time)
 
     def record(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:
-        """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds."""
+        """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds.
+
+        After :meth:`close` this does nothing: another thread may still end its read.
+        """
         with self._lock:
+            if self._ended:
+                return
             time_ns = self._epoch_ns + round(at * 1e9)
             for side in (self._sent, self._received):
                 self._write(side.wake(time_ns))
@@ -157,17 +166,26 @@ class Recorder:
             self._write(side.feed(data, time_ns))
 
     def close(self) -> None:
-        """Write the pending bytes. The writer stays open.
+        """Write the pending bytes. The writer stays open. Closing twice is harmless.
 
         Raises:
             CaptureError: a write failed, so the recording is incomplete.
         """
         with self._lock:
+            if self._ended:
+                return
+            self._ended = True
             self._write(self._sent.flush())
             self._write(self._received.flush())
             if self._failure is not None:
                 detail = f"the recording is incomplete: {self._failure}"
                 raise CaptureError(self._name, self._writer.size, detail) from self._failure
+
+    def leave_to_parent(self) -> None:
+        """Record nothing from now on; called in a forked child."""
+        # Another thread of the parent may have held the lock; it does not exist here.
+        self._lock = threading.Lock()
+        self._ended = True
 
     def _write(self, packets: Iterable[Packet]) -> None:
         for packet in packets:

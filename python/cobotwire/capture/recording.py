@@ -13,6 +13,7 @@ from cobotwire.capture.recorder import Moment, Recorder
 from cobotwire.capture.writer import CaptureWriter
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import CaptureError
+from cobotwire.transport import forks
 
 
 class Recording:
@@ -61,6 +62,7 @@ class Recording:
             with suppress(OSError):
                 os.unlink(path)
             raise unusable_file("record", path, error) from None
+        forks.watch(self)
 
     def __call__(self, moment: Moment) -> None:
         """Record one item of a client's traffic."""
@@ -100,3 +102,8 @@ class Recording:
             # On a full disk closing fails too; the error is already raised.
             with suppress(OSError):
                 self._file.close()
+
+    def leave_to_parent(self) -> None:
+        """Close a forked child's copy of the file, and write nothing to it."""
+        # Not by close() of the buffer: in a fork within a write it holds half a block.
+        self._file.raw.close()

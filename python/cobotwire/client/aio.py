@@ -9,9 +9,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from cobotwire import codec as codecs
 from cobotwire.client.aio_connection import AsyncConnection
-from cobotwire.client.opening import OnError, check_on_error, check_seconds, settings
+from cobotwire.client.opening import (
+    OnError,
+    PortOpener,
+    RecordPath,
+    check_on_error,
+    check_seconds,
+    settings,
+)
 from cobotwire.client.traffic import TrafficListener
-from cobotwire.protocol.errors import CobotwireError, MotionTimeout
+from cobotwire.protocol.errors import CaptureError, CobotwireError, MotionTimeout
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
@@ -42,6 +49,7 @@ class AsyncClient:
         limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
         trace: TrafficListener | None = None,
+        record: RecordPath | None = None,
         on_error: OnError = "stop",
     ) -> None:
         """Note what to open; :meth:`open` opens it. The blocking client takes the same arguments.
@@ -54,26 +62,28 @@ class AsyncClient:
         self._stopped_for: BaseException | None = None
         self.codec = self._settings.codec.name
         self._encoder = RequestEncoder(self._settings.codec)
-        self._connection = AsyncConnection(
-            port,
-            self.table.baudrate if baudrate is None else baudrate,
-            Exchange(self._settings.codec),
-            trace,
-        )
+        codec_used = self._settings.codec
+        speed = self.table.baudrate if baudrate is None else baudrate
+        opener = PortOpener(port, speed, codec_used, record)
+        self._connection = AsyncConnection(opener, Exchange(codec_used), trace)
 
     # unasync: off
     async def open(self) -> None:
         """Open the port, unless it is open.
 
         Raises:
-            UsageError: the port or baud rate is not allowed.
+            UsageError: the port or baud rate is not allowed, or the file of the recording exists.
             LinkError: the port does not exist, or cannot be opened.
         """
         await self._connection.open()
 
     # unasync: on
     async def close(self) -> None:
-        """Close the transport. The arm is sent nothing. Closing twice is harmless."""
+        """Close the transport. The arm is sent nothing. Closing twice is harmless.
+
+        Raises:
+            CaptureError: the recording is incomplete; everything is closed all the same.
+        """
         self._connection.close()
 
     async def __aenter__(self) -> Self:
@@ -86,9 +96,15 @@ class AsyncClient:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        if error is not None:
-            await self._stop_for(error)
-        await self.close()
+        if error is None:
+            await self.close()
+            return
+        await self._stop_for(error)
+        try:
+            await self.close()
+        except CaptureError as incomplete:
+            # The error that ended the block is the one that is raised.
+            error.add_note(str(incomplete))
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} on {self._connection.url}, {self.codec} codec>"

@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 
-from cobotwire.client.opening import check_port, open_port
+from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
-from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
-from cobotwire.transport import Transport, forks
+from cobotwire.transport import forks
 from cobotwire.transport.aio import attach
 from cobotwire.transport.interface import AsyncTransport
 from cobotwire.transport.timing import times_of
@@ -29,22 +30,23 @@ class AsyncConnection:
 
     def __init__(
         self,
-        port: str | Transport,
-        baudrate: int,
+        opener: PortOpener,
         exchange: Exchange,
         trace: TrafficListener | None,
     ) -> None:
         """Note what to open; :meth:`open` opens it.
 
         Raises:
-            UsageError: the port is not allowed, or is a transport with a clock of its own.
+            UsageError: the port is not allowed, or is a transport with a clock of its own; or the
+                path of the recording is not allowed.
         """
-        check_port(port)
+        opener.check()
+        port = opener.port
         if not times_of(port).real:
             message = "asyncio runs in real time, and this transport has a clock of its own"
             raise UsageError("port", port, message=message)
-        self._port = port
-        self._baudrate = baudrate
+        self._opener = opener
+        self._port: OpenPort | None = None
         self.url = port if isinstance(port, str) else port.url
         self.listeners = TrafficListeners(trace, self.url)
         self._exchange = exchange
@@ -59,19 +61,20 @@ class AsyncConnection:
         """Open the port, unless it is open.
 
         Raises:
-            UsageError: the port or baud rate is not allowed.
+            UsageError: the port or baud rate is not allowed, or the file of the recording exists.
             LinkError: the port does not exist, or cannot be opened.
         """
         if self._attached is not None:
             return
         self._loop = asyncio.get_running_loop()
         # Connecting may take a while: a thread does it, and the loop goes on.
-        work = self._loop.run_in_executor(None, open_port, self._port, self._baudrate)
+        work = self._loop.run_in_executor(None, self._opener.open)
         try:
-            transport = await asyncio.shield(work)
+            self._port = await asyncio.shield(work)
         except asyncio.CancelledError:
             work.add_done_callback(_close_unwanted)
             raise
+        transport = self._port.transport
         self._memory = PortMemory(transport)
         self._exchange.take_over(self._memory.recall())
         self._attached = attach(transport, self._turn)
@@ -124,11 +127,16 @@ class AsyncConnection:
             await asyncio.sleep(min(left, 0.05))
 
     def close(self) -> None:
-        """Close the transport; calls that wait get a LinkError. Closing twice is harmless."""
-        if self._attached is not None:
+        """Close the transport; calls that wait get a LinkError. Closing twice is harmless.
+
+        Raises:
+            CaptureError: the recording is incomplete; everything is closed all the same.
+        """
+        if self._attached is not None and self._port is not None:
             self._attached.close()
             self._memory.leave(self._exchange.leave(self.now()))
             self._lose(LinkError(self.url, "it is closed"))
+            self._port.close_recording()
 
     def leave_to_parent(self) -> None:
         """Let every call in a forked child fail: loop and transport are those of the parent."""
@@ -248,9 +256,11 @@ class AsyncConnection:
         self.listeners.received(self._exchange.fail(self._lost, now), now)
 
 
-def _close_unwanted(work: asyncio.Future[Transport]) -> None:
+def _close_unwanted(work: asyncio.Future[OpenPort]) -> None:
     if not work.cancelled() and work.exception() is None:
-        work.result().close()
+        # An incomplete recording was logged.
+        with suppress(CaptureError):
+            work.result().close()
 
 
 def _wake(over: asyncio.Future[None]) -> None:

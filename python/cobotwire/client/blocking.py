@@ -10,9 +10,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from cobotwire import codec as codecs
 from cobotwire.client.connection import Connection
-from cobotwire.client.opening import OnError, check_on_error, check_seconds, settings
+from cobotwire.client.opening import (
+    OnError,
+    PortOpener,
+    RecordPath,
+    check_on_error,
+    check_seconds,
+    settings,
+)
 from cobotwire.client.traffic import TrafficListener
-from cobotwire.protocol.errors import CobotwireError, MotionTimeout
+from cobotwire.protocol.errors import CaptureError, CobotwireError, MotionTimeout
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
@@ -47,6 +54,7 @@ class Client:
         limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
         trace: TrafficListener | None = None,
+        record: RecordPath | None = None,
         on_error: OnError = "stop",
     ) -> None:
         """Open the port.
@@ -61,12 +69,16 @@ class Client:
             limits: where the arm may be sent, narrower or wider than the edition says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.
+            record: a file that does not exist yet, for all traffic of this client as pcapng;
+                :meth:`close` finishes it. If it cannot be written any more, because the disk is
+                full, say, the arm is still served: the error is logged at once, and ``close``
+                raises it.
             on_error: ``stop`` sends stop once when an exception leaves the ``with`` block, Ctrl-C
                 included, and when a waited motion fails; ``leave`` leaves the arm as it is. Leaving
                 the block without an exception changes nothing.
 
         Raises:
-            UsageError: an argument is not allowed.
+            UsageError: an argument is not allowed, or the file of the recording exists already.
             LinkError: the port does not exist, or cannot be opened.
         """
         self._settings = settings(self.table, timeout, retry, codec, limits)
@@ -74,15 +86,17 @@ class Client:
         self._stopped_for: BaseException | None = None
         self.codec = self._settings.codec.name
         self._encoder = RequestEncoder(self._settings.codec)
-        self._connection = Connection(
-            port,
-            self.table.baudrate if baudrate is None else baudrate,
-            Exchange(self._settings.codec),
-            trace,
-        )
+        codec_used = self._settings.codec
+        speed = self.table.baudrate if baudrate is None else baudrate
+        opener = PortOpener(port, speed, codec_used, record)
+        self._connection = Connection(opener, Exchange(codec_used), trace)
 
     def close(self) -> None:
-        """Close the transport. The arm is sent nothing. Closing twice is harmless."""
+        """Close the transport. The arm is sent nothing. Closing twice is harmless.
+
+        Raises:
+            CaptureError: the recording is incomplete; everything is closed all the same.
+        """
         self._connection.close()
 
     def __enter__(self) -> Self:
@@ -94,9 +108,15 @@ class Client:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        if error is not None:
-            self._stop_for(error)
-        self.close()
+        if error is None:
+            self.close()
+            return
+        self._stop_for(error)
+        try:
+            self.close()
+        except CaptureError as incomplete:
+            # The error that ended the block is the one that is raised.
+            error.add_note(str(incomplete))
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} on {self._connection.url}, {self.codec} codec>"

@@ -16,13 +16,13 @@ from __future__ import annotations
 import threading
 import time
 
-from cobotwire.client.opening import open_port
+from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.session.exchange import DRAIN_SECONDS
-from cobotwire.transport import Transport, forks
+from cobotwire.transport import forks
 from cobotwire.transport.interface import PollableTransport
 from cobotwire.transport.timing import times_of
 
@@ -41,18 +41,18 @@ class Connection:
 
     def __init__(
         self,
-        port: str | Transport,
-        baudrate: int,
+        opener: PortOpener,
         exchange: Exchange,
         trace: TrafficListener | None,
     ) -> None:
         """Open the port, unless it is an open transport.
 
         Raises:
-            UsageError: the port or baud rate is not allowed.
+            UsageError: the port, the baud rate or the path of the recording is not allowed.
             LinkError: the port does not exist, or cannot be opened.
         """
-        self._transport = open_port(port, baudrate)
+        self._port = opener.open()
+        self._transport = self._port.transport
         self.url = self._transport.url
         self.now, self.sleep, _ = times_of(self._transport)
         self.listeners = TrafficListeners(trace, self.url, self.now)
@@ -123,11 +123,16 @@ class Connection:
                 time.sleep(min(left, CHECK_SECONDS))
 
     def close(self) -> None:
-        """Close the transport. The arm is sent nothing. Closing twice is harmless."""
+        """Close the transport. The arm is sent nothing. Closing twice is harmless.
+
+        Raises:
+            CaptureError: the recording is incomplete; everything is closed all the same.
+        """
         self._transport.close()
         with self._state:
             leftover = self._exchange.leave(self.now())
         self._memory.leave(leftover)
+        self._port.close_recording()
 
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held; in a forked child the transport is closed."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -11,12 +12,15 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import RetryPolicy
 from cobotwire.transport import Transport, open_transport
+from cobotwire.transport.tapped import tapped
 
 if TYPE_CHECKING:
+    from cobotwire.capture import Recording
     from cobotwire.protocol.limits import Limits
 
 
 OnError = Literal["stop", "leave"]
+RecordPath = str | os.PathLike[str]
 
 
 class Settings(NamedTuple):
@@ -108,3 +112,72 @@ def open_port(port: str | Transport, baudrate: int) -> Transport:
     """
     check_port(port)
     return open_transport(port, baudrate) if isinstance(port, str) else port
+
+
+class OpenPort(NamedTuple):
+    """An open transport, and the recording of its traffic, if there is one."""
+
+    transport: Transport
+    recording: Recording | None
+
+    def close(self) -> None:
+        """Close both. Closing twice is harmless.
+
+        Raises:
+            CaptureError: the recording is incomplete; the transport is closed all the same.
+        """
+        self.transport.close()
+        self.close_recording()
+
+    def close_recording(self) -> None:
+        """Finish the recording. Doing so twice is harmless.
+
+        Raises:
+            CaptureError: it is incomplete.
+        """
+        if self.recording is not None:
+            self.recording.close()
+
+
+class PortOpener(NamedTuple):
+    """What a client opens: its port, and the file to which it records, if any."""
+
+    port: str | Transport
+    baudrate: int
+    codec: Codec
+    record: RecordPath | None
+
+    def check(self) -> None:
+        """Check what can be checked before the port is opened.
+
+        Raises:
+            UsageError: the port or the path is not allowed.
+        """
+        check_port(self.port)
+        if self.record is not None and not isinstance(self.record, str | os.PathLike):
+            raise UsageError("record", self.record, "the path of a file")
+
+    def open(self) -> OpenPort:
+        """Open the port, then create the file. If one of them fails, neither remains.
+
+        Raises:
+            UsageError: the port, baud rate or path is not allowed, or the file exists already.
+            LinkError: the port does not exist, or cannot be opened.
+        """
+        self.check()
+        transport = open_port(self.port, self.baudrate)
+        if self.record is None:
+            return OpenPort(transport, None)
+        # Imported here: few programs record, and all of them import this.
+        from cobotwire.capture import Recording
+
+        try:
+            recording = Recording(
+                self.record, self.codec, url=transport.url, baudrate=self.baudrate
+            )
+        except BaseException:
+            # An open transport of the caller's remains the caller's.
+            if transport is not self.port:
+                transport.close()
+            raise
+        return OpenPort(tapped(transport, recording.record), recording)

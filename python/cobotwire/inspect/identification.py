@@ -7,6 +7,7 @@ after another, one query that no other edition has. A legal reply to it decides.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,6 +16,7 @@ from cobotwire.client.opening import open_port
 from cobotwire.protocol.errors import EditionUnknown, ProtocolError, ReplyTimeout
 from cobotwire.protocol.table import Command, Table
 from cobotwire.transport import Transport
+from cobotwire.transport.tapped import borrowed
 
 if TYPE_CHECKING:
     from cobotwire.client import Client
@@ -97,7 +99,8 @@ def own_evidence(transport: Transport, names: list[str], **options: Any) -> Iter
         package = editions.load(name)
         command = own_query(package.TABLE)
         if command is not None:
-            found = ask(package.CLIENT(transport, **options), command, name)
+            with closing(package.CLIENT(borrowed(transport), **options)) as client:
+                found = ask(client, command, name)
             yield found
             if found.replied:
                 return
@@ -144,8 +147,8 @@ def identify_on(transport: Transport, *, timeout: float | None = None) -> Identi
     """
     names = newest_first()
     first = editions.load(names[0])
-    client = first.CLIENT(transport, timeout=timeout)
-    evidence = [ask(client, first.TABLE.in_role("powered"))]
+    with closing(first.CLIENT(borrowed(transport), timeout=timeout)) as client:
+        evidence = [ask(client, first.TABLE.in_role("powered"))]
     if evidence[0].text != "no reply":
         evidence += own_evidence(transport, names, timeout=timeout)
     last = evidence[-1]
@@ -181,12 +184,13 @@ def connect(port: str, *, baudrate: int | None = None, **options: Any) -> MyCobo
         with cobotwire.connect("/dev/ttyACM0") as arm:
             print(type(arm).__name__, arm.get_angles())
 
-    At most three harmless queries are sent; nothing moves.
+    At most three harmless queries are sent; nothing moves. ``record`` does not record them, since
+    the edition of the recording is not known before.
 
     Args:
         port: a serial port or a URL.
         baudrate: bits a second; default: that of the editions.
-        options: further arguments of the client, such as ``timeout`` and ``limits``.
+        options: further arguments of the client, such as ``timeout``, ``limits`` and ``record``.
 
     Raises:
         UsageError: an argument is not allowed.
@@ -196,7 +200,7 @@ def connect(port: str, *, baudrate: int | None = None, **options: Any) -> MyCobo
     transport = _open(port, baudrate)
     try:
         edition = _known(identify_on(transport, timeout=options.get("timeout")))
-        client: Any = editions.load(edition).CLIENT(transport, **options)
+        client: Any = editions.load(edition).CLIENT(transport, baudrate=baudrate, **options)
     except BaseException:
         transport.close()
         raise
