@@ -5,16 +5,21 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import pytest
 
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.codec import CodecName
+from cobotwire.codec.interface import Noise
 from cobotwire.conformance.reports import from_json
-from cobotwire.editions.mycobot280 import GetAngles
+from cobotwire.diagnose import DamagedFrame, Diagnoser
+from cobotwire.editions.mycobot280 import GetAngles, PowerOn, SendRadians, SetEndType
 from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.messages import Request
+from cobotwire.session.received import ReceivedMeanwhile
+from cobotwire.session.request import RequestEncoder
 from cobotwire.session.sampling import Sampler, check_requests
 from cobotwire.simulator.faults import find
 from cobotwire.simulator.testing.options import combined
@@ -44,6 +49,10 @@ SENTENCES: dict[str, tuple[Callable[[], object], str]] = {
     "request": (
         lambda: check_requests((GetAngles(), GetAngles()), TABLE),
         "requests[1] repeats GetAngles(); a stream sends each query once",
+    ),
+    "query": (
+        lambda: check_requests((PowerOn(),), TABLE),
+        "requests[0] is power_on, which is not a query; a stream can send ",
     ),
     "scenario": (lambda: find("pannic"), "there is no scenario 'pannic'; did you mean panic?"),
     "mark": (
@@ -83,3 +92,56 @@ def test_length_error_names_every_command_that_shares_the_id(
     with pytest.raises(ProtocolError) as caught:
         codecs.load(TABLE, codec).decode(direction, frame)  # type: ignore[arg-type]
     assert f"LEN of the {direction} {id:02X} ({names}) is 03" in str(caught.value)
+
+
+@pytest.mark.parametrize("codec", get_args(CodecName))
+@pytest.mark.parametrize(
+    ("request_", "text"),
+    [
+        (
+            SendRadians([999, 0, 0, 0, 0, 0], 30),
+            "radians.j1 is 999; allowed: a number -2.9321..2.9321 radians",
+        ),
+        (
+            SendRadians([0, 0, 0, 0, 0, "x"], 30),  # type: ignore[list-item]
+            "radians.j6 is 'x'; allowed: a number -3.1415..3.1415 radians",
+        ),
+        (SendRadians(3, 30), "radians is 3; allowed: a sequence of 6 numbers"),  # type: ignore[arg-type]
+        (SendRadians([0] * 6, 101), "speed is 101; allowed: a whole number 1..100 percent"),
+        (SetEndType(7), "end is 7; allowed: FLANGE (0), TOOL (1)"),
+    ],
+)
+def test_error_of_an_argument_has_the_units_and_names_of_the_caller(
+    codec: CodecName, request_: Request[Any], text: str
+) -> None:
+    encoder = RequestEncoder(codecs.load(TABLE, codec))
+    with pytest.raises(UsageError) as caught:
+        encoder.encode_request(request_)
+    assert str(caught.value).startswith(text)
+
+
+@pytest.mark.parametrize("codec", get_args(CodecName))
+def test_bounds_in_radians_are_allowed_themselves(codec: CodecName) -> None:
+    encoder = RequestEncoder(codecs.load(TABLE, codec))
+    for bound in (-2.9321, 2.9321):
+        encoder.encode_request(SendRadians([bound, 0, 0, 0, 0, 0], 30))
+
+
+@pytest.mark.parametrize("name", ["get_angles", "get_radians"])
+def test_timeout_names_the_command_that_was_called_in_a_damaged_reply(name: str) -> None:
+    codec = codecs.load(TABLE)
+    received = ReceivedMeanwhile()
+    for event in [*(framer := codec.framer("reply")).feed(REPLY[:-1] + b"\xfb"), *framer.flush()]:
+        assert isinstance(event, Noise)
+        received.add(event)
+    [line] = received.lines(codec, bytes.fromhex("FE FE 02 20 FA"), TABLE.command(name))
+    assert f"damaged {name}: its end or check is wrong" in line
+
+
+def test_diagnosis_without_a_call_names_every_command_that_shares_the_id() -> None:
+    codec = codecs.load(TABLE)
+    diagnoser, framer = Diagnoser(codec), codec.framer("reply")
+    diagnoser.feed([*framer.feed(REPLY[:-1] + b"\xfb"), *framer.flush()])
+    [found] = diagnoser.flush()
+    assert isinstance(found, DamagedFrame)
+    assert found.command == "get_angles or get_radians"

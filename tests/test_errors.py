@@ -21,7 +21,7 @@ from cobotwire.protocol.errors import (
 )
 
 ERRORS = [
-    UsageError("angles[2]", 400, "-160..160 degree"),
+    UsageError("angles[2]", 400, "-160..160 degrees"),
     ProtocolError("bad-value", 4, b"\xfe\xfe", "is_power_on: powered holds 7"),
     LinkError("/dev/ttyACM0", "it is gone", 3),
     ReplyTimeout("get_angles", 0.5, ("noise",), 3, "get_angles()"),

@@ -130,9 +130,9 @@ def test_decode_of_hex_explains_each_byte() -> None:
     result = run("decode", "FE FE 06 21 01 00 1D 14 FA")
     assert result.returncode == 0
     for line in (
-        "request: send_angle(joint=1, angle=0.29 degree, speed=20 percent)",
+        "request: send_angle(joint=1, angle=0.29 degrees, speed=20 percent)",
         "CMD            send_angle: Send one joint to an angle",
-        "5  00 1D  angle          0.29 degree",
+        "5  00 1D  angle          0.29 degrees",
         "8  FA     footer",
     ):
         assert line in result.stdout
@@ -198,7 +198,7 @@ def test_edition_that_is_not_named_is_that_of_todays_arm() -> None:
 
 def test_commands_describes_one_command_byte_by_byte() -> None:
     result = run("--edition", "mycobot", "commands", "send_coord")
-    for words in ("0x24  motion", "5-6   coord", "-3253.5..3300 millimetre (x 10)", "1 X, 2 Y"):
+    for words in ("0x24  motion", "5-6   coord", "-3253.5..3300 millimetres (x 10)", "1 X, 2 Y"):
         assert words in result.stdout
     assert "Disputed" in result.stdout
     assert "<ssid>" in run("commands", "get_ssid_pwd").stdout

@@ -60,13 +60,13 @@ def test_limits_apply_in_radians_and_to_jogging() -> None:
 @pytest.mark.parametrize("codec", NAMES)
 def test_wider_limits_must_be_explicit_and_fit_the_wire(codec: codecs.CodecName) -> None:
     wide: list[Any] = [(-200, 200), *REST]
-    with pytest.raises(UsageError, match=r"inside -168\.\.168 degree.*wider=True") as caught:
+    with pytest.raises(UsageError, match=r"inside -168\.\.168 degrees.*wider=True") as caught:
         MyCobot280(RecordingTransport(), limits=Limits(wide))
     assert caught.value.argument == "limits.joints[0]"
     transport = RecordingTransport()
     MyCobot280(transport, codec=codec, limits=Limits(wide, wider=True)).send_angle(1, -200, 20)
     assert transport.written == bytes.fromhex("FE FE 06 21 01 B1 E0 14 FA")
-    with pytest.raises(UsageError, match=r"-327\.68\.\.327\.67 degree, what the wire carries"):
+    with pytest.raises(UsageError, match=r"-327\.68\.\.327\.67 degrees, what the wire carries"):
         MyCobot280(RecordingTransport(), limits=Limits([(-400, 0), *REST], wider=True))
 
 

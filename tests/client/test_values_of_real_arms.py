@@ -63,7 +63,7 @@ def test_angle_that_no_servo_can_report_is_a_protocol_error(
     arm: Any
     with ScriptedPeer([_angles_reply(1, 2, word, 4, 5, 6)]) as peer:
         with editions.load(edition).CLIENT(peer.url, codec=codec) as arm:
-            with pytest.raises(ProtocolError, match=r"-181\.\.181 degree \(at byte 8 of"):
+            with pytest.raises(ProtocolError, match=r"-181\.\.181 degrees \(at byte 8 of"):
                 arm.get_angles()
 
 

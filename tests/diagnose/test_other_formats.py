@@ -73,5 +73,7 @@ def test_truncated_frame_has_the_name_of_its_command(codec: Codec, lost: int) ->
     frame = codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)])
     found = _diagnose(codec, [frame[:-lost]])
     assert isinstance(found[0], DamagedFrame)
-    assert (found[0].command, found[0].offset) == ("get_angles", 0)
+    names = [command.name for command in codec.table.commands if command.id == found[0].id]
+    assert (found[0].command, found[0].offset) == (" or ".join(names), 0)
+    assert "get_angles" in names
     assert not any(isinstance(item, Frame | Noise) for item in found)

@@ -24,7 +24,7 @@ def test_adjacent_noise_is_one_line_and_little_memory(codec: Codec) -> None:
     used, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert used < 4 * KEPT
-    [line] = received.lines(codec, REQUEST)
+    [line] = received.lines(codec, REQUEST, codec.table.command("get_encoder"))
     assert line == f"noise (no-header) {'81 ' * 23}81 ... 40960000 bytes"
 
 
@@ -42,7 +42,7 @@ def test_noise_is_listed_with_its_diagnosis(codec: Codec, data: bytes, message: 
     received = ReceivedMeanwhile()
     for offset, byte in enumerate(data):
         received.add(Noise(offset, bytes([byte]), "no-header"))
-    [line] = received.lines(codec, REQUEST)
+    [line] = received.lines(codec, REQUEST, codec.table.command("get_encoder"))
     assert line.partition(": ")[2] == message
 
 
@@ -53,7 +53,7 @@ def test_panic_interrupted_by_a_frame_is_diagnosed_in_its_first_line(codec: Code
     received.add(Noise(0, PANIC[:30], "no-header"))
     received.add(UnexpectedFrame(Frame(30, frame.data, frame.command)))
     received.add(Noise(30 + len(frame.data), PANIC[30:] + REBOOT, "no-header"))
-    first, second, third = received.lines(codec, REQUEST)
+    first, second, third = received.lines(codec, REQUEST, codec.table.command("get_encoder"))
     assert first.endswith("LoadProhibited")
     assert second == "frame FE FE 03 12 01 FA"
     assert third.startswith("noise (no-header)")
@@ -64,6 +64,9 @@ def test_only_the_last_lines_are_kept(codec: Codec) -> None:
     for index in range(1000):
         received.add(UnexpectedFrame(Frame(index, bytes([index % 256]), 1)))
         received.add(Noise(index, b"\xff", "no-header"))
-    assert received.lines(codec, REQUEST)[-1] == "noise (no-header) FF"
-    assert received.lines(codec, REQUEST)[-2] == "frame E7"
-    assert len(received.lines(codec, REQUEST)) == LINES
+    assert (
+        received.lines(codec, REQUEST, codec.table.command("get_encoder"))[-1]
+        == "noise (no-header) FF"
+    )
+    assert received.lines(codec, REQUEST, codec.table.command("get_encoder"))[-2] == "frame E7"
+    assert len(received.lines(codec, REQUEST, codec.table.command("get_encoder"))) == LINES

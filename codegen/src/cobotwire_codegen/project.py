@@ -20,6 +20,7 @@ from cobotwire_codegen.render import (
     with_used_types,
 )
 from cobotwire_codegen.render.sharing import Sharing
+from cobotwire_codegen.render.unit_module import render_units
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
@@ -65,6 +66,8 @@ def committed(root: Path, found: list[Edition]) -> list[Target]:
         made.append(Target(reference / edition.name, render_reference(edition)))
     made.append(Target(root / "docs" / "_static" / "decoder" / "tables", render_decoder(found)))
     made.append(schema_target(root, found))
+    units = {PurePosixPath("units.py"): render_units()}
+    made.append(Target(root / "python" / "cobotwire" / "protocol", units, alone=False))
     made.append(Target(reference, {PurePosixPath("language.md"): language_page()}, alone=False))
     return made
 

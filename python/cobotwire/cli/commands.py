@@ -86,4 +86,4 @@ def _allowed(field: Field, number: Number) -> str:
         return ", ".join(f"{c} {label}" for c, label in zip(field.choices, field.labels))
     low, high = number.physical(number.minimum), number.physical(number.maximum)
     step = f" (x {number.divide / number.multiply:g})" if number.scaled else ""
-    return f"{low:g}..{high:g} {number.unit}".strip() + step
+    return f"{low:g}..{high:g} {number.units}".strip() + step

@@ -25,7 +25,10 @@ _SLACK = (0, -1, 1, -2, 2)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DamagedFrame(Finding):
-    """The header and id of a command without a legal frame; both are None if it is cut before."""
+    """The header and id of a command without a legal frame; both are None if it is cut before.
+
+    ``command`` names every command with the id.
+    """
 
     command: str | None
     id: int | None
@@ -48,10 +51,14 @@ class DamagedFrames(FrameStarts):
         super().__init__(codec, listening)
         # Every LEN that is legal with an id, in any direction.
         self._lengths: dict[int, set[int]] = {}
+        # Nothing tells which one of the commands that share an id it was.
+        self._all_names: dict[int, str] = {}
         for command in codec.table.commands:
             variants = (v for d in DIRECTIONS for v in command.variants(d))
             legal = {self._format.length(variant.size) for variant in variants}
             self._lengths.setdefault(command.id, set()).update(legal)
+            before = self._all_names.get(command.id)
+            self._all_names[command.id] = f"{before} or {command.name}" if before else command.name
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
         """Recognise what is left of a frame at ``at``."""
@@ -67,7 +74,7 @@ class DamagedFrames(FrameStarts):
         if isinstance(extent, Wait):
             return extent
         spans = residue.spans(at, extent)
-        return DamagedFrame(spans=spans, reason=reason, command=self._names[id], id=id)
+        return DamagedFrame(spans=spans, reason=reason, command=self._all_names[id], id=id)
 
     def _start_only(self, residue: Residue, at: int, limit: int) -> Finding | None:
         """Return the start of a frame that is cut before its id."""

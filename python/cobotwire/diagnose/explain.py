@@ -99,7 +99,7 @@ def format_value(field: Field, number: Number, value: Any) -> str:
         return "yes" if value else "no"
     if field.labels:
         return f"{field.labels[field.choices.index(value)]} ({value})"
-    unit = f" {number.unit}" if number.unit else ""
+    unit = f" {number.units}" if number.unit else ""
     return f"{value:g}{unit}" if isinstance(value, float) else f"{value}{unit}"
 
 
@@ -115,9 +115,9 @@ def format_message(message: DecodedMessage) -> str:
 
 
 def _format_tuple(numbers: Iterator[tuple[Number, Any]]) -> str:
-    """Return a tuple that names each unit once: ``(0, 0, 50 millimetre; 0, 0, 0 degree)``."""
+    """Return a tuple that names each unit once: ``(0, 0, 50 millimetres; 0, 0, 0 degrees)``."""
     groups = []
-    for unit, group in groupby(numbers, key=lambda pair: pair[0].unit):
+    for unit, group in groupby(numbers, key=lambda pair: pair[0].units):
         values = ", ".join(f"{value:g}" for _, value in group)
         groups.append(f"{values} {unit}".strip())
     return f"({'; '.join(groups)})"

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.units import PLURALS
 
 FieldKind = Literal["number", "flag", "enum"]
 # The raw values of a message, by field and element.
@@ -47,6 +48,11 @@ class Number:
     def scaled(self) -> bool:
         """Whether the physical value is a float (True) or the raw value itself (False)."""
         return not self.multiply == self.divide == 1
+
+    @property
+    def units(self) -> str:
+        """The unit as it follows a number: its plural; empty if there is none."""
+        return PLURALS.get(self.unit, self.unit)
 
     @property
     def raw_range(self) -> tuple[int, int]:

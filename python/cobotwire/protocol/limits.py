@@ -84,7 +84,7 @@ class _Rule:
             why = (
                 "what the wire carries" if self._wider else "the edition's; wider=True allows more"
             )
-            allowed = f"a range inside {low:g}..{high:g} {number.unit}, {why}"
+            allowed = f"a range inside {low:g}..{high:g} {number.units}, {why}"
             raise UsageError(f"limits.{self._what}[{part}]", given, allowed)
         return replace(number, minimum=lowest, maximum=highest)
 

@@ -133,6 +133,11 @@ class Message:
         return fields
 
     @property
+    def fields_in_radians(self) -> frozenset[str]:
+        """The names of the fields in radians; the wire carries them in degrees."""
+        return self._radians
+
+    @property
     def values(self) -> tuple[Any, ...]:
         """The values of the frame in the order of the wire, as ``codec.encode`` takes them."""
         raise NotImplementedError

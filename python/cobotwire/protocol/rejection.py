@@ -6,6 +6,7 @@ codecs have the same texts.
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 from cobotwire.protocol.errors import ProtocolError, UsageError
@@ -65,10 +66,26 @@ def reject_value(
         allowed = _elements(case) if field.many else _allowed(field, case.numbers[0])
         return UsageError(field.name, value, allowed)
     number = case.numbers[element]
-    name = field.name
-    if field.many:
-        name += f".{number.name}" if number.name else f"[{element}]"
-    return UsageError(name, value, _allowed(field, number))
+    return UsageError(_element(field, number, element), value, _allowed(field, number))
+
+
+def reject_radians(error: UsageError, field: Field, given: Any) -> UsageError:
+    """Return the error for a value that the caller gave in radians, and the wire has in degrees.
+
+    ``error`` is the codec's, about the field in degrees; ``given`` is what the caller gave.
+    """
+    elements = {_element(field, number, at): at for at, number in enumerate(field.cases[0].numbers)}
+    at = elements.get(error.argument)
+    if at is None:
+        # It is about the row as a whole, or about its length.
+        whole = error.argument == field.name
+        return UsageError(field.name, given, error.allowed) if whole else error
+    number = field.cases[0].numbers[at]
+    bounds = number.exact(number.minimum), number.exact(number.maximum)
+    # Rounded inwards, so that the bounds themselves are allowed.
+    low, high = (math.trunc(math.radians(bound) * 1e4) / 1e4 for bound in bounds)
+    value = list(given)[at] if field.many else given
+    return UsageError(error.argument, value, f"a number {low:g}..{high:g} radians")
 
 
 def reject_raw(
@@ -134,6 +151,13 @@ def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
     return f"LEN of the {direction} {id:02X} ({name}) is {data[at]:02X}; allowed: {lengths}"
 
 
+def _element(field: Field, number: Number, at: int) -> str:
+    """Return the name of a number of a field in a text."""
+    if not field.many:
+        return field.name
+    return f"{field.name}.{number.name}" if number.name else f"{field.name}[{at}]"
+
+
 def _elements(case: Case) -> str:
     names = [number.name for number in case.numbers]
     text = f"a sequence of {len(names)} numbers"
@@ -148,7 +172,7 @@ def _allowed(field: Field, number: Number) -> str:
     if field.choices:
         return ", ".join(map(str, field.choices))
     kind = "a number" if number.scaled else "a whole number"
-    unit = f" {number.unit}" if number.unit else ""
+    unit = f" {number.units}" if number.unit else ""
     return f"{kind} {_bound(number, number.minimum)}..{_bound(number, number.maximum)}{unit}"
 
 

@@ -69,9 +69,10 @@ class Pending:
 
     def expire(self, codec: Codec, waited: float, attempts: int) -> None:
         """End it with a ReplyTimeout, which lists what was received meanwhile."""
-        received = () if self._received is None else self._received.lines(codec, self.request.frame)
+        frame, command = self.request.frame, self.request.command
+        received = () if self._received is None else self._received.lines(codec, frame, command)
         call = as_call(self.request, codec)
-        self.fail(ReplyTimeout(self.request.command.name, waited, received, attempts, call))
+        self.fail(ReplyTimeout(command.name, waited, received, attempts, call))
 
     def cancel(self) -> None:
         """End it without a word: its caller does not wait any longer."""

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import replace
 
 from cobotwire.codec.interface import Codec, Event, Noise
+from cobotwire.protocol.table import Command
 from cobotwire.session.events import AckReceived, EchoReceived, FrameEvent, LateReply
 
 # At most this many lines are kept, and this many bytes of each are shown.
@@ -55,9 +57,12 @@ class ReceivedMeanwhile:
             self._items.append(last)
         last.add(event.data)
 
-    def lines(self, codec: Codec, request: bytes) -> tuple[str, ...]:
-        """Return a line for each item, oldest first; ``request`` are bytes the line may echo."""
-        diagnoses = _diagnoses(self._items, codec, request)
+    def lines(self, codec: Codec, request: bytes, command: Command) -> tuple[str, ...]:
+        """Return a line for each item, oldest first.
+
+        ``request`` are bytes the line may echo; ``command`` is the one that was called.
+        """
+        diagnoses = _diagnoses(self._items, codec, request, command)
         return tuple(
             _noise_line(item, next(diagnoses))
             if isinstance(item, _NoiseSpan)
@@ -66,15 +71,24 @@ class ReceivedMeanwhile:
         )
 
 
-def _diagnoses(items: deque[_Item], codec: Codec, request: bytes) -> Iterator[str]:
+def _diagnoses(
+    items: deque[_Item], codec: Codec, request: bytes, command: Command
+) -> Iterator[str]:
     """Yield for each span what begins in it, as a sentence; empty where nothing is recognised."""
     # Imported here: most programs never need it.
-    from cobotwire.diagnose import Diagnoser, Finding, Summary, Unrecognised
+    from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Summary, Unrecognised
 
     diagnoser = Diagnoser(codec, "reply")
     diagnoser.sent(request)
     found = [*diagnoser.feed(_as_events(items)), *diagnoser.flush()]
     findings = [i for i in found if isinstance(i, Finding) and not isinstance(i, Unrecognised)]
+    # Of the commands that share an id, the user knows the one that was called.
+    findings = [
+        replace(found, command=command.name)
+        if isinstance(found, DamagedFrame) and found.id == command.id
+        else found
+        for found in findings
+    ]
     for span in (item for item in items if isinstance(item, _NoiseSpan)):
         end = span.offset + span.size
         yield str(Summary(f for f in findings if span.offset <= f.offset < end))

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.messages import Request, Result
+from cobotwire.protocol.rejection import reject_radians
 from cobotwire.protocol.table import Command
 from cobotwire.session import text
 
@@ -47,7 +48,10 @@ class RequestEncoder:
             return known
         command, _ = self._command(request.command)
         texts = None if command.request_text is None else request.text_values
-        return self.encode(request.command, values, texts)
+        try:
+            return self.encode(request.command, values, texts)
+        except UsageError as error:
+            raise _in_units_of_caller(error, command, request) from None
 
     def encode(
         self, name: str, values: Sequence[Any], text_values: Mapping[str, str] | None = None
@@ -86,6 +90,16 @@ def request_of(frame: bytes, codec: Codec) -> EncodedRequest | None:
         return None
     arguments = message.fields if _can_repeat(message.command) else {}
     return EncodedRequest(message.command, frame, b"", arguments)
+
+
+def _in_units_of_caller(error: UsageError, command: Command, request: Request[Any]) -> UsageError:
+    """Return the error in radians if the caller gave radians."""
+    name = error.argument.partition(".")[0].partition("[")[0]
+    if name not in request.fields_in_radians:
+        return error
+    fields = (field for variant in command.request for field in variant.fields)
+    field = next(field for field in fields if field.name == name)
+    return reject_radians(error, field, getattr(request, name))
 
 
 def _can_repeat(command: Command) -> bool:

@@ -132,7 +132,8 @@ def check_requests(requests: Sequence[Request[Any]], table: Table) -> None:
             raise UsageError(name, request, "a request such as GetAngles()")
         command = table.command(request.command)
         if command.safety != "query" or not command.answers:
-            raise UsageError(name, request, f"a query: {_queries(table)}")
+            message = f"{name} is {command.name}, which is not a query; a stream can send "
+            raise UsageError(name, request, message=message + _queries(table))
         if request in requests[:index]:
             message = f"{name} repeats {request!r}; a stream sends each query once"
             raise UsageError(name, request, message=message)

@@ -15,6 +15,7 @@ RESERVED_FIELDS = frozenset(
         "bool",
         "command",
         "fields",
+        "fields_in_radians",
         "float",
         "from_fields",
         "int",

@@ -152,4 +152,4 @@ def _places(codec: Codec, line: ScriptLine, frame: bytes) -> Iterator[Place]:
 
 
 def _shown(place: Place, raw: int) -> str:
-    return f"{place.number.physical(raw):g} {place.number.unit}".rstrip()
+    return f"{place.number.physical(raw):g} {place.number.units}".rstrip()

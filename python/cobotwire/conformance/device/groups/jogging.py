@@ -96,7 +96,7 @@ def _stays(
         after, _ = _where(probe, part)
         if _off(numbers, before, after):
             wrong = _off(numbers, [*before[:at], target, *before[at + 1 :]], after)
-            call = f"{probe.command.name}({part.name}={chosen}), {distance} {numbers[at].unit}"
+            call = f"{probe.command.name}({part.name}={chosen}), {distance} {numbers[at].units}"
             probe.expect(ARRIVES, not wrong, f"{call} from there: {'; '.join(wrong)}")
             return False
     return True
@@ -192,7 +192,7 @@ def _short(moved: Sequence[float]) -> str:
 
 def _off(numbers: tuple[Number, ...], wanted: Sequence[float], came: Sequence[float]) -> list[str]:
     return [
-        f"{number.name}: expected {want:.2f}, is {have:.2f} {number.unit}"
+        f"{number.name}: expected {want:.2f}, is {have:.2f} {number.units}"
         for number, want, have in zip(numbers, wanted, came)
         if abs(want - have) > STRAYS[number.unit]
     ]
