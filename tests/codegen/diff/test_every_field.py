@@ -50,7 +50,7 @@ NEW: dict[str, Any] = {
     "changes": (model.Change(PLACE, "It changed.", "So.", ()),),
     "disputed": (model.Dispute(PLACE, "It does.", "So.", "low", ()),),
     "errata": (model.Erratum(PLACE, (), "text", (), None, "a", "b", "c"),),
-    "addresses": (model.Member(PLACE, "ALL", 0, ""),),
+    "addresses": (model.Address(PLACE, "ALL", 0, "", "own"),),
     "rejected": ("bad-length", 2),
     "source": ((1, 2),),
     "read_by": model.ReadBack(PLACE, "get_pose", ()),

@@ -12,11 +12,20 @@ from cobotwire_codegen.model.commands import (
     Text,
     Variant,
 )
-from cobotwire_codegen.model.edition import Edition, Erratum, Frame, Geometry, Link, Vector
+from cobotwire_codegen.model.edition import (
+    Address,
+    Edition,
+    Erratum,
+    Frame,
+    Geometry,
+    Link,
+    Vector,
+)
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Type, Value, Wire
 
 __all__ = [
+    "Address",
     "Change",
     "Command",
     "Dispute",
