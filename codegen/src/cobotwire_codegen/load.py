@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -91,8 +92,12 @@ def _at(before: str, name: str) -> Place:
     return Place(name, before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1)
 
 
+@lru_cache(maxsize=256)
 def parse(text: str, name: str) -> Node:
     """Return the root node of YAML text; ``name`` stands for the file in messages.
+
+    Parsing takes most of the time of a build, and the files of a base are read again for each of
+    its deltas. So equal text gets the same nodes; nobody may change them.
 
     Raises:
         SpecError: the text is not YAML, gives a key twice, or exceeds a limit.
