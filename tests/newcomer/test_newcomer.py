@@ -139,6 +139,15 @@ def test_package_built_from_one_yaml_file_talks_to_its_simulator(
         run("cargo", "--version", env={**environment, "PATH": str(fresh)})
 
 
+def test_delta_of_an_edition_that_the_package_ships_needs_no_clone(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    text = "edition: mine\nclass: Mine\ntitle: Mine\ndoc: Mine.\nbase: cobotwire:mycobot280\n"
+    (tmp_path / "mine.yaml").write_text(text)
+    built = run("cobotwire-gen", "build", "mine.yaml", "--out", "m", cwd=tmp_path, env=environment)
+    assert "mine (108 commands)" in built.stdout
+
+
 def test_command_line_works_without_extras_and_names_a_missing_one(
     environment: dict[str, str],
 ) -> None:

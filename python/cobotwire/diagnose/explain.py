@@ -8,10 +8,9 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec, DecodedMessage
-from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.frame_index import FrameIndex
-from cobotwire.protocol.table import Direction, Field, Number, Table
+from cobotwire.protocol.table import Direction, Field, FrameFormat, Number
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 # A polled arm repeats itself: the readings of this many different frames are kept.
@@ -68,14 +67,12 @@ class FrameReader:
             return Reading(direction, None, error)
 
 
-def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[Part]:
+def frame_parts(frame: FrameFormat, data: bytes, message: DecodedMessage) -> Iterator[Part]:
     """Yield every byte of a legal frame with its meaning, in order."""
-    frame = table.frame
     start = frame.length_at
     yield Part(0, data[: len(frame.header)], "header", "a frame starts here")
     if message.address is not None:
-        device = address_name(table, message.address)
-        yield Part(start - 1, data[start - 1 : start], "address", device)
+        yield Part(start - 1, data[start - 1 : start], "address", str(message.address))
     length = data[start]
     yield Part(start, data[start : start + 1], "LEN", f"{length}: {length} bytes follow")
     command = message.command
@@ -114,9 +111,7 @@ def format_message(message: DecodedMessage) -> str:
         text = _format_tuple(numbers) if field.many else format_value(field, *next(numbers))
         values.append(f"{field.name}={text}")
     arrow = "" if message.direction == "request" else "-> "
-    way = "to" if message.direction == "request" else "from"
-    device = "" if message.address is None else f" {way} address {message.address}"
-    return f"{arrow}{message.command.name}({', '.join(values)}){device}"
+    return f"{arrow}{message.command.name}({', '.join(values)})"
 
 
 def _format_tuple(numbers: Iterator[tuple[Number, Any]]) -> str:

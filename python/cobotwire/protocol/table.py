@@ -24,7 +24,6 @@ from cobotwire.protocol.made_messages import (
 from cobotwire.protocol.messages import Reply, Request
 
 __all__ = [
-    "Address",
     "Case",
     "Check",
     "Command",
@@ -208,30 +207,9 @@ class Dimensions(NamedTuple):
     encoder_signs: tuple[int, ...]
 
 
-class Address(NamedTuple):
-    """A value of the address byte.
-
-    Attributes:
-        name: its name in the edition.
-        value: the byte.
-        doc: which device has it.
-        replies: to a request, replies come from this address (``own``), from any address
-            (``any``: several devices receive it), or from none (``none``).
-    """
-
-    name: str
-    value: int
-    doc: str = ""
-    replies: Literal["own", "any", "none"] = "own"
-
-
 @dataclass(frozen=True, slots=True)
 class Table:
-    """One edition of the protocol.
-
-    ``geometry`` is None if the edition does not state it. ``addresses`` describes the addresses
-    of ``frame``, in the same order; it is empty if they have no names.
-    """
+    """One edition of the protocol; ``geometry`` is None if the edition does not state it."""
 
     edition: str
     title: str
@@ -240,7 +218,6 @@ class Table:
     frame: FrameFormat
     commands: tuple[Command, ...]
     geometry: Dimensions | None = None
-    addresses: tuple[Address, ...] = ()
 
     def command(self, name: str) -> Command:
         """Return the command called ``name``.

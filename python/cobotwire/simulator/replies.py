@@ -56,10 +56,9 @@ def _variant(command: Command, result: Mapping[str, Any]) -> Variant:
 
 
 def _legal(field: Field, usual: int) -> Any:
-    """Return the usual value if it is legal; else the nearest one, or the first of a list."""
-    listed = usual if usual in field.choices else next(iter(field.choices), None)
+    """Return the legal value that is nearest to the usual one."""
     values = [
-        number.physical(number.clamp(usual) if listed is None else listed)
+        number.physical(field.choices[0] if field.choices else number.clamp(usual))
         for number in field.cases[0].numbers
     ]
     return values if field.many else values[0]

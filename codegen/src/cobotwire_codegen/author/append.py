@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.build.packages import names_package
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load, parse
 from cobotwire_codegen.model import Edition
@@ -69,7 +70,8 @@ def files_of(path: Path) -> Iterator[Path]:
     root = load(path)
     entries = root.entries if isinstance(root, Mapping) else {}
     base = entries.get("base")
-    if isinstance(base, Scalar):
+    # An edition of a package is found from anywhere.
+    if isinstance(base, Scalar) and not names_package(str(base.value)):
         yield from files_of(path.parent / str(base.value))
     for key in _LISTED:
         for name in _names(entries.get(key)):

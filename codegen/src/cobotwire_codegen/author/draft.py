@@ -50,21 +50,18 @@ def command_lines(draft: Draft) -> list[str]:
 
 
 def vector_lines(
-    draft: Draft,
+    name: str,
+    command: str,
     direction: Direction,
-    which: int,
     frame: bytes,
     values: dict[str, object],
-    seen: bool,
+    source: str = "",
+    seen: bool = False,
 ) -> list[str]:
-    """Return an entry of the vectors file; ``which`` counts the message's variants from 0."""
-    lines = [
-        f"- name: {draft.name.replace('_', '-')}-{direction}{f'-{which + 1}' if which else ''}",
-        f"  command: {draft.name}",
-        f"  direction: {direction}",
-    ]
-    if draft.source:
-        lines.append(f"  source: [{draft.source}]")
+    """Return an entry of the vectors file; ``seen``: the frame was captured, not computed."""
+    lines = [f"- name: {name}", f"  command: {command}", f"  direction: {direction}"]
+    if source:
+        lines.append(f"  source: [{source}]")
     lines.append(f"  frame: {frame.hex(' ').upper()}")
     if values:
         shown = ", ".join(f"{name}: {_value(value)}" for name, value in values.items())

@@ -14,7 +14,7 @@ from cobotwire_codegen.build.delta_fields import change_fields, set_keys
 from cobotwire_codegen.build.parts import Named, Parts, find
 from cobotwire_codegen.build.types import evidence
 from cobotwire_codegen.errors import Problem
-from cobotwire_codegen.load import Mapping, Node, Scalar
+from cobotwire_codegen.load import Mapping, Node
 from cobotwire_codegen.model import Change
 from cobotwire_codegen.reader import Reader, chosen
 
@@ -53,6 +53,7 @@ def _remove(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
         holder = _holder(parts, reader, name)
         if holder is not None:
             del holder[name]
+            parts.inherited = [each for each in parts.inherited if each.command != name]
     return f"Removed {', '.join(names)}."
 
 
@@ -65,6 +66,10 @@ def _rename(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
             entries = [(new if key == name else key, value) for key, value in holder.items()]
             holder.clear()
             holder.update(entries)
+            parts.inherited = [
+                each._replace(command=new) if each.command == name else each
+                for each in parts.inherited
+            ]
     return f"Renamed {', '.join(names)} to {new}."
 
 
@@ -100,10 +105,10 @@ def _change_type(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
 
 def _withdraw(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     """Drop vectors of the base that do not hold here."""
-    known = {_vector_name(node): node for node in parts.vectors}
     for name in names:
-        if find(iter(known), name, "vector", reader.place, reader.problems):
-            parts.vectors.remove(known[name])
+        known = (each.vector.name for each in parts.inherited)
+        if find(known, name, "vector", reader.place, reader.problems):
+            parts.inherited = [each for each in parts.inherited if each.vector.name != name]
     return f"Withdrew vectors of the base: {', '.join(names)}."
 
 
@@ -114,14 +119,6 @@ OPERATIONS: dict[str, Operation] = {
     "change_type": _change_type,
     "withdraw": _withdraw,
 }
-
-
-def _vector_name(node: Node) -> str:
-    for key in ("example", "name"):
-        value = node.entries.get(key) if isinstance(node, Mapping) else None
-        if isinstance(value, Scalar):
-            return f"example-{value.value}" if key == "example" else str(value.value)
-    return ""
 
 
 def _holder(parts: Parts, reader: Reader, name: str) -> Named | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from cobotwire_codegen import language
@@ -9,11 +10,12 @@ from cobotwire_codegen.build.commands import build_family
 from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.frame import build_frame_format
 from cobotwire_codegen.build.geometry import build_geometry
-from cobotwire_codegen.build.parts import Files, Parts, add_own
+from cobotwire_codegen.build.inherit import carried
+from cobotwire_codegen.build.parts import Files, Inherited, Parts, add_own
 from cobotwire_codegen.build.types import Types
 from cobotwire_codegen.build.vectors import build_erratum, build_vector
 from cobotwire_codegen.errors import Problem, SpecError
-from cobotwire_codegen.model import Edition
+from cobotwire_codegen.model import Edition, Family, Frame, Vector
 from cobotwire_codegen.reader import Reader
 
 
@@ -46,7 +48,10 @@ def _collect(
         if base_path.resolve() in above:
             problem = Problem(base.place, "circular-base", "an edition cannot be its own base")
             raise SpecError([*problems, problem])
-        _, parts = _collect(base_path, root, problems, above)
+        base_reader, parts = _collect(base_path, root, problems, above)
+        parts.base = _build(base_reader, parts, problems)
+        parts.vectors = []
+        parts.inherited = [Inherited(each, each.command) for each in parts.base.vectors]
         # The base's errata are about the base's document, its changes about its own base.
         parts.errata, parts.changes, parts.general_changes = [], {}, []
         for node in files.listed(reader, language.DeltaEdition.changes):
@@ -59,6 +64,11 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
     spec = language.WholeEdition
     frame = build_frame_format(parts, reader.place, problems)
     types = Types(parts.types, problems)
+    families = tuple(
+        build_family(family, parts, types, frame.deadline_ms, problems)
+        for family in parts.families.values()
+        if family.commands
+    )
     return Edition(
         place=reader.place,
         name=reader.get(spec.edition),
@@ -73,18 +83,26 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         frame=frame,
         wires=tuple(types.wires.values()),
         types=tuple(types.types.values()),
-        families=tuple(
-            build_family(family, parts, types, frame.deadline_ms, problems)
-            for family in parts.families.values()
-            if family.commands
-        ),
+        families=families,
         errata=tuple(build_erratum(node, problems) for node in parts.errata),
-        vectors=tuple(build_vector(node, problems) for node in parts.vectors),
+        vectors=(
+            *_inherited(parts, frame, families),
+            *(build_vector(node, problems) for node in parts.vectors),
+        ),
         changes=tuple(parts.general_changes),
     )
+
+
+def _inherited(parts: Parts, frame: Frame, families: tuple[Family, ...]) -> Iterator[Vector]:
+    """Yield the base's vectors that the delta has not withdrawn."""
+    commands = {command.name: command for family in families for command in family.commands}
+    for vector, name in parts.inherited:
+        assert parts.base is not None, "only a delta inherits"
+        yield carried(vector, name, parts.base, frame, commands)
 
 
 def _base_name(reader: Reader) -> str:
     if reader.record is not language.DeltaEdition:
         return ""
-    return reader.get(language.DeltaEdition.base).rpartition("/")[2].removesuffix(".yaml")
+    base = reader.get(language.DeltaEdition.base)
+    return base.replace(":", "/").rpartition("/")[2].removesuffix(".yaml")

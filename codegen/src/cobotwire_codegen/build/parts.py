@@ -9,13 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from cobotwire_codegen import language
+from cobotwire_codegen.build.packages import names_package, packaged_edition
 from cobotwire_codegen.errors import Place, Problem, SpecError, nearest
 from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.language.shapes import items_of
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
-from cobotwire_codegen.model import Change
+from cobotwire_codegen.model import Change, Edition, Vector
 from cobotwire_codegen.reader import Reader
 
 Named = dict[str, tuple[Place, Node]]
@@ -32,6 +34,13 @@ class FamilyParts:
     commands: Named = field(default_factory=dict)
 
 
+class Inherited(NamedTuple):
+    """A vector of the base, and the name that the delta gives its command."""
+
+    vector: Vector
+    command: str
+
+
 @dataclass
 class Parts:
     """An edition as nodes. A delta changes them in place."""
@@ -46,7 +55,9 @@ class Parts:
     )
     families: dict[str, FamilyParts] = field(default_factory=dict)
     vectors: list[Node] = field(default_factory=list)
+    inherited: list[Inherited] = field(default_factory=list)
     errata: list[Node] = field(default_factory=list)
+    base: Edition | None = None
     changes: dict[str, list[Change]] = field(default_factory=dict)
     general_changes: list[Change] = field(default_factory=list)
 
@@ -76,12 +87,14 @@ class Files:
         return load(path, shown.as_posix())
 
     def path(self, node: Node) -> Path:
-        """Return the path of the file that a node names.
+        """Return the path of the file, or of the package's edition, that a node names.
 
         Raises:
-            SpecError: the file does not exist, so reading cannot continue.
+            SpecError: the file or package does not exist, so reading cannot continue.
         """
         name = node.value if isinstance(node, Scalar) else None
+        if isinstance(name, str) and names_package(name):
+            return packaged_edition(name, node.place)
         if not isinstance(name, str) or not self._is_file(name):
             shown = str(name) if len(str(name)) <= 80 else f"{str(name)[:77]}..."
             problem = Problem(node.place, "no-file", f"there is no file {shown}")

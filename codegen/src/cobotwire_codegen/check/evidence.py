@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from typing import Literal
 
 from cobotwire_codegen.errors import Problem, nearest
-from cobotwire_codegen.model import Edition, Vector
+from cobotwire_codegen.model import Command, Edition, Variant, Vector
 from cobotwire_codegen.wire import build_frame
+
+Direction = Literal["request", "reply"]
 
 
 def vectors_hold(edition: Edition) -> Iterator[Problem]:
@@ -52,7 +54,15 @@ def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
 
 def every_variant_shown(edition: Edition) -> Iterator[Problem]:
     """Report variants that no vector shows."""
-    directions: tuple[Literal["request", "reply"], ...] = ("request", "reply")
+    for command, direction, variant in unshown(edition):
+        fields = ", ".join(field.name for field in variant) or "no fields"
+        message = f"no vector shows the {direction} of {command.name} with {fields}"
+        yield Problem(command.place, "no-vector", message)
+
+
+def unshown(edition: Edition) -> Iterator[tuple[Command, Direction, Variant]]:
+    """Yield the variants that no vector shows, each with its command and direction."""
+    directions: tuple[Direction, ...] = ("request", "reply")
     shown = {
         (vector.command, vector.direction, tuple(name for name, _ in vector.values))
         for vector in edition.vectors
@@ -63,9 +73,7 @@ def every_variant_shown(edition: Edition) -> Iterator[Problem]:
             for variant in command.variants(direction):
                 names = tuple(field.name for field in variant)
                 if (command.name, direction, names) not in shown:
-                    fields = ", ".join(names) or "no fields"
-                    message = f"no vector shows the {direction} of {command.name} with {fields}"
-                    yield Problem(command.place, "no-vector", message)
+                    yield command, direction, variant
 
 
 def printed_explained(edition: Edition) -> Iterator[Problem]:

@@ -22,8 +22,6 @@ def words(edition: Edition) -> Iterator[Problem]:
 def _named(edition: Edition) -> Iterator[tuple[str, Place, str, str]]:
     yield edition.name, edition.place, LOWER, "mycobot"
     yield edition.class_name, edition.place, CLASS, "MyCobot"
-    for address in edition.frame.addresses:
-        yield address.attribute, address.place, LOWER, "LEFT"
     for family in edition.families:
         yield family.name, family.place, LOWER, "motion"
     for command in edition.commands:

@@ -34,7 +34,6 @@ RESERVED_FIELDS = frozenset(
 RESERVED_COMMANDS = frozenset(
     {
         "add_traffic_listener",
-        "at",
         "close",
         "codec",
         "listen",
@@ -92,19 +91,6 @@ def reserved(edition: Edition) -> Iterator[Problem]:
         for field in command.fields:
             if field.name in RESERVED_FIELDS:
                 yield _reserved(field.name, field.place)
-
-
-def addresses_apart(edition: Edition) -> Iterator[Problem]:
-    """Report addresses that would hide a command, another address, or an attribute of clients."""
-    seen = {command.name: command.place for command in edition.commands}
-    for address in edition.frame.addresses:
-        name = address.attribute
-        if name in RESERVED_COMMANDS:
-            yield _reserved(name, address.place)
-        elif name in seen:
-            message = f"clients already have {name}, for {seen[name]}; rename the address"
-            yield Problem(address.place, "reserved-name", message)
-        seen.setdefault(name, address.place)
 
 
 def items_free(edition: Edition) -> Iterator[Problem]:
@@ -165,4 +151,4 @@ def _classes(edition: Edition) -> Iterator[tuple[str, Place]]:
             yield type.class_name, type.place
 
 
-RULES = (reserved, addresses_apart, items_free, classes_apart)
+RULES = (reserved, items_free, classes_apart)

@@ -16,6 +16,7 @@ from cobotwire_codegen.cli.reconcile import reconcile
 from cobotwire_codegen.cli.render import render
 from cobotwire_codegen.cli.schema import schema
 from cobotwire_codegen.cli.shared import root_option
+from cobotwire_codegen.cli.vectors import vectors
 
 _EPILOG = (
     "Exit codes: 0 success; 1 something is stale or differs; 2 the spec or the command line is "
@@ -45,5 +46,18 @@ def main(ctx: click.Context, check_only: bool, with_products: bool, root: str) -
         ctx.invoke(generate, check_only=check_only, with_products=with_products, root=root)
 
 
-for verb in (build, render, check, model, explain, init, schema, diff, new_command, reconcile):
+VERBS = (
+    build,
+    render,
+    check,
+    model,
+    explain,
+    init,
+    schema,
+    diff,
+    new_command,
+    vectors,
+    reconcile,
+)
+for verb in VERBS:
     main.add_command(verb)

@@ -161,7 +161,9 @@ def _vectors(edition: Edition, draft: Draft, given: dict[str, str | None]) -> It
                 built = build_frame(edition.frame, command, direction, values)
             except ValueError as error:
                 raise click.UsageError(f"the {direction}'s vector: {error}") from None
-            yield vector_lines(draft, direction, which, built, values, bool(frame))
+            name = f"{draft.name.replace('_', '-')}-{direction}{f'-{which + 1}' if which else ''}"
+            seen = bool(frame)
+            yield vector_lines(name, draft.name, direction, built, values, draft.source, seen)
 
 
 def _values_of(

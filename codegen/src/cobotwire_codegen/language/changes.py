@@ -95,7 +95,7 @@ class _Change(Record):
 
 
 class RemoveCommands(_Change):
-    """Remove commands of the base."""
+    """Remove commands of the base, with their vectors."""
 
     remove = required(Names(), "The commands.")
     EXAMPLE = """\
@@ -106,7 +106,7 @@ evidence: [{source: a library 2.0, says: "it has no such method"}]
 
 
 class RenameCommand(_Change):
-    """Rename a command of the base."""
+    """Rename a command of the base; its vectors show it by the new name."""
 
     rename = required(Names(), "The command.")
     to = required(Name(METHOD), "The new name.")

@@ -7,7 +7,7 @@ from cobotwire_codegen.language.frame import FrameFile
 from cobotwire_codegen.language.geometry import Geometry
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField
-from cobotwire_codegen.language.names import CLASS, LOWER, METHOD
+from cobotwire_codegen.language.names import CLASS, FILE, IN_PACKAGE, LOWER, METHOD
 from cobotwire_codegen.language.proof import VECTOR, ErrataFile, Erratum, VectorsFile
 from cobotwire_codegen.language.records import (
     Choice,
@@ -85,10 +85,16 @@ class DeltaEdition(_Edition):
     """An edition that is stated as the difference from another one, its base.
 
     It inherits the frame, types, commands and vectors of its base, changes them as `changes` lists,
-    and adds types, commands and vectors of its own.
+    and adds types, commands and vectors of its own. If only the frame format, ranges or the number
+    of joints changed, the inherited vectors are derived again: a value outside its new range
+    becomes the nearest legal one. Published vectors state what they were derived from.
     """
 
-    base = required(Name(r"\.yaml$", "a file name"), "The file of the base.")
+    base = required(
+        Name(f"{FILE}|{IN_PACKAGE}", "a file name, or PACKAGE:EDITION"),
+        "The file of the base, or an edition that an installed package ships: "
+        "`cobotwire:mycobot280`.",
+    )
     joints = optional(Whole(0), f"{_JOINTS} Left out: as in the base.")
     frame = optional(InFile(FrameFile), f"{_FRAME} Left out: as in the base.")
     changes = optional(InFiles(_CHANGES), "The changes, in order.")

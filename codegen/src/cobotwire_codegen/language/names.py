@@ -9,3 +9,6 @@ METHOD = r"^[a-z][A-Za-z0-9_]*$"
 CLASS = r"^[A-Z][A-Za-z0-9]*$"
 ADDRESS = f"{LOWER}|{UPPER}"
 CASE = r"^[A-Z0-9-]"
+FILE = r"\.yaml$"
+# An edition of an installed package: cobotwire:mycobot280.
+IN_PACKAGE = r"^[a-z_][a-z0-9_]*:[a-z][a-z0-9_]*$"

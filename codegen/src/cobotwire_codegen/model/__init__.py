@@ -13,7 +13,7 @@ from cobotwire_codegen.model.commands import (
     Variant,
 )
 from cobotwire_codegen.model.edition import (
-    Address,
+    Derivation,
     Edition,
     Erratum,
     Frame,
@@ -22,12 +22,21 @@ from cobotwire_codegen.model.edition import (
     Vector,
 )
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
-from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Type, Value, Wire
+from cobotwire_codegen.model.types import (
+    Enum,
+    Flag,
+    Member,
+    Quantity,
+    Scalar,
+    Type,
+    Value,
+    Wire,
+)
 
 __all__ = [
-    "Address",
     "Change",
     "Command",
+    "Derivation",
     "Dispute",
     "Edition",
     "Enum",
@@ -44,6 +53,7 @@ __all__ = [
     "Quantity",
     "ReadBack",
     "Samples",
+    "Scalar",
     "Text",
     "Type",
     "Value",

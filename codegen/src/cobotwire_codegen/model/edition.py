@@ -9,23 +9,7 @@ from typing import Literal
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model.commands import Command, Family
 from cobotwire_codegen.model.facts import Change, Lines
-from cobotwire_codegen.model.types import Type, Wire
-
-
-@dataclass(frozen=True, slots=True)
-class Address:
-    """A value of the address byte, and from which address the replies to it come."""
-
-    place: Place
-    name: str
-    value: int
-    doc: str
-    replies: str
-
-    @property
-    def attribute(self) -> str:
-        """The attribute of clients that is the client for this address."""
-        return self.name.lower()
+from cobotwire_codegen.model.types import Member, Type, Wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +20,7 @@ class Frame:
     header: bytes
     check: Literal["footer", "crc16-modbus", "sum"]
     footer: bytes
-    addresses: tuple[Address, ...]
+    addresses: tuple[Member, ...]
     maximum_data: int
     doc: str
     baudrate: int
@@ -63,8 +47,20 @@ class Erratum:
 
 
 @dataclass(frozen=True, slots=True)
+class Derivation:
+    """What a vector of a delta was derived from: the edition, and its frame and values there."""
+
+    edition: str
+    frame: bytes
+    values: tuple[tuple[str, object], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Vector:
-    """A frame with the values that it carries. ``example`` counts the document's own, from 1."""
+    """A frame with the values that it carries. ``example`` counts the document's own, from 1.
+
+    With ``derived``, the frame was computed from a vector of the base; it is not evidence itself.
+    """
 
     place: Place
     name: str
@@ -79,6 +75,7 @@ class Vector:
     values: tuple[tuple[str, object], ...]
     says: str
     rejected: tuple[str, int] | None
+    derived: Derivation | None = None
 
 
 @dataclass(frozen=True, slots=True)

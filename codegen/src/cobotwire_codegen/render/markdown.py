@@ -89,13 +89,16 @@ def wire_variant(type: Type) -> str:
 
 
 def worked(edition: Edition, command: Command, direction: Direction) -> Vector | None:
-    """Return the best example of a message: preferably one that the document prints."""
+    """Return the best example of a message: preferably one that the document prints.
+
+    A vector that was derived from another edition's is the last choice.
+    """
     fitting = [
         vector
         for vector in edition.vectors
         if vector.command == command.name and vector.direction == direction and vector.frame
     ]
-    return min(fitting, key=lambda vector: vector.example is None, default=None)
+    return min(fitting, key=lambda each: (each.derived is not None, not each.example), default=None)
 
 
 def text_vector(edition: Edition, command: Command) -> Vector | None:

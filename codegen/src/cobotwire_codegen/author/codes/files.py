@@ -23,6 +23,15 @@ EXPLANATIONS = (
         "title: A lamp on two joints",
     ),
     Explanation(
+        "no-package",
+        "The base is an edition of a package that is not installed.",
+        "PACKAGE:EDITION names an edition that a Python package ships, so that a delta needs no "
+        "copy of its base.",
+        "Install the package where cobotwire-gen runs, or name a file as base.",
+        "base: lamps:lamp",
+        "base: lamp.yaml",
+    ),
+    Explanation(
         "no-file",
         "The edition names a file that does not exist.",
         "File names are relative to the edition's own file; the edition lacks the file's content.",

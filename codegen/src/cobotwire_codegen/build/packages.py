@@ -1,0 +1,44 @@
+"""Finds the specs that installed packages ship.
+
+A package ships its editions as ``spec/editions/NAME.yaml`` in its own folder, as ``cobotwire``
+does. The package is found, not imported: none of its code runs.
+"""
+
+from __future__ import annotations
+
+import re
+from importlib.util import find_spec
+from pathlib import Path
+
+from cobotwire_codegen.errors import Place, Problem, SpecError, nearest
+from cobotwire_codegen.language.names import IN_PACKAGE
+
+
+def names_package(base: str) -> bool:
+    """Return whether a base is an edition of a package, as ``cobotwire:mycobot280`` is."""
+    return re.search(IN_PACKAGE, base) is not None
+
+
+def packaged_edition(base: str, place: Place) -> Path:
+    """Return the edition file that a package ships.
+
+    Args:
+        base: the package and the edition, as ``cobotwire:mycobot280``.
+        place: where the spec names them.
+
+    Raises:
+        SpecError: the package is not installed, or it has no such edition.
+    """
+    package, _, edition = base.partition(":")
+    found = find_spec(package)
+    folders = (found.submodule_search_locations or ()) if found is not None else ()
+    if not folders:
+        message = f"the package {package} is not installed: pip install {package}"
+        raise SpecError([Problem(place, "no-package", message)])
+    shipped = {
+        path.stem: path for folder in folders for path in Path(folder).glob("spec/editions/*.yaml")
+    }
+    if edition not in shipped:
+        message = f"the package {package} ships no edition {edition}{nearest(edition, shipped)}"
+        raise SpecError([Problem(place, "no-file", message)])
+    return shipped[edition]
