@@ -106,8 +106,14 @@ def _requests(name: str) -> list[Arguments]:
     return found + (OLDER[name] if name in _AS_BEFORE else []) + _BY_HAND.get(name, [])
 
 
+# The document's commands that pymycobot's class for the 280 lacks; its class for the palletizer has
+# them.
+LACKING = ["jog_stop"]
+
 REQUESTS: dict[str, list[Arguments]] = {
-    command.name: _requests(command.name) for command in TABLE.commands
+    command.name: _requests(command.name)
+    for command in TABLE.commands
+    if command.name not in LACKING
 }
 
 # Calls that pymycobot completes with defaults or composes of several: its method and arguments, and

@@ -17,7 +17,7 @@ from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.editions.mycobot280 import MyCobot280 as OurMyCobot280
 from cobotwire.protocol.errors import UsageError
 from pymycobot_280_differences import DIFFERENCES, TEXTS, rejected_by_pymycobot
-from pymycobot_280_requests import COMPOSED, LOCAL, REQUESTS, as_called
+from pymycobot_280_requests import COMPOSED, LACKING, LOCAL, REQUESTS, as_called
 from pymycobot_classes import (
     REJECTIONS,
     MyCobot280,
@@ -26,13 +26,14 @@ from pymycobot_classes import (
     without_port,
     written,
 )
-from pymycobot_difference import M280, decoded_by, sent_by, sent_by_us
+from pymycobot_difference import M280, PALLETIZER, decoded_by, sent_by, sent_by_us
 from pymycobot_ports import ReplyingPort
 from strategies import codec_of
 
+COMPARED = [command for command in TABLE.commands if command.name not in LACKING]
 ASYNC = [
     command.name
-    for command in TABLE.commands
+    for command in COMPARED
     if "_async" in inspect.signature(getattr(MyCobot280, command.name)).parameters
 ]
 
@@ -98,15 +99,24 @@ def test_listed_difference_exists_and_is_decoded_as_listed(
 
 
 def test_all_108_commands_are_compared_and_exist_in_pymycobot() -> None:
-    assert list(REQUESTS) == [command.name for command in TABLE.commands]
+    assert list(REQUESTS) == [command.name for command in COMPARED]
     assert len(REQUESTS) == 108
-    for command in TABLE.commands:
+    for command in COMPARED:
         assert hasattr(MyCobot280, command.name)
         for variant in command.request:
             arguments = [field for field in variant.fields if field.cases[0].numbers[0].maximum > 0]
             sizes = [len(given) for given in REQUESTS[command.name]]
             assert len(arguments) in sizes or command.request_text, "each variant is compared"
             assert len(sizes) > 1 or not arguments
+
+
+@pytest.mark.parametrize("command", LACKING)
+def test_request_that_pymycobots_280_lacks_equals_that_of_its_palletizer(
+    command: str, codec: Codec
+) -> None:
+    assert not hasattr(MyCobot280, command)
+    theirs = written(without_port(PALLETIZER), command, ())
+    assert written(ours(codec), command, ()) == theirs
 
 
 def test_every_public_method_of_pymycobot_is_compared_or_sends_nothing() -> None:

@@ -113,3 +113,17 @@ def test_pose_beyond_the_wire_is_reported_as_the_nearest_value(bench: Bench) -> 
     bench.send("set_reference_frame", 1)
     assert bench.query("get_coords")[0] == 3276.7
     assert "nearest" in bench.arm.notes[-1].text
+
+
+def test_0x34_without_data_stops_a_jog_and_with_data_makes_a_step(bench: Bench) -> None:
+    bench.send("jog_angle", 1, 0, 20)
+    bench.clock.sleep(1.0)
+    assert bench.query("is_moving") == 1
+    # No acknowledgement: the firmware that obeys it is older.
+    assert bench.send("jog_stop") == b""
+    bench.clock.sleep(1.0)
+    assert bench.query("is_moving") == 0
+    before = bench.query("get_coords")
+    bench.send("jog_increment_coord", 3, -12.5, 50)
+    bench.clock.sleep(5.0)
+    assert bench.query("get_coords")[2] == pytest.approx(before[2] - 12.5, abs=0.5)

@@ -85,10 +85,10 @@ class JogCommands(Client):
     def jog_stop(self) -> None:
         """Stop jogging.
 
-        Stops a motion that jog_angle or jog_coord started. Newer firmware (edition mycobot280) uses
-        the id 0x34 for another command, a step along an axis, and may not stop. The command stop
-        (0x29) is the same in both editions. There is no reply; check with is_moving before relying
-        on it. It is not an emergency stop.
+        Stops a motion that jog_angle or jog_coord started. Newer firmware (edition mycobot280) also
+        uses the id 0x34 for another command, a step along an axis, and may not stop. The command
+        stop (0x29) is the same in both editions. There is no reply; check with is_moving before
+        relying on it. It is not an emergency stop.
 
         Safety: motion. Command id 0x34.
         """

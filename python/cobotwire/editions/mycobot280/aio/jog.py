@@ -44,6 +44,10 @@ class AsyncJogCommands(AsyncClient):
         """Jog a joint by a step."""
         await self._send(messages.jog.JogIncrement(joint, increment, speed), ack_within)
 
+    async def jog_stop(self) -> None:
+        """Stop jogging."""
+        await self._send(messages.jog.JogStop())
+
     async def jog_rpy(
         self,
         axis: RpyAxis | int,

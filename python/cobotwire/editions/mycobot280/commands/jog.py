@@ -83,6 +83,18 @@ class JogCommands(Client):
         """
         self._send(messages.jog.JogIncrement(joint, increment, speed), ack_within)
 
+    def jog_stop(self) -> None:
+        """Stop jogging.
+
+        Stops a motion that jog_angle or jog_coord started. Use stop (0x29) instead. Newer firmware
+        may ignore this request, and the arm then keeps moving. The same id with data is
+        jog_increment_coord, a step along an axis; the length tells them apart. There is no reply
+        and no acknowledgement.
+
+        Safety: motion. Command id 0x34.
+        """
+        self._send(messages.jog.JogStop())
+
     def jog_rpy(
         self,
         axis: RpyAxis | int,
@@ -134,8 +146,7 @@ class JogCommands(Client):
 
         Moves the end along or about one axis by a step from where it is, at a speed in percent of
         the maximum; a negative step goes back. The step is relative; sending it twice moves twice
-        as far. Firmware of the document (edition mycobot) uses the id 0x34 to stop jogging; that
-        request has no data, and is not legal in this edition. Use stop (0x29).
+        as far. The same id without data is jog_stop; the length tells them apart.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).

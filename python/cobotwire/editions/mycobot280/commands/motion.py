@@ -113,7 +113,8 @@ class MotionCommands(Client):
 
         Stops the motion. The acknowledgement may be late or never come; check with is_moving before
         relying on it. It is not an emergency stop, since a frame can be lost in transit; keep a
-        power switch within reach. It ends jogging too; this edition has no jog_stop.
+        power switch within reach. It ends jogging too. Use it instead of jog_stop, which newer
+        firmware may ignore.
 
         Safety: motion. Command id 0x29.
         """

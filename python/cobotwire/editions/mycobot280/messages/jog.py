@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from cobotwire.protocol.messages import Reply, Request
 
+from ...mycobot.messages.jog import JogStop as JogStop
 from ..enums import Axis, RotationDirection, RpyAxis, TravelDirection
 
 
