@@ -189,16 +189,18 @@ def _add_commands(parts: Parts, reader: Reader, files: Files) -> None:
 
 def _fill(parts: Parts, family: FamilyParts, node: Node, problems: list[Problem]) -> None:
     parts.families[family.name] = family
-    if not isinstance(node, Mapping):
-        problems.append(Problem(node.place, "wrong-kind", "commands must be a mapping"))
-        return
-    for name, content in node.entries.items():
+    shape = language.CommandsFile.commands.shape
+
+    def note(code: str, message: str, place: Place) -> None:
+        problems.append(Problem(place, code, message))
+
+    for name, place, content in shape.read(node, "commands", note):
         holder = parts.family_of(name)
         if holder is None:
-            family.commands[name] = (node.keys[name], content)
+            family.commands[name] = (place, content)
         else:
             message = f"there is already a command {name} at {holder.commands[name][0]}"
-            problems.append(Problem(node.keys[name], "duplicate-command", message))
+            problems.append(Problem(place, "duplicate-command", message))
 
 
 def _listed(root: Node, key: Key[tuple[Node, ...]], problems: list[Problem]) -> list[Node]:

@@ -8,46 +8,41 @@ from cobotwire_codegen.errors import Place, Problem
 from cobotwire_codegen.lower import message_class
 from cobotwire_codegen.model import Edition
 
-# Names that the generated methods use themselves.
-RESERVED_FIELDS = frozenset(
-    {
-        "ack_within",
-        "bool",
-        "command",
-        "fields",
-        "fields_in_radians",
-        "float",
-        "from_fields",
-        "int",
-        "messages",
-        "reply_type",
-        "request_type",
-        "result",
-        "self",
-        "str",
-        "text_values",
-        "tuple",
-        "values",
-    }
-)
-# Attributes that every client has in addition to its commands.
-RESERVED_COMMANDS = frozenset(
-    {
-        "add_traffic_listener",
-        "close",
-        "codec",
-        "listen",
-        "move_angles",
-        "move_coords",
-        "open",
-        "stream",
-        "table",
-        "wait_until_reached",
-        "watch",
-    }
-)
-# The methods of a named tuple, and the types in its annotations.
-RESERVED_ITEMS = frozenset({"count", "index", "int", "float", "bool", "str", "tuple"})
+# The types in annotations: a method or a field with that name would hide them.
+_ANNOTATIONS = frozenset({"bool", "bytes", "float", "int", "str", "tuple"})
+# The attributes of every message, and the names that the generated methods use.
+RESERVED_FIELDS = _ANNOTATIONS | {
+    "ack_within",
+    "command",
+    "fields",
+    "fields_in_radians",
+    "from_fields",
+    "messages",
+    "reply_type",
+    "request_type",
+    "result",
+    "self",
+    "text_values",
+    "values",
+}
+# The attributes that every client has in addition to its commands. The generator does not import
+# the package, so they are repeated here; a test compares them with the classes.
+RESERVED_COMMANDS = _ANNOTATIONS | {
+    "add_traffic_listener",
+    "at",
+    "close",
+    "codec",
+    "events",
+    "listen",
+    "move_angles",
+    "move_coords",
+    "open",
+    "stream",
+    "table",
+    "wait_until_reached",
+}
+# The methods of a named tuple.
+RESERVED_ITEMS = _ANNOTATIONS | {"count", "index"}
 RESERVED_FAMILIES = frozenset({"types"})
 RESERVED_CLASSES = frozenset(
     {
@@ -91,6 +86,9 @@ def reserved(edition: Edition) -> Iterator[Problem]:
         for field in command.fields:
             if field.name in RESERVED_FIELDS:
                 yield _reserved(field.name, field.place)
+        for text in filter(None, (command.text, command.request_text)):
+            for name in (name for name, _ in text.fields if name in RESERVED_FIELDS):
+                yield _reserved(name, text.place)
 
 
 def items_free(edition: Edition) -> Iterator[Problem]:
@@ -100,6 +98,9 @@ def items_free(edition: Edition) -> Iterator[Problem]:
             if name in RESERVED_ITEMS:
                 yield _reserved(name, type.place)
     for command in edition.commands:
+        if command.text is not None:
+            for name in (name for name, _ in command.text.fields if name in RESERVED_ITEMS):
+                yield _reserved(name, command.text.place)
         for field in command.reply:
             if len([f for f in command.reply if not f.echo]) > 1 and field.name in RESERVED_ITEMS:
                 yield _reserved(field.name, field.place)

@@ -7,7 +7,7 @@ from cobotwire_codegen.language.frame import FrameFile
 from cobotwire_codegen.language.geometry import Geometry
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField
-from cobotwire_codegen.language.names import CLASS, FILE, IN_PACKAGE, LOWER, METHOD
+from cobotwire_codegen.language.names import BASE, CLASS, LOWER, METHOD
 from cobotwire_codegen.language.proof import VECTOR, ErrataFile, Erratum, VectorsFile
 from cobotwire_codegen.language.records import (
     Choice,
@@ -91,7 +91,7 @@ class DeltaEdition(_Edition):
     """
 
     base = required(
-        Name(f"{FILE}|{IN_PACKAGE}", "a file name, or PACKAGE:EDITION"),
+        Name(BASE, "a file name, or PACKAGE:EDITION"),
         "The file of the base, or an edition that an installed package ships: "
         "`cobotwire:mycobot280`.",
     )

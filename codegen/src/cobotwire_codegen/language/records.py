@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.language.json_schema import Schema, by_key, closed, either, ref
-from cobotwire_codegen.language.shapes import Note, Shape, items_of
+from cobotwire_codegen.language.shapes import Note, Shape, check_name, items_of
 from cobotwire_codegen.load import Mapping, Node, Sequence
 
 T = TypeVar("T")
@@ -226,7 +226,14 @@ class Named(Shape[tuple[Entry, ...]]):
         """Return the entries: name, place of the name, node."""
         if isinstance(node, Mapping) and not node.entries and self.empty:
             note(self.empty[0], f"{subject} is empty; {self.empty[1]}", node.place)
-        return entries_of(node, subject, note)
+        return self.entries(node, subject, note)
+
+    def entries(self, node: Node, subject: str, note: Note) -> tuple[Entry, ...]:
+        """Return the entries; note a problem for each name that is not legal."""
+        found = entries_of(node, subject, note)
+        for name, place, _ in found:
+            check_name(name, self.pattern, place, note)
+        return found
 
     def schema(self) -> Schema:
         """Return an object whose values are the content."""

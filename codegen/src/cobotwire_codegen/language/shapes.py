@@ -9,6 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.language.json_schema import Schema, either
+from cobotwire_codegen.language.names import wrong_name
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, exact
 
 T = TypeVar("T")
@@ -70,6 +71,13 @@ class Name(Text):
 
     def __init__(self, pattern: str, words: str = "a name") -> None:
         self.pattern, self.words = pattern, words
+
+    def read(self, node: Node, subject: str, note: Note) -> str:
+        """Return the name; note a problem if it is not legal."""
+        name = super().read(node, subject, note)
+        if name:
+            check_name(name, self.pattern, node.place, note)
+        return name
 
     def schema(self) -> Schema:
         """Return a string of the pattern."""
@@ -339,6 +347,13 @@ class Anything(Shape[Node | None]):
     def schema(self) -> Schema:
         """Return the given schema."""
         return self._schema
+
+
+def check_name(name: str, pattern: str, place: Place, note: Note) -> None:
+    """Note a problem if a name is not legal for its kind."""
+    wrong = wrong_name(name, pattern)
+    if wrong:
+        note("bad-name", wrong, place)
 
 
 def items_of(node: Node, subject: str, note: Note) -> tuple[Node, ...]:

@@ -20,6 +20,7 @@ from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import layout, markdown, parameters, python_api, words
 from cobotwire_codegen.render.diagram import byte_diagram
+from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.messages import message_classes
 from cobotwire_codegen.render.sharing import Sharing, local_imports
@@ -106,6 +107,7 @@ def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
 def render_reference(edition: Edition, templates: Path | None = None) -> Files:
     """Return the command reference in Markdown: an index, and a page for each family."""
     jinja = environment(templates)
+    edition = escaped(edition)
     files = {
         PurePosixPath("README.md"): jinja.get_template("markdown/index.md.j2").render(
             edition=edition
@@ -145,7 +147,7 @@ def environment(templates: Path | None = None) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701  (the output is Python, Markdown, JSON and Lua, never HTML)
+        autoescape=False,  # noqa: S701  (the output is Python, Markdown, JSON and Lua, each escaped by its own filter)
     )
     jinja.globals.update(
         api=python_api,

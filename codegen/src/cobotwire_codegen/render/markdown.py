@@ -19,6 +19,7 @@ from cobotwire_codegen.model import (
     Value,
     Vector,
 )
+from cobotwire_codegen.render.escape_markdown import code as code
 from cobotwire_codegen.render.words import decimal
 from cobotwire_codegen.wire import size
 
@@ -131,11 +132,6 @@ def errata(edition: Edition, command: Command) -> list[Erratum]:
 def general_errata(edition: Edition) -> list[Erratum]:
     """Return the errata of the transport and the frame."""
     return [erratum for erratum in edition.errata if not erratum.commands]
-
-
-def cell(text: str) -> str:
-    """Return text for a table cell: ``|`` is escaped, since it would end the cell."""
-    return text.replace("|", "\\|")
 
 
 def disputed_types(edition: Edition, command: Command) -> list[Quantity]:

@@ -21,6 +21,10 @@ from cobotwire_codegen.wire import size
 
 Key = tuple[str, str, int]
 
+# The names that the declarations use themselves.
+_OWN_NAMES = {f"frame_{part}" for part in ("header", "length", "id", "footer", "end")}
+_OWN_CONSTANTS = ("HEADER", "FOOTER", "MESSAGES")
+
 
 class Declarations:
     """The messages and their numbers; equal numbers are declared once, by their type's name."""
@@ -47,6 +51,9 @@ class Declarations:
         frame = self._edition.frame
         # The prefix distinguishes these names from fields; some messages have a field named end.
         data = sum(size(field.type) for field in variant)
+        own = sorted(_OWN_NAMES & {field.name for field in variant})
+        if own:
+            raise ValueError(f"{command.name}: the field {own[0]} has a name of the declarations")
         parts = {
             "frame_header": Name("HEADER"),
             "frame_length": Call("Const", 1 + data + frame.check_size, Name("Byte")),
@@ -95,6 +102,7 @@ class Declarations:
         text = literal(expression)
         if text not in self._names:
             name = type.name.upper()
+            name += "_" if name in _OWN_CONSTANTS else ""
             alike = sum(other.rpartition("_")[0] == name or other == name for other in self.types)
             self._names[text] = f"{name}_{alike + 1}" if alike else name
             self.types[self._names[text]] = expression
