@@ -46,8 +46,8 @@ def frames(draw: st.DrawFn) -> dict[str, Any]:
 
 
 @st.composite
-def types(draw: st.DrawFn) -> dict[str, Any]:
-    """Draw wire types, quantities, flags, enums and values."""
+def types(draw: st.DrawFn, plain: bool) -> dict[str, Any]:
+    """Draw wire types, quantities, flags, enums and values; ``plain``: none that a target lacks."""
     wires: dict[str, Any] = {"byte": {"bytes": 1, "doc": "A byte."}}
     for index in range(draw(st.integers(1, 3))):
         width = draw(st.integers(1, 4))
@@ -55,6 +55,14 @@ def types(draw: st.DrawFn) -> dict[str, Any]:
         signs = st.sampled_from([top, top // 2]) | st.integers(0, top)
         order = draw(st.sampled_from(["big", "little"]))
         sign = draw(signs)
+        if not plain and draw(st.integers(0, 4)) == 0:
+            wires[f"w{index}"] = {
+                "bytes": draw(st.sampled_from([4, 8])),
+                "order": order,
+                "encoding": "float",
+                "doc": "A float.",
+            }
+            continue
         wires[f"w{index}"] = {"bytes": width, "order": order, "signed_at": sign, "doc": "A wire."}
     quantities = {f"q{index}": draw(quantity(wires)) for index in range(draw(st.integers(2, 4)))}
     names = st.sampled_from(sorted(quantities))
@@ -87,6 +95,8 @@ def quantity(draw: st.DrawFn, wires: dict[str, Any]) -> dict[str, Any]:
     """Draw a quantity on one of the wire types, with or without a range or choices."""
     name = draw(st.sampled_from(sorted(wires)))
     wire = wires[name]
+    if wire.get("encoding") == "float":
+        return draw(real_quantity(name))
     top = 256 ** wire["bytes"] - 1
     signed_at = wire.get("signed_at", top)
     lowest = 0 if signed_at == top else signed_at + 1 - 256 ** wire["bytes"]
@@ -100,6 +110,18 @@ def quantity(draw: st.DrawFn, wires: dict[str, Any]) -> dict[str, Any]:
     if draw(st.booleans()):
         ends = sorted([draw(steps), draw(steps)])
         made["range"] = [decimal(end * Fraction(scale)) for end in ends]
+    return made
+
+
+@st.composite
+def real_quantity(draw: st.DrawFn, wire: str) -> dict[str, Any]:
+    """Draw a quantity that is a float, with or without a range."""
+    made: dict[str, Any] = {"wire": wire, "unit": draw(st.sampled_from(sorted(UNITS))), "doc": "Q."}
+    kind = draw(st.integers(0, 2))
+    if kind == 0:
+        made["range"] = sorted([draw(st.integers(-1000, 0)), draw(st.integers(0, 1000))])
+    elif kind == 1:
+        made["not_finite"] = True
     return made
 
 
@@ -144,8 +166,13 @@ def commands(draw: st.DrawFn) -> dict[str, Any]:
 
 
 @st.composite
-def specs(draw: st.DrawFn, folder: Path, name: str = "rnd") -> tuple[Path, Edition]:
-    """Draw a whole protocol as one YAML file, with a vector for each variant; return its model."""
+def specs(
+    draw: st.DrawFn, folder: Path, name: str = "rnd", *, plain: bool = False
+) -> tuple[Path, Edition]:
+    """Draw a whole protocol as one YAML file, with a vector for each variant; return its model.
+
+    ``plain`` leaves out the types that some output targets cannot express.
+    """
     data: dict[str, Any] = {
         "edition": name,
         "class": "Rnd",
@@ -153,7 +180,7 @@ def specs(draw: st.DrawFn, folder: Path, name: str = "rnd") -> tuple[Path, Editi
         "doc": "A random protocol.",
         "joints": 3,
         "frame": draw(frames()),
-        "types": draw(types()),
+        "types": draw(types(plain)),
         "commands": draw(commands()),
     }
     path = folder / f"{name}.yaml"
@@ -216,6 +243,12 @@ def _value(field: Field, type: Type) -> st.SearchStrategy[Any]:
 def _number(type: Quantity) -> st.SearchStrategy[Fraction]:
     if type.choices:
         return st.sampled_from(type.choices).map(Fraction)
+    if type.wire.is_float:
+        # Quarters are floats of both widths, and decimals that YAML represents exactly.
+        low, high = (int(end) for end in type.ends)
+        return st.integers(max(4 * low, -40_000), min(4 * high, 40_000)).map(
+            lambda quarters: Fraction(quarters, 4)
+        )
     lowest, highest = (int(bound) for bound in type.bounds)
     return st.integers(lowest, highest).map(lambda steps: steps * type.scale)
 

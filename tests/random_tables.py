@@ -10,6 +10,8 @@ from typing import Any, Literal
 
 from hypothesis import strategies as st
 
+import strategies
+from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import (
     Case,
     Check,
@@ -36,7 +38,9 @@ def frame_formats(draw: st.DrawFn) -> FrameFormat:
 
 @st.composite
 def numbers(draw: st.DrawFn, width: int | None = None) -> Number:
-    """Draw a number with any sign rule, scale and bounds."""
+    """Draw a number with any sign rule, scale and bounds, or a float."""
+    if width == 8 or (width == 4 and draw(st.booleans())):
+        return draw(floats(width))
     width = width or draw(st.sampled_from([1, 1, 2, 2, 3, 4]))
     top = 256**width - 1
     signed_at = draw(st.sampled_from([top, top // 2, 0]) | st.integers(0, top))
@@ -50,11 +54,25 @@ def numbers(draw: st.DrawFn, width: int | None = None) -> Number:
 
 
 @st.composite
+def floats(draw: st.DrawFn, width: int) -> Number:
+    """Draw a float with any bounds, or one that may also be infinite or not a number."""
+    order: Literal["big", "little"] = draw(st.sampled_from(["big", "little"]))
+    beyond = raw_of_float(float("inf"), width)
+    low, high = -beyond, beyond - 1
+    kind = draw(st.integers(0, 2))
+    if kind == 0:
+        low, high = -(256**width) // 2, 256**width // 2 - 1
+    elif kind == 1:
+        low, high = sorted([draw(st.integers(low, high)) for _ in range(2)])
+    return Number("", width, order, 0, 1, 1, low, high, "", "float")
+
+
+@st.composite
 def fields(draw: st.DrawFn, name: str, selector: int = -1) -> Field:
     """Draw a field of one number or a row of them, under a selector if it is given."""
     many = draw(st.booleans())
     widths = [
-        draw(st.sampled_from([1, 2, 4])) for _ in range(draw(st.integers(1, 4)) if many else 1)
+        draw(st.sampled_from([1, 2, 4, 8])) for _ in range(draw(st.integers(1, 4)) if many else 1)
     ]
     whens: list[tuple[int, ...]] = [()] if selector < 0 else [(0,), (1, 2)]
     cases = tuple(Case(when, tuple(draw(numbers(width)) for width in widths)) for when in whens)
@@ -123,3 +141,25 @@ def streams(table: Table) -> st.SearchStrategy[bytes]:
     """Draw frames with a little noise between them."""
     pieces: Any = st.one_of(frames(table), frames(table), frames(table), st.binary(max_size=3))
     return st.lists(pieces, max_size=8).map(b"".join)
+
+
+def values(variant: Variant) -> st.SearchStrategy[tuple[Any, ...]]:
+    """Draw a value for each field, mostly near those that it allows."""
+    return st.tuples(*[_value(field) for field in variant.fields])
+
+
+def _value(field: Field) -> st.SearchStrategy[Any]:
+    case = field.cases[0]
+    parts = [_near(number) for number in case.numbers]
+    near: st.SearchStrategy[Any] = st.tuples(*parts) if field.many else parts[0]
+    return st.one_of(near, near, near, strategies.odd_values())
+
+
+def _near(number: Number) -> st.SearchStrategy[Any]:
+    ends = st.sampled_from([number.minimum, number.maximum, number.maximum + 1])
+    raw = st.integers(number.minimum, number.maximum) | ends
+    low, high = -(256**number.width) // 2, 256**number.width // 2 - 1
+    if number.encoding == "float":
+        raw = raw.map(lambda each: min(max(each, low), high))
+        return raw.map(number.physical) | st.floats()
+    return raw.map(number.physical)

@@ -96,6 +96,19 @@ def readings(
     yield framer.counters
 
 
+@given(st.data())
+def test_values_of_random_tables_are_encoded_alike(
+    data: st.DataObject,
+) -> None:
+    table = data.draw(random_tables.tables())
+    command = data.draw(st.sampled_from(table.commands))
+    values = data.draw(random_tables.values(data.draw(st.sampled_from(command.request))))
+    reference, native = both(table)
+    assert outcome(lambda: reference.encode(command.name, "request", values)) == outcome(
+        lambda: native.encode(command.name, "request", values)
+    )
+
+
 BOUNDED = small_tables.field("a", small_tables.number(1, 1, 1))
 SCALES = [(-1, 10), (1, -10), (-1, 1), (-7, 100), (-3, -20), (1, 10)]
 

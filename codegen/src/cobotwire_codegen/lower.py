@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from itertools import groupby
 from typing import Any
 
@@ -34,6 +35,9 @@ def numbers(type: Type) -> tuple[dict[str, Any], ...]:
 
 def _quantity(name: str, quantity: Quantity) -> dict[str, Any]:
     lowest, highest = quantity.bounds
+    if quantity.not_finite:
+        half = 256**quantity.wire.width // 2
+        lowest, highest = Fraction(-half), Fraction(half - 1)
     number = _number(name, quantity.wire, int(lowest), int(highest))
     number["multiply"] = quantity.scale.numerator
     number["divide"] = quantity.scale.denominator
@@ -52,6 +56,7 @@ def _number(name: str, wire: Wire, minimum: int, maximum: int) -> dict[str, Any]
         "minimum": minimum,
         "maximum": maximum,
         "unit": "",
+        **({"encoding": wire.encoding} if wire.is_float else {}),
     }
 
 

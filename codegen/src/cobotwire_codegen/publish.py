@@ -210,8 +210,11 @@ class _Writer:
 def _quantity(type: Quantity) -> Record:
     bounds = {}
     if type.range is not None:
-        low, high = (_exact(bound / type.scale) for bound in type.range)
+        low, high = map(_exact, type.bounds)
         bounds = {"minimum": low, "maximum": high}
+    elif type.not_finite:
+        number = lower.numbers(type)[0]
+        bounds = {"minimum": number["minimum"], "maximum": number["maximum"]}
     scale = None if type.scale == 1 else _exact(type.scale)
     return _given(
         scale=scale,
@@ -229,11 +232,13 @@ def _given(**record: Any) -> Record:
 
 
 def _wire(wire: Wire) -> Record:
+    encoding = {"encoding": wire.encoding} if wire.is_float else {}
     return {
         "name": wire.name,
         "width": wire.width,
         "order": wire.order,
         "signed_at": wire.signed_at,
+        **encoding,
         "doc": wire.doc,
     }
 

@@ -20,6 +20,7 @@ from cobotwire_codegen.model import (
     Value,
     Variant,
     Wire,
+    floats,
 )
 
 
@@ -123,6 +124,8 @@ def encode_value(type: Type, name: str, value: object) -> bytes:
 def _quantity(type: Quantity, name: str, value: object) -> bytes:
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
         raise ValueError(f"{name} must be a number")
+    if type.wire.is_float:
+        return _float(type, name, Fraction(value))
     raw = Fraction(value) / type.scale
     if type.choices and raw not in type.choices:
         raise ValueError(f"{name} is {value}; allowed: {', '.join(map(str, type.choices))}")
@@ -134,10 +137,19 @@ def _quantity(type: Quantity, name: str, value: object) -> bytes:
     return _word(type.wire, raw, name)
 
 
+def _float(type: Quantity, name: str, value: Fraction) -> bytes:
+    wire, (lowest, highest) = type.wire, type.ends
+    rank = floats.nearest(value, wire.width)
+    # A decimal at an end of the range may round to the float beyond it.
+    if not lowest <= value <= highest or abs(rank) > floats.largest_rank(wire.width):
+        raise ValueError(f"{name} is {value}; allowed: {float(lowest):g}..{float(highest):g}")
+    return wire.bytes_of(rank)
+
+
 def _word(wire: Wire, raw: Fraction, name: str) -> bytes:
     if raw.denominator != 1:
         raise ValueError(f"{name} is not a multiple of its scale")
-    return int(raw % 256**wire.width).to_bytes(wire.width, wire.order)
+    return wire.bytes_of(int(raw))
 
 
 def size(type: Type) -> int:

@@ -1,4 +1,4 @@
-"""Define the data bytes of a message: numbers, fields and variants, and the rules to read them.
+"""Define the data bytes of a message: fields and variants, and the rules to read them.
 
 A *raw value* is a number as it is on the wire, after its sign rule. A *physical value* is the same
 number in units.
@@ -8,89 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, Literal
 
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.units import PLURALS
+from cobotwire.protocol.numbers import Number
 
 FieldKind = Literal["number", "flag", "enum"]
 # The raw values of a message, by field and element.
 RawRows = Sequence[Sequence[int]]
-
-
-@dataclass(frozen=True, slots=True)
-class Number:
-    """One number on the wire: ``width`` bytes, a sign rule, and a scale as an exact rational.
-
-    The bytes are an unsigned integer ``u``. The raw value is ``u - 256**width`` if
-    ``u > signed_at``, else ``u``. The physical value is ``raw * multiply / divide``, a float; where
-    ``multiply == divide == 1`` it is the raw value itself, an ``int``.
-    ``minimum`` and ``maximum`` bound the raw value.
-    """
-
-    name: str
-    width: int
-    order: Literal["big", "little"]
-    signed_at: int
-    multiply: int
-    divide: int
-    minimum: int
-    maximum: int
-    unit: str
-
-    def alike(self, other: Number) -> bool:
-        """Return whether the same bytes hold the same raw value in both numbers."""
-        mine = self.width, self.order, self.signed_at
-        return mine == (other.width, other.order, other.signed_at)
-
-    @property
-    def scaled(self) -> bool:
-        """Whether the physical value is a float (True) or the raw value itself (False)."""
-        return not self.multiply == self.divide == 1
-
-    @property
-    def units(self) -> str:
-        """The unit as it follows a number: its plural; empty if there is none."""
-        return PLURALS.get(self.unit, self.unit)
-
-    @property
-    def raw_range(self) -> tuple[int, int]:
-        """The lowest and the highest raw value that the bytes can hold."""
-        top = 256**self.width - 1
-        return (0 if self.signed_at >= top else self.signed_at - top), min(self.signed_at, top)
-
-    def unpack(self, data: bytes, offset: int = 0) -> int:
-        """Return the raw value at ``offset``."""
-        unsigned = int.from_bytes(data[offset : offset + self.width], self.order)
-        return unsigned - 256**self.width if unsigned > self.signed_at else unsigned
-
-    def pack(self, raw: int) -> bytes:
-        """Return the bytes of a raw value: its lowest ``width`` bytes if it does not fit."""
-        return (raw % (1 << 8 * self.width)).to_bytes(self.width, self.order)
-
-    def physical(self, raw: int) -> int | float:
-        """Return the physical value of a raw value."""
-        return raw * self.multiply / self.divide if self.scaled else raw
-
-    def exact(self, raw: int) -> Fraction:
-        """Return the physical value of a raw value without rounding."""
-        return Fraction(raw * self.multiply, self.divide)
-
-    def steps(self, physical: float) -> float:
-        """Return the raw value of a physical value, not yet rounded to an integer.
-
-        Each operation uses IEEE doubles, so that all codecs encode the same bytes.
-        """
-        return physical * self.divide / self.multiply
-
-    def raw(self, physical: float) -> int:
-        """Return the raw value nearest to a physical value; ties go to the even one."""
-        return round(self.steps(physical)) if self.scaled else int(physical)
-
-    def clamp(self, raw: int) -> int:
-        """Return ``raw``, limited to the bounds of the number."""
-        return min(max(raw, self.minimum), self.maximum)
 
 
 @dataclass(frozen=True, slots=True)

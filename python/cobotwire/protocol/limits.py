@@ -76,8 +76,7 @@ class _Rule:
         given = self._ranges[part]
         if given is None:
             return number
-        # Rounded inwards, so that no raw value outside the range is allowed.
-        lowest, highest = ceil(_raw(number, given[0])), floor(_raw(number, given[1]))
+        lowest, highest = _raw_range(number, given)
         inside = number.raw_range if self._wider else (number.minimum, number.maximum)
         if lowest < inside[0] or highest > inside[1] or lowest > highest:
             low, high = (float(number.exact(bound)) for bound in inside)
@@ -130,9 +129,14 @@ def _value_of(picker: Field, name: str, part: int) -> int:
     return picker.choices[labels.index(name)] if name in labels else part + 1
 
 
-def _raw(number: Number, value: float) -> Fraction:
-    """Return the exact raw value of a number, read as its decimal text: 0.1 is one tenth."""
-    return Fraction(str(value)) / number.exact(1)
+def _raw_range(number: Number, given: Range) -> tuple[int, int]:
+    """Return a range as raw values, rounded inwards; a decimal text is exact: 0.1 is one tenth."""
+    low, high = given
+    if number.encoding == "float":
+        # A lower limit of zero includes -0.0.
+        return number.raw(low or -0.0), number.raw(high or 0.0)
+    step = number.exact(1)
+    return ceil(Fraction(str(low)) / step), floor(Fraction(str(high)) / step)
 
 
 def _is_number(value: object) -> bool:

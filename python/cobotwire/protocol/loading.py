@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import sys
+from math import inf
 from typing import Any
 
+from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import (
     Case,
     Command,
@@ -178,7 +180,12 @@ class _Reader:
             wire = self._wires[wire]
         top = 256 ** wire["width"]
         signed_at, get = wire["signed_at"], type.get
+        encoding = wire.get("encoding", "integer")
         low, high = (signed_at + 1 - top if signed_at < top - 1 else 0), signed_at
+        if encoding == "float":
+            # Left out: all finite floats.
+            high = raw_of_float(inf, wire["width"]) - 1
+            low = -1 - high
         kind = type["kind"]
         if kind == "flag":
             low, high = 0, 1
@@ -197,6 +204,7 @@ class _Reader:
             low,
             high,
             get("unit", ""),
+            encoding,
         )
 
 

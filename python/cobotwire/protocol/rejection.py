@@ -10,8 +10,9 @@ import math
 from typing import Any, Literal
 
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.fields import Case, Field, Number
+from cobotwire.protocol.fields import Case, Field
 from cobotwire.protocol.frame_format import FrameFormat
+from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.table import Command, Direction, Table
 
 ValueFault = Literal["type", "not-finite", "range", "choice", "count"]
@@ -171,11 +172,18 @@ def _allowed(field: Field, number: Number) -> str:
         return ", ".join([f"{label} ({raw})" for label, raw in zip(field.labels, field.choices)])
     if field.choices:
         return ", ".join(map(str, field.choices))
-    kind = "a number" if number.scaled else "a whole number"
+    kind = "a number" if number.real else "a whole number"
     unit = f" {number.units}" if number.unit else ""
+    if number.takes_not_finite:
+        return f"{kind}{unit}, also infinity and NaN"
+    if number.encoding == "float" and (number.minimum, number.maximum) == number.raw_range:
+        return f"a finite number of {number.width} bytes{unit}"
     return f"{kind} {_bound(number, number.minimum)}..{_bound(number, number.maximum)}{unit}"
 
 
 def _bound(number: Number, raw: int) -> str:
+    if number.encoding == "float":
+        # The nearest float to a decimal has more digits than anyone wrote.
+        return f"{number.physical(raw):.{6 if number.width == 4 else 15}g}"
     exact = number.exact(raw)
     return str(exact) if exact.denominator == 1 else str(float(exact))

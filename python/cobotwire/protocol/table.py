@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.errors import UsageError, did_you_mean
-from cobotwire.protocol.fields import Case, Field, FieldKind, Number, Variant
+from cobotwire.protocol.fields import Case, Field, FieldKind, Variant
 from cobotwire.protocol.frame_format import Check, FrameFormat
 from cobotwire.protocol.made_messages import (
     FieldShape,
@@ -22,6 +22,7 @@ from cobotwire.protocol.made_messages import (
     made_types,
 )
 from cobotwire.protocol.messages import Reply, Request
+from cobotwire.protocol.numbers import Number
 
 __all__ = [
     "Case",
@@ -189,7 +190,7 @@ def _in_all(name: str, variants: tuple[Variant, ...]) -> bool:
 def _annotation(field: Field) -> str:
     if field.kind == "flag":
         return "bool"
-    word = "float" if any(number.scaled for number in field.numbers) else "int"
+    word = "float" if any(number.real for number in field.numbers) else "int"
     return f"Sequence[{word}]" if field.many else word
 
 

@@ -16,6 +16,10 @@ pub enum Order {
 ///
 /// The bytes are an unsigned integer `u`. The raw value is `u - 256^width` if `u > signed_at`, else
 /// `u`. The physical value is `raw * multiply / divide`. The bounds are those of the raw value.
+///
+/// With `float` the bytes are an IEEE float of 4 or 8 bytes, without a scale or a sign rule. Its raw
+/// value is the integer of its bits, with the bits after a set sign inverted, so that raw values
+/// have the order of the floats.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the doc above explains each field
 pub struct Number {
@@ -26,6 +30,7 @@ pub struct Number {
     pub divide: i64,
     pub minimum: i64,
     pub maximum: i64,
+    pub float: bool,
 }
 
 /// A decoded value. A row is followed by its elements, so that a message is one flat buffer.
@@ -42,7 +47,7 @@ pub enum Value {
 /// A part of a table that cannot be interpreted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Misfit {
-    /// A number is not one to four bytes wide.
+    /// An integer is not one to four bytes wide, or a float not four or eight.
     Width,
     /// A scale is zero, or too fine for an exact double.
     Scale,
@@ -57,10 +62,20 @@ pub enum Misfit {
 }
 
 impl Number {
-    /// Return whether the physical value is a real number, rather than the raw value itself.
+    /// Return whether the physical value differs from the raw value by a factor.
     #[must_use]
     pub fn scaled(&self) -> bool {
         (self.multiply, self.divide) != (1, 1)
+    }
+
+    /// Return whether the physical value is a real number, rather than the raw value itself.
+    pub(crate) fn real(&self) -> bool {
+        self.float || self.scaled()
+    }
+
+    /// Return whether the bounds allow a float that is infinite or not a number.
+    pub(crate) fn takes_not_finite(&self) -> bool {
+        self.float && self.maximum >= raw_of_float(f64::INFINITY, self.width)
     }
 
     /// Return the raw value that starts there.
@@ -70,6 +85,7 @@ impl Number {
         let unsigned = match (bytes, self.order) {
             ([byte], _) => i64::from(*byte),
             (&[high, low], Order::Big) => i64::from(u16::from_be_bytes([high, low])),
+            _ if self.float => return self.unpack_float(bytes),
             (_, Order::Big) => bytes.iter().fold(0, join),
             (_, Order::Little) => bytes.iter().rev().fold(0, join),
         };
@@ -80,8 +96,21 @@ impl Number {
         }
     }
 
+    fn unpack_float(&self, bytes: &[u8]) -> i64 {
+        let unsigned = match self.order {
+            Order::Big => bytes.iter().fold(0, join),
+            Order::Little => bytes.iter().rev().fold(0, join),
+        };
+        ordered(unsigned, self.width)
+    }
+
     /// Append the lowest bytes of a raw value; a negative one is its two's complement.
     pub(crate) fn pack(&self, raw: i64, bytes: &mut Vec<u8>) {
+        let raw = if self.float && raw < 0 {
+            raw ^ magnitude(self.width)
+        } else {
+            raw
+        };
         let ordered = match self.order {
             Order::Big => (raw << (64 - 8 * self.width)).to_be_bytes(),
             Order::Little => raw.to_le_bytes(),
@@ -93,7 +122,9 @@ impl Number {
     /// which [`Number::check`] ensures.
     #[inline]
     pub(crate) fn physical(&self, raw: i64) -> Value {
-        if self.scaled() {
+        if self.float {
+            Value::Real(float_of_raw(raw, self.width))
+        } else if self.scaled() {
             Value::Real((raw * self.multiply) as f64 / self.divide as f64)
         } else {
             Value::Integer(raw)
@@ -106,6 +137,9 @@ impl Number {
     /// The arithmetic is IEEE double, step by step as in the reference, so that the bytes are the
     /// same.
     pub(crate) fn raw(&self, physical: f64) -> Option<i64> {
+        if self.float {
+            return Some(raw_of_float(physical, self.width));
+        }
         let scaled = physical * self.divide as f64;
         let raw = match self.multiply {
             1 => scaled, // the same result without a slow division
@@ -118,6 +152,9 @@ impl Number {
 
     /// Return whether the bounds allow every raw value that the bytes can encode.
     pub(crate) fn takes_all_bytes(&self) -> bool {
+        if self.float {
+            return false; // at least its bytes need no table
+        }
         let values = 1 << (8 * self.width);
         let signed_at = self.signed_at.clamp(-1, values - 1);
         let least = if signed_at < values - 1 {
@@ -129,6 +166,13 @@ impl Number {
     }
 
     pub(crate) fn check(&self) -> Result<(), Misfit> {
+        if self.float {
+            return match (self.width, self.multiply, self.divide) {
+                (4 | 8, 1, 1) => Ok(()),
+                (4 | 8, ..) => Err(Misfit::Scale),
+                _ => Err(Misfit::Width),
+            };
+        }
         if !(1..=4).contains(&self.width) {
             return Err(Misfit::Width);
         }
@@ -144,6 +188,58 @@ impl Number {
         } else {
             Err(Misfit::Bounds)
         }
+    }
+}
+
+/// Return the bits of a float after its sign.
+fn magnitude(width: usize) -> i64 {
+    if width == 4 {
+        i64::from(i32::MAX)
+    } else {
+        i64::MAX
+    }
+}
+
+/// Return the raw value of the bits of a float.
+fn ordered(unsigned: i64, width: usize) -> i64 {
+    // Cutting the bits to the width extends their sign.
+    let signed = if width == 4 {
+        i64::from(unsigned as i32)
+    } else {
+        unsigned
+    };
+    if signed < 0 {
+        signed ^ magnitude(width)
+    } else {
+        signed
+    }
+}
+
+/// Return the raw value of the nearest float; too large a value becomes infinite.
+fn raw_of_float(real: f64, width: usize) -> i64 {
+    if real.is_nan() {
+        // One NaN for all, since a payload does not survive every conversion.
+        return if width == 4 {
+            0x7FC0_0000
+        } else {
+            0x7FF8_0000_0000_0000
+        };
+    }
+    let bits = if width == 4 {
+        i64::from((real as f32).to_bits())
+    } else {
+        real.to_bits() as i64
+    };
+    ordered(bits, width)
+}
+
+/// Return the float of a raw value.
+fn float_of_raw(raw: i64, width: usize) -> f64 {
+    let bits = if raw < 0 { raw ^ magnitude(width) } else { raw };
+    if width == 4 {
+        f64::from(f32::from_bits(bits as u32))
+    } else {
+        f64::from_bits(bits as u64)
     }
 }
 

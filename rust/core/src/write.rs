@@ -172,9 +172,9 @@ impl<V: Given> Writer<'_, V> {
 }
 
 fn read<V: Given>(field: &Field, number: &Number, value: &V) -> Result<i64, Unread<V::Error>> {
-    let raw = if number.scaled() {
+    let raw = if number.real() {
         let real = value.real()?;
-        if !real.is_finite() {
+        if !real.is_finite() && !number.takes_not_finite() {
             return Err(Unread::Fault(ValueFault::NotFinite));
         }
         let raw = number.raw(real);

@@ -97,7 +97,12 @@ fn number(bytes: &mut Bytes<'_>) -> Number {
         WILD.. => usize::try_from(integer(bytes, 8)).unwrap_or(usize::MAX),
         _ => 1 + usize::from(shape & 3),
     };
-    let scaled = shape & 8 != 0;
+    let float = shape & 0x30 == 0x30;
+    let width = match width {
+        1..=4 if float => 4 << (shape & 1),
+        _ => width,
+    };
+    let scaled = shape & 8 != 0 && !float;
     let scale = |bytes: &mut Bytes<'_>| if scaled { integer(bytes, 100) } else { 1 };
     Number {
         width,
@@ -111,6 +116,7 @@ fn number(bytes: &mut Bytes<'_>) -> Number {
         divide: scale(bytes),
         minimum: integer(bytes, -100),
         maximum: integer(bytes, 100),
+        float,
     }
 }
 

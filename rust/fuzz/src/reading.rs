@@ -148,11 +148,17 @@ fn size(fields: &[Field]) -> usize {
 }
 
 /// Return the raw value by its definition: the unsigned number, minus `256^width` above
-/// `signed_at`.
+/// `signed_at`; for a float its rank among the floats, counted from 0.0.
 fn raw_value(number: &Number, data: &[u8]) -> i64 {
     let mut bytes = data[..number.width].to_vec();
     if number.order == Order::Little {
         bytes.reverse();
+    }
+    if number.float {
+        let negative = bytes[0] >= 0x80;
+        bytes[0] &= 0x7F;
+        let rank = bytes.iter().fold(0, |word, byte| word << 8 | i64::from(*byte));
+        return if negative { -1 - rank } else { rank };
     }
     let word = bytes
         .iter()
@@ -165,7 +171,15 @@ fn raw_value(number: &Number, data: &[u8]) -> i64 {
 }
 
 fn physical(number: &Number, raw: i64) -> Value {
-    if number.multiply == 1 && number.divide == 1 {
+    if number.float {
+        let rank = (if raw < 0 { -1 - raw } else { raw }) as u64;
+        let sign = u64::from(raw < 0) << (8 * number.width - 1);
+        Value::Real(if number.width == 4 {
+            f64::from(f32::from_bits((rank | sign) as u32))
+        } else {
+            f64::from_bits(rank | sign)
+        })
+    } else if number.multiply == 1 && number.divide == 1 {
         Value::Integer(raw)
     } else {
         let exact = i128::from(raw) * i128::from(number.multiply);

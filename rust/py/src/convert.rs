@@ -15,6 +15,7 @@ struct NumberRecord {
     divide: i64,
     minimum: i64,
     maximum: i64,
+    encoding: String,
 }
 
 #[derive(FromPyObject)]
@@ -134,12 +135,13 @@ fn number(record: NumberRecord) -> Number {
         divide: record.divide,
         minimum: record.minimum,
         maximum: record.maximum,
+        float: record.encoding == "float",
     }
 }
 
 fn misfit(misfit: Misfit) -> &'static str {
     match misfit {
-        Misfit::Width => "a number must have one to four bytes",
+        Misfit::Width => "an integer must have one to four bytes, a float four or eight",
         Misfit::Scale => "a scale is zero, or too fine for an exact double",
         Misfit::Bounds => "a bound is an integer that a double cannot represent exactly",
         Misfit::Cases => {

@@ -18,8 +18,8 @@ from cobotwire_codegen.project import editions
 from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
-# Codes about a folder, or about files that do not belong to an edition.
-WITHOUT_LINES = {"no-edition", "unknown-rule"}
+# Codes about a folder, about files that do not belong to an edition, and of output targets.
+WITHOUT_LINES = {"no-edition", "unknown-rule", "unsupported-type"}
 
 
 def _calls() -> Iterator[tuple[str, ast.Call]]:

@@ -32,6 +32,7 @@ FIELDS = [
 ]
 # Words from closed lists become other words of the same list.
 OTHER = {"big": "little", "little": "big", "request": "reply", "reply": "request"}
+OTHER |= {"integer": "float"}
 OTHER |= {"": "required", "required": "optional", "optional": ""}
 WIRE = model.Wire(PLACE, "byte", 1, "big", 255, "", (), ())
 ARGUMENT = model.Field(
@@ -114,7 +115,7 @@ def other(value: Any, field: str) -> Any:
     if isinstance(value, int | Fraction):
         return value + 1
     if isinstance(value, str):
-        return OTHER[value] if field in ("order", "direction", "echo") else value + "x"
+        return OTHER[value] if field in ("order", "direction", "echo", "encoding") else value + "x"
     if isinstance(value, bytes):
         return value + b"\x01"
     if isinstance(value, tuple):

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from cobotwire.codec.interface import DecodedMessage
-from cobotwire.protocol.fields import Case, Field, Number, RawRows, Variant
+from cobotwire.protocol.fields import Case, Field, RawRows, Variant
 from cobotwire.protocol.frame_format import FrameFormat
+from cobotwire.protocol.numbers import Number
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "
 @settings(max_examples=5, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_random_protocol_runs_in_c(tmp_path: Path, data: st.DataObject) -> None:
-    _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}"))
+    _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}", plain=True))
     check(edition)
     table = table_of(lower.table(edition))
     ours = CodecSide(edition, codecs.load(table, "reference"))

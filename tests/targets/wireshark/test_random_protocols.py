@@ -27,7 +27,7 @@ NUMBERS = itertools.count()
 @settings(max_examples=5, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_random_protocol_is_dissected(tmp_path: Path, data: st.DataObject) -> None:
-    _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}"))
+    _, edition = data.draw(random_specs.specs(tmp_path, f"rnd{next(NUMBERS)}", plain=True))
     check(edition)
     write(Target(tmp_path / edition.name, render_wireshark([edition])))
     frames = [vector.frame or b"" for vector in edition.vectors]

@@ -61,7 +61,16 @@ class Types:
         spec = language.Wire
         reader = Reader(node, spec, f"the wire type {name}", self._problems)
         width = reader.get(spec.bytes)
-        top = 256**width - 1
+        is_float = reader.get(spec.encoding) == "float"
+        if width not in ((4, 8) if is_float else (1, 2, 3, 4)):
+            kind, legal = ("a float", "4 or 8") if is_float else ("an integer", "1..4")
+            message = f"the wire type {name} is {kind} of {width} bytes; allowed: {legal}"
+            reader.problem("bad-width", message, reader.place_of(spec.bytes))
+            width = 4
+        if is_float and reader.node(spec.signed_at) is not None:
+            message = f"the wire type {name} is a float; remove its signed_at"
+            reader.problem("bad-sign", message, reader.place_of(spec.signed_at))
+        top = 0 if is_float else 256**width - 1
         signed_at = top if reader.node(spec.signed_at) is None else reader.get(spec.signed_at)
         if signed_at > top:
             message = f"signed_at of the wire type {name} is {signed_at}; allowed: 0..{top}"
@@ -76,7 +85,16 @@ class Types:
             reader.get(spec.doc),
             reader.get(spec.source),
             disputes(reader, spec.disputed),
+            "float" if is_float else "integer",
         )
+
+    def _integer(self, reader: Reader, key: Key[str]) -> Wire:
+        """Return a wire type that must be an integer."""
+        wire = self._named_wire(reader, key)
+        if wire.is_float:
+            message = f"{reader.what} is encoded as a float; choose an integer"
+            reader.problem("bad-float", message, reader.place_of(key))
+        return wire
 
     def _named_wire(self, reader: Reader, key: Key[str]) -> Wire:
         name = reader.get(key)
@@ -102,7 +120,9 @@ class Types:
             reader.get(spec.doc),
             reader.get(spec.source),
             disputes(reader, spec.disputed),
+            reader.get(spec.not_finite),
         )
+        self._check_float(quantity, reader)
         if quantity.choices and (quantity.range is not None or quantity.scale != 1):
             message = f"the quantity {name} has choices; remove its range and its scale"
             reader.problem("bad-choices", message)
@@ -111,10 +131,20 @@ class Types:
             reader.problem("bad-unit", message)
         return quantity
 
+    def _check_float(self, quantity: Quantity, reader: Reader) -> None:
+        """Report what only a float, or only an integer, can have."""
+        name, is_float = quantity.name, quantity.wire.is_float
+        if is_float and (quantity.scale != 1 or quantity.choices):
+            message = f"the quantity {name} is a float; remove its scale and its choices"
+            reader.problem("bad-float", message)
+        if quantity.not_finite and (quantity.range is not None or not is_float):
+            message = f"the quantity {name} can be not_finite only as a float without a range"
+            reader.problem("bad-float", message)
+
     def _flag(self, name: str, place: Place, node: Node) -> Flag:
         spec = language.Flag
         reader = Reader(node, spec, f"the flag {name}", self._problems)
-        return Flag(place, name, self._named_wire(reader, spec.wire), reader.get(spec.doc))
+        return Flag(place, name, self._integer(reader, spec.wire), reader.get(spec.doc))
 
     def _enum(self, name: str, place: Place, node: Node) -> Enum:
         spec = language.Enum
@@ -123,7 +153,7 @@ class Types:
             place,
             name,
             reader.get(spec.class_),
-            self._named_wire(reader, spec.wire),
+            self._integer(reader, spec.wire),
             tuple(self._member(name, *entry) for entry in reader.get(spec.members)),
             reader.get(spec.doc),
             reader.get(spec.source),

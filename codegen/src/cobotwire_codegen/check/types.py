@@ -8,15 +8,16 @@ from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.model import Edition, Quantity, Type
 
 
-def _quantities(edition: Edition) -> Iterator[Quantity]:
+def _integers(edition: Edition) -> Iterator[Quantity]:
     fields = [field for command in edition.commands for field in command.fields]
     types: list[Type] = [*edition.types, *(field.type for field in fields)]
-    yield from (type for type in types if isinstance(type, Quantity))
+    found = (type for type in types if isinstance(type, Quantity))
+    yield from (quantity for quantity in found if not quantity.wire.is_float)
 
 
 def ranges_encodable(edition: Edition) -> Iterator[Problem]:
     """Report ranges with an end that is not a multiple of the scale, or beyond the wire type."""
-    for quantity in _quantities(edition):
+    for quantity in _integers(edition):
         lowest, highest = quantity.bounds
         if lowest.denominator != 1 or highest.denominator != 1:
             message = f"the range of {quantity.name} does not end at multiples of {quantity.scale}"
@@ -46,7 +47,7 @@ def members_fit(edition: Edition) -> Iterator[Problem]:
 
 def exact_in_a_double(edition: Edition) -> Iterator[Problem]:
     """Report scales that are too fine for the doubles that both codecs compute with."""
-    for quantity in _quantities(edition):
+    for quantity in _integers(edition):
         most = max(map(abs, quantity.bounds)) * quantity.scale.numerator
         if most > 2**53 or quantity.scale.denominator > 2**53:
             message = f"the scale of {quantity.name} is too fine for a double"

@@ -81,7 +81,7 @@ def build(
         check_edition(edition)
     own = Path(templates) if templates else None
     check_names(own)
-    with report_template_errors(own):
+    with report_problems(variant), report_template_errors(own):
         wanted = [
             Target(folder, RENDERERS[option](edition, own), alone=option not in SHARED)
             for option, folder in folders.items()

@@ -38,8 +38,8 @@ def _name(found: Type | Wire) -> str:
     return found.name
 
 
-def _wire(found: Wire) -> tuple[int, str, int]:
-    return found.width, found.order, found.signed_at
+def _wire(found: Wire) -> tuple[int, str, int, str]:
+    return found.width, found.order, found.signed_at, found.encoding
 
 
 def _note(old: Type, new: Type, known: Known) -> None:

@@ -57,6 +57,8 @@ def wire_changes(where: str, old: Wire, new: Wire) -> Iterator[Finding]:
     elif old.order != new.order:
         # A single byte has no order, so the difference is only one of documentation.
         yield from prose.doc(where, f"{old.order} end first", f"{new.order} end first")
+    if old.encoding != new.encoding:
+        yield finding("encoding-changed", where, old.encoding, new.encoding)
     unsigned = old.signed_at == old.top and new.signed_at == new.top
     if old.signed_at != new.signed_at and not unsigned:
         yield finding("sign-rule-changed", where, words.sign(old), words.sign(new))
@@ -82,9 +84,12 @@ def type_changes(where: str, old: Type, new: Type, known: Known) -> Iterator[Fin
     yield from prose.doc(where, old.doc, new.doc)
 
 
-def wire_shape(type: Type) -> list[tuple[int, str, int]]:
+def wire_shape(type: Type) -> list[tuple[int, str, int, str]]:
     """Return how the raw values of a type are encoded."""
-    return [(n["width"], n["order"], n["signed_at"]) for n in lower.numbers(type)]
+    return [
+        (n["width"], n["order"], n["signed_at"], n.get("encoding", "integer"))
+        for n in lower.numbers(type)
+    ]
 
 
 def shape(found: Type) -> tuple[Any, ...]:

@@ -53,8 +53,7 @@ def span(ends: tuple[Fraction, Fraction]) -> str:
 
 def in_unit(quantity: Quantity) -> tuple[Fraction, Fraction]:
     """Return the effective range in the quantity's unit."""
-    lowest, highest = quantity.bounds
-    return lowest * quantity.scale, highest * quantity.scale
+    return quantity.ends
 
 
 def choices(quantity: Quantity) -> str:

@@ -14,6 +14,7 @@ from cobotwire_codegen.language.shapes import (
     Text,
     Whole,
     Word,
+    YesNo,
 )
 from cobotwire_codegen.language.units import UNITS
 
@@ -27,7 +28,9 @@ class Wire(Record):
     """How a raw value is encoded: the number of bytes, their order, and the rule of the sign."""
 
     HEADING = "Wire type"
-    bytes = required(Whole(1, 4, "bad-width"), "The number of bytes.")
+    bytes = required(
+        Whole(1, 8, "bad-width"), "The number of bytes: 1 to 4 for an integer, 4 or 8 for a float."
+    )
     doc = required(Text(), _DOC)
     order = optional(Word(("big", "little")), "Which byte comes first.", "big")
     signed_at = optional(
@@ -35,6 +38,14 @@ class Wire(Record):
         "The largest raw value. A larger unsigned number n stands for n - 256^bytes, so 32767 is "
         "two's complement in two bytes. Left out: no raw value is negative.",
         -1,
+    )
+    encoding = optional(
+        Word(
+            ("integer", "float"),
+            ("A whole number.", "An IEEE 754 float of 4 or 8 bytes; it has no sign rule."),
+        ),
+        "What the bytes encode.",
+        "integer",
     )
     source = facts.source()
     disputed = facts.disputed()
@@ -60,6 +71,9 @@ class Quantity(Record):
     )
     shown_in = optional(
         Word(("radian",)), "The generated methods use radians; the wire carries degrees.", ""
+    )
+    not_finite = optional(
+        YesNo(), "Whether a float may also be infinite or NaN. Excludes `range`.", False
     )
     source = facts.source()
     disputed = facts.disputed()

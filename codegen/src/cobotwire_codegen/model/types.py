@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import ClassVar, Literal
 
 from cobotwire_codegen.errors import Place
+from cobotwire_codegen.model import floats
 from cobotwire_codegen.model.facts import Dispute, Lines
 
 
@@ -27,16 +28,37 @@ class Wire:
     doc: str
     source: Lines
     disputed: tuple[Dispute, ...]
+    encoding: Literal["integer", "float"] = "integer"
+
+    @property
+    def is_float(self) -> bool:
+        """Whether it is an IEEE float; then a raw value is the rank of the float (`floats`)."""
+        return self.encoding == "float"
 
     @property
     def minimum(self) -> int:
-        """The lowest raw value."""
+        """The lowest raw value; of a float, that of the lowest finite one."""
+        if self.is_float:
+            return -1 - floats.largest_rank(self.width)
         return self.signed_at + 1 - 256**self.width if self.signed_at < self.top else 0
 
     @property
     def maximum(self) -> int:
-        """The highest raw value."""
-        return self.signed_at
+        """The highest raw value; of a float, that of the highest finite one."""
+        return floats.largest_rank(self.width) if self.is_float else self.signed_at
+
+    def raw_of(self, data: bytes) -> int:
+        """Return the raw value that bytes encode."""
+        word = int.from_bytes(data, self.order)
+        if self.is_float:
+            half = 256**self.width // 2
+            return word if word < half else half - 1 - word
+        return word if word <= self.signed_at else word - int(256**self.width)
+
+    def bytes_of(self, raw: int) -> bytes:
+        """Return the bytes that encode a raw value."""
+        word = 256**self.width // 2 - 1 - raw if self.is_float and raw < 0 else raw
+        return int(word % 256**self.width).to_bytes(self.width, self.order)
 
     @property
     def top(self) -> int:
@@ -71,9 +93,7 @@ class _Scalar:
     def read(self, data: bytes) -> object:
         """Return the value that bytes encode, as a vector writes it."""
         assert isinstance(self, Quantity | Enum | Flag)
-        number = int.from_bytes(data, self.wire.order)
-        wraps = 256**self.wire.width if number > self.wire.signed_at else 0
-        return self.from_raw(number - wraps)
+        return self.from_raw(self.wire.raw_of(data))
 
     def can_hold(self, raw: int) -> bool:
         """Return whether the wire type can encode a raw value."""
@@ -115,6 +135,7 @@ class Quantity(_Scalar):
     doc: str
     source: Lines
     disputed: tuple[Dispute, ...]
+    not_finite: bool = False
 
     @property
     def bounds(self) -> tuple[Fraction, Fraction]:
@@ -123,30 +144,56 @@ class Quantity(_Scalar):
             return Fraction(min(self.choices)), Fraction(max(self.choices))
         if self.range is None:
             return Fraction(self.wire.minimum), Fraction(self.wire.maximum)
-        return self.range[0] / self.scale, self.range[1] / self.scale
+        low, high = self.range
+        if self.wire.is_float:
+            width = self.wire.width
+            return Fraction(floats.ceiling(low, width)), Fraction(floats.floor(high, width))
+        return low / self.scale, high / self.scale
+
+    @property
+    def ends(self) -> tuple[Fraction, Fraction]:
+        """The range in the unit."""
+        if self.range is not None and not self.choices:
+            return self.range
+        lowest, highest = self.bounds
+        return self.exact(lowest), self.exact(highest)
+
+    @property
+    def real(self) -> bool:
+        """Whether the physical value is a float in Python."""
+        return self.wire.is_float or self.scale != 1
+
+    def exact(self, raw: int | Fraction) -> Fraction:
+        """Return the physical value of a raw value."""
+        if self.wire.is_float:
+            return floats.exact_of(int(raw), self.wire.width)
+        return raw * self.scale
 
     @property
     def smallest(self) -> object:
-        """The lowest physical value."""
-        return _plain(self.bounds[0] * self.scale)
+        """The value of the smallest magnitude, of a float; else the lowest physical value."""
+        if self.wire.is_float and self.ends[0] <= 0 <= self.ends[1]:
+            return 0
+        return _plain(self.ends[0])
 
     def from_raw(self, raw: int) -> object:
         """Return the physical value of a raw value."""
-        return _plain(raw * self.scale)
+        return _plain(self.exact(raw))
 
     def can_hold_any(self, width: int) -> bool:
         """Return whether every raw value of a width is legal."""
-        return self.wire.width == width and not self.choices and self.range is None
+        plain = self.range is None and not self.choices and not self.wire.is_float
+        return self.wire.width == width and plain
 
     def narrowed(self, ends: tuple[Fraction, Fraction]) -> Quantity | None:
         """Return the quantity with a narrower range; None if the range is not inside this one."""
-        lowest, highest = (bound * self.scale for bound in self.bounds)
+        lowest, highest = self.ends
         inside = lowest <= ends[0] and ends[1] <= highest and not self.choices
         return replace(self, range=ends) if inside else None
 
     def values(self, most: int) -> tuple[Member, ...]:
         """Return the legal values as members named by their numbers; nothing if too many."""
-        if self.scale != 1:
+        if self.real:
             return ()
         lowest, highest = (int(bound) for bound in self.bounds)
         numbers = self.choices or range(lowest, highest + 1)

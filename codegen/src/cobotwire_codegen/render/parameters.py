@@ -94,13 +94,13 @@ def _argument(type: Type) -> str:
 
 def scaled(type: Value) -> bool:
     """Return whether a part of the named tuple is a float."""
-    return any(item.scale != 1 for _, item in type.items)
+    return any(item.real for _, item in type.items)
 
 
 def _scalar(type: Type) -> str:
     if isinstance(type, Flag):
         return "bool"
-    return "int" if isinstance(type, Quantity) and type.scale == 1 else "float"
+    return "int" if isinstance(type, Quantity) and not type.real else "float"
 
 
 def result_type(parameter: Parameter) -> str:

@@ -28,8 +28,12 @@ def span(type: Type) -> str:
     if isinstance(type, Quantity) and type.choices:
         return "one of " + ", ".join(map(str, type.choices))
     if isinstance(type, Quantity):
-        lowest, highest = (bound * type.scale for bound in type.bounds)
+        lowest, highest = type.ends
         unit = f" {type.unit}" if type.unit else ""
+        if type.not_finite:
+            return f"a number{unit}, also infinity and NaN"
+        if type.wire.is_float and type.range is None:
+            return f"a finite number of {type.wire.width} bytes{unit}"
         return f"{decimal(lowest)}..{decimal(highest)}{unit}"
     names = [name for name, _ in type.items]
     spans: dict[str, list[str]] = {}

@@ -106,7 +106,7 @@ def _checked(field: Field, case: Case, element: int, value: Any) -> int:
     """Return the raw value of a legal value; ``element`` is -1 if the field has one number."""
     number = case.numbers[max(element, 0)]
     try:
-        raw = _scaled(number, value) if number.scaled else _integer(field, value)
+        raw = _real(number, value) if number.real else _integer(field, value)
         if not field.allows(number, raw):
             raise _Rejected("choice" if field.choices else "range")
     except _Rejected as rejected:
@@ -123,7 +123,7 @@ def _integer(field: Field, value: Any) -> int:
         raise _Rejected("type") from None
 
 
-def _scaled(number: Number, value: Any) -> int:
+def _real(number: Number, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, (SupportsFloat, SupportsIndex)):
         raise _Rejected("type")
     try:
@@ -132,8 +132,10 @@ def _scaled(number: Number, value: Any) -> int:
         raise _Rejected("range") from None
     except (TypeError, ValueError):
         raise _Rejected("type") from None
-    if not math.isfinite(real):
+    if not math.isfinite(real) and not number.takes_not_finite:
         raise _Rejected("not-finite")
+    if number.encoding == "float":
+        return number.raw(real)
     steps = number.steps(real)
     # Checked before rounding, because a huge float would become a huge integer.
     if not number.minimum - 1 < steps < number.maximum + 1:

@@ -135,7 +135,7 @@ def revealing(rows: Sequence[Sequence[Pair]], present: Sequence[Sequence[Any]]) 
 
 
 def _revealing(pair: Pair, sample: int, place: int, keep: float | None) -> Any:
-    step = max(number.exact(1) for number in pair)
+    step = max(map(_step, pair))
     low = max(number.exact(number.minimum) for number in pair)
     high = min(number.exact(number.maximum) for number in pair)
     if keep is not None and low < 0 < high and sample == BEYOND:
@@ -153,5 +153,12 @@ def _revealing(pair: Pair, sample: int, place: int, keep: float | None) -> Any:
     return _value(pair[0], count * step)
 
 
+def _step(number: Number) -> Fraction:
+    """Return the distance between two samples: a raw step, or a part of the range of a float."""
+    if number.encoding == "float":
+        return (number.exact(number.maximum) - number.exact(number.minimum)) / 1024
+    return number.exact(1)
+
+
 def _value(number: Number, value: Fraction) -> Any:
-    return float(value) if number.scaled else int(value)
+    return float(value) if number.real else int(value)

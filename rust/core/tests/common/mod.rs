@@ -86,6 +86,7 @@ pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
         divide,
         minimum,
         maximum,
+        float: false,
     }
 }
 

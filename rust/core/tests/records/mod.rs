@@ -157,6 +157,7 @@ fn number(json: &Value) -> Number {
         divide: integer(&json["divide"]),
         minimum: integer(&json["minimum"]),
         maximum: integer(&json["maximum"]),
+        float: json["encoding"] == "float",
     }
 }
 

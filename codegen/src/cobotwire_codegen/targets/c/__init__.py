@@ -11,10 +11,12 @@ from cobotwire_codegen.render import Files, environment
 from cobotwire_codegen.targets.c import names
 from cobotwire_codegen.targets.c.messages import Message, quantities
 from cobotwire_codegen.targets.c.tables import Tables
+from cobotwire_codegen.targets.support import require_plain
 
 
 def render_c(edition: Edition, templates: Path | None = None) -> Files:
     """Return the edition's header and source; ``templates`` replace the shipped ones."""
+    require_plain(edition, "C")
     jinja = environment(templates)
     jinja.filters.update(comment=names.comment, c_string=names.string, rows=names.rows)
     jinja.filters.update(integer=names.integer)

@@ -9,6 +9,7 @@ from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, environment
 from cobotwire_codegen.render.literal import literal
 from cobotwire_codegen.targets.construct.declarations import Declarations
+from cobotwire_codegen.targets.support import require_plain
 
 
 def render_construct(editions: Sequence[Edition]) -> Files:
@@ -21,6 +22,7 @@ def render_construct(editions: Sequence[Edition]) -> Files:
 
 
 def _module(edition: Edition) -> str:
+    require_plain(edition, "construct")
     template = environment().get_template("construct/edition.py.j2")
     found = Declarations(edition)
     # Messages come first: only they add the types that they need.

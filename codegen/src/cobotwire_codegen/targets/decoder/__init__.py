@@ -10,6 +10,7 @@ from typing import Any
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files
+from cobotwire_codegen.targets.support import require_plain
 
 # Neither the codec of the page nor its display needs the other keys.
 _COMMAND = ("id", "name", "title", "family", "safety", "request", "reply")
@@ -21,6 +22,7 @@ def render_decoder(editions: Sequence[Edition]) -> Files:
 
 
 def _script(edition: Edition) -> str:
+    require_plain(edition, "decoder page")
     table = lower.table(edition)
     commands = [_command(command) for command in table["commands"]]
     head = {name: table[name] for name in ("edition", "title", "frame")}

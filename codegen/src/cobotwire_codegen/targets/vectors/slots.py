@@ -7,7 +7,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Enum, Field, Flag, Quantity, Type, Value, Variant, Wire
+from cobotwire_codegen.model import (
+    Enum,
+    Field,
+    Flag,
+    Quantity,
+    Type,
+    Value,
+    Variant,
+    Wire,
+    floats,
+)
 
 RawValues = dict[str, tuple[int, ...]]
 """A message: its raw values by field."""
@@ -29,13 +39,14 @@ class Slot:
 
     def value(self, raw: int) -> int | float:
         """Return the physical value of a raw value."""
+        if self.wire.is_float:
+            return float(floats.exact_of(raw, self.wire.width))
         exact = raw * self.scale
         return raw if self.scale == 1 else float(exact)
 
     def encode(self, raw: int) -> bytes:
         """Return the bytes of a raw value."""
-        word = raw % int(256**self.wire.width)
-        return word.to_bytes(self.wire.width, self.wire.order)
+        return self.wire.bytes_of(raw)
 
     def encodable(self, raw: int) -> bool:
         """Return whether some bytes decode to a raw value, legal or not."""
@@ -43,8 +54,7 @@ class Slot:
 
     def read(self, data: bytes) -> int:
         """Return the raw value of bytes."""
-        word = int.from_bytes(data, self.wire.order)
-        return word if word <= self.wire.signed_at else word - 256**self.wire.width
+        return self.wire.raw_of(data)
 
 
 def slots(field: Field, variant: Variant, raw_values: RawValues) -> tuple[Slot, ...] | None:

@@ -36,7 +36,7 @@ def _shape(command: Command) -> tuple[Field, Field] | None:
 def _is_step(table: Table, command: Command) -> bool:
     """Return whether a command moves one part by a distance."""
     shape = _shape(command)
-    return shape is not None and shape[1].cases[0].numbers[0].scaled
+    return shape is not None and shape[1].cases[0].numbers[0].real
 
 
 def _is_jog(table: Table, command: Command) -> bool:
