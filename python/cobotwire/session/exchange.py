@@ -28,24 +28,20 @@ from collections.abc import Sequence
 from math import inf
 from typing import Any
 
-from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame, Noise
+from cobotwire.codec.interface import Codec, Event, Frame, Noise
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.session.acks import Acks, PendingAck
 from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
 from cobotwire.session.events import (
-    AckReceived,
-    EchoReceived,
-    FrameEvent,
-    LateReply,
     ReplyMatched,
     ReplyRejected,
     RequestExpired,
     SessionEvent,
-    UnexpectedFrame,
 )
 from cobotwire.session.leftover import LateFrame, Leftover
 from cobotwire.session.matching import repeats_arguments, replies_elsewhere
+from cobotwire.session.other_frames import OtherFrames
 from cobotwire.session.outstanding import OutstandingReplies, late_replies
 from cobotwire.session.pending import Pending, PendingRequest
 from cobotwire.session.policy import RetryPolicy
@@ -73,6 +69,7 @@ class Exchange:
         self._outstanding = OutstandingReplies()
         self._acks = Acks(codec)
         self._echo = EchoDetector()
+        self._others = OtherFrames(self._outstanding, self._acks, self._echo)
 
     # What callers want.
 
@@ -317,87 +314,35 @@ class Exchange:
         events: list[SessionEvent] = []
         for event in received:
             if isinstance(event, Noise):
-                self._take_noise(event, now)
+                self._others.take_noise(event, self._waiting(), now)
                 events.append(event)
             else:
                 events.append(self._match(event, now))
         return events
-
-    def _take_noise(self, noise: Noise, now: float) -> None:
-        self._echo.add_noise(noise)
-        waiting = self._waiting()
-        if waiting is not None and waiting.text is not None:
-            # A text that began before the request was sent does not belong to it.
-            waiting.text.add(noise.data[max(0, waiting.offset - noise.offset) :], now)
-        self._note(noise)
 
     def _match(self, frame: Frame, now: float) -> SessionEvent:
         """Find out what a frame is; end the request that it replies to."""
         is_copy = self._echo.take_copy(frame)
         waiting = self._waiting()
         if waiting is None or not waiting.accepts(frame):
-            return self._match_other(frame, now, is_copy)
+            return self._match_other(frame, waiting, now, is_copy)
         request = waiting.request
         try:
             message = frame.decode("reply", of=request.command.name)
         except ProtocolError as error:
             if replies_elsewhere(frame, request.command, self._codec.table):
-                return self._match_other(frame, now, is_copy)
-            return self._reject(waiting, frame, is_copy, error)
+                return self._match_other(frame, waiting, now, is_copy)
+            return self._others.reject(frame, error, waiting, is_copy)
         if is_copy:
-            return self._weigh_copy(waiting, frame, message)
+            return self._others.weigh_copy(frame, message, waiting)
         if request.arguments and not repeats_arguments(message, request):
-            return self._match_other(frame, now, is_copy)
+            return self._match_other(frame, waiting, now, is_copy)
         fields = message.fields
         self._reply(waiting, fields, now)
         return ReplyMatched(request.command, fields, message, frame)
 
-    def _match_other(self, frame: Frame, now: float, is_copy: bool) -> SessionEvent:
-        """Find out what a frame is that does not reply to the request that waits."""
-        late = self._outstanding.find(frame, now)
-        if late is not None:
-            if late.request.command.answers:
-                # It stays outstanding: this may be a copy, with the reply itself still to come.
-                return self._note(LateReply(late.request.command, frame))
-            self._outstanding.settle(late)
-        if is_copy:
-            self._acks.note_copy(frame)
-            return self._note(EchoReceived(frame))
+    def _match_other(
+        self, frame: Frame, waiting: PendingRequest | None, now: float, is_copy: bool
+    ) -> SessionEvent:
         began_at = now if frame.offset >= self._chunk_at else -inf
-        acknowledged = self._acks.match(frame, now, began_at)
-        if acknowledged is None:
-            return self._note(UnexpectedFrame(frame))
-        return self._note(AckReceived(acknowledged.request.command, acknowledged.message, frame))
-
-    def _weigh_copy(
-        self, waiting: PendingRequest, frame: Frame, message: DecodedMessage
-    ) -> SessionEvent:
-        """Keep a copy that can be the reply; one that cannot proves that the line echoes."""
-        if repeats_arguments(message, waiting.request):
-            waiting.keep_candidate(message)
-        else:
-            self._echo.prove()
-        return self._note(EchoReceived(frame))
-
-    def _reject(
-        self, waiting: PendingRequest, frame: Frame, is_copy: bool, error: ProtocolError
-    ) -> SessionEvent:
-        """End a request with a reply of illegal values, unless the frame is something else."""
-        if is_copy:
-            self._echo.prove()
-            return self._note(EchoReceived(frame))
-        if self._outstanding.has_id(frame.command):
-            return self._note(UnexpectedFrame(frame))
-        if len(waiting.attempt_times) > 1:
-            self._outstanding.expect_late(waiting, 1)
-        waiting.fail(error)
-        return ReplyRejected(waiting.request.command, error, frame)
-
-    def _note(self, event: FrameEvent | Noise) -> SessionEvent:
-        """Have everybody who waits remember an event, for the text of a timeout."""
-        waiting = self._waiting()
-        if waiting is not None:
-            waiting.note(event)
-        if self._acks.waiting:
-            self._acks.note(event)
-        return event
+        return self._others.match(frame, waiting, now, began_at, is_copy)
