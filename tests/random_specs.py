@@ -162,7 +162,25 @@ def commands(draw: st.DrawFn) -> dict[str, Any]:
                 reply.insert(0, {"name": "f0", "type": "joint", "echo": echo})
             command["reply"] = reply
         made[f"call{index}"] = command
+    for command in made.values():
+        _read_by(draw, command, made)
     return made
+
+
+def _read_by(draw: st.DrawFn, command: dict[str, Any], made: dict[str, Any]) -> None:
+    """Let a query report an argument of a setting, if their types are the same."""
+    plain = [f for f in command.get("request", ()) if f.keys() == {"name", "type"}]
+    own = {field["type"]: field["name"] for field in plain}
+    fitting = [
+        name
+        for name, query in made.items()
+        if command["safety"] == "setting"
+        and query["safety"] == "query"
+        and query["reply"][-1].get("type") in own
+    ]
+    query = draw(st.sampled_from(["", *fitting]))
+    if query:
+        command["read_by"] = {query: {"answer": own[made[query]["reply"][-1]["type"]]}}
 
 
 @st.composite

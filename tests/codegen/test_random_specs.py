@@ -87,6 +87,7 @@ def test_simulated_arm_of_a_random_protocol_sends_legal_replies(
             continue
         assert vector.frame is not None
         reply = arm.receive(vector.frame)
+        _assert_remembered(arm, table, vector, codec.decode("request", vector.frame).fields)
         if table.command(vector.command).answers:
             message = codec.decode("reply", reply, of=vector.command)
             given_values = dict(zip((n for n, _ in vector.values), _values(edition, vector)))
@@ -95,6 +96,19 @@ def test_simulated_arm_of_a_random_protocol_sends_legal_replies(
                     assert message.fields[field.name] == given_values[field.name]
         else:
             assert reply == b""
+
+
+def _assert_remembered(
+    arm: SimulatedArm, table: Any, vector: Any, given_values: dict[str, Any]
+) -> None:
+    """Check that the query of ``read_by`` now reports what the request has set."""
+    back = table.command(vector.command).read_by
+    if back is None:
+        return
+    [(name, argument)] = back.fields
+    query = table.command(back.query)
+    asked = {f.name: given_values.get(f.name, 0) for v in query.request for f in v.fields}
+    assert arm.state.remembered.recall(query, asked)[name] == given_values[argument]
 
 
 def test_generated_code_passes_mypy_strict(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from cobotwire.inspect.plot.live_pose import LivePose
 from cobotwire.protocol.errors import UsageError
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
+from cobotwire.simulator.behaviour.external import named
 from cobotwire.simulator.faults import AppliedFault, Scenario, find, shipped
 from cobotwire.simulator.kinematics import prepare
 from cobotwire.simulator.motion.hand import read_points
@@ -61,6 +62,11 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     metavar="FILE",
     help="Lead the arm by hand when it is released: lines of seconds and angles.",
 )
+@click.option(
+    "--behaviours",
+    metavar="MODULE",
+    help="What the device does for its commands: a module, or a .py file, with `behaviours`.",
+)
 @click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf file.")
@@ -87,6 +93,7 @@ def sim(
     powered: bool,
     no_acks: bool,
     led: str | None,
+    behaviours: str | None,
     quiet: bool,
     as_json: bool,
     view: str | None,
@@ -113,7 +120,12 @@ def sim(
     clock = RunningClock(speed)
     on_note = None if quiet else lambda note: lines.print(output.note(note))
     arm = SimulatedArm(
-        package.TABLE, clock=clock, on_note=on_note, powered=powered, acks=not no_acks
+        package.TABLE,
+        clock=clock,
+        on_note=on_note,
+        powered=powered,
+        acks=not no_acks,
+        behaviours=None if behaviours is None else named(behaviours),
     )
     if led is not None:
         arm.lead(read_points(led, package.TABLE.joints))

@@ -13,7 +13,8 @@ from cobotwire.protocol.messages import Reply
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
-from cobotwire.simulator.behaviour import BEHAVIOURS, Sized
+from cobotwire.simulator.behaviour import Behaviour, Sized, own
+from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.motion.hand import checked
 from cobotwire.simulator.peer import IDLE_SECONDS
@@ -60,6 +61,7 @@ class SimulatedArm:
         powered: bool = False,
         geometry: Geometry | None = None,
         on_note: Callable[[Note], None] | None = None,
+        behaviours: Mapping[str, Behaviour] | None = None,
     ) -> None:
         """Create an arm with every joint at zero.
 
@@ -74,6 +76,9 @@ class SimulatedArm:
                 it states none, the arm reports all coordinates as 0, rejects motions to
                 coordinates, and its joints do not snap to encoder ticks.
             on_note: called with each new note; ``notes`` keeps the last 1000.
+            behaviours: what the arm does for its commands, instead of the behaviour that comes with
+                cobotwire; None: those that installed packages provide for the edition (entry
+                points of the group ``cobotwire.behaviours``).
         """
         self.table = table
         self.clock = clock
@@ -86,6 +91,7 @@ class SimulatedArm:
         self.state = self._new_state()
         if powered:
             self.state.power_on()
+        self._behaviours = installed(table.edition) if behaviours is None else behaviours
         self._own_connection = ArmConnection(self, on_event)
 
     def connect(self, on_event: EventListener | None = None) -> ArmConnection:
@@ -155,8 +161,9 @@ class SimulatedArm:
 
         ``fields`` are those of the request, as the codec decodes them.
         """
-        behaviour = BEHAVIOURS.get(command.name)
+        behaviour = self._behaviours.get(command.name) or own(command)
         if behaviour is None:
+            self.state.remembered.store(self.table, command, fields)
             return None
         request, now = behaviour.request_type.from_fields(fields), self.clock()
         self.state.record(now)
@@ -250,7 +257,8 @@ class ArmConnection:
             return b""
         if isinstance(reply, Sized):
             return self._arm.encode_sized(command, reply)
-        result = {} if reply is None else reply.fields
+        remembered = self._arm.state.remembered
+        result = remembered.recall(command, given) if reply is None else reply.fields
         fields = completed(command, given, result)
         try:
             return self._session.encode_reply(command.name, fields)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from cobotwire.simulator.kinematics import DEGREES_PER_TICK, Geometry, Pose, flange
 from cobotwire.simulator.kinematics.ticks import (
@@ -16,6 +17,7 @@ from cobotwire.simulator.kinematics.ticks import (
 )
 from cobotwire.simulator.motion import Axes
 from cobotwire.simulator.motion.hand import TimedPoint
+from cobotwire.simulator.remembered import Remembered
 
 # Facts of the 280, from the protocol notes on kinematics.
 DEGREES_PER_SECOND = 1.5  # for each percent of speed
@@ -57,6 +59,9 @@ class ArmState:
     password: str = "mycobot123"  # noqa: S105  (the document's own example)
     tool: tuple[float, ...] = (0.0,) * 6
     world: tuple[float, ...] = (0.0,) * 6
+    remembered: Remembered = field(default_factory=Remembered)
+    # Whatever behaviours from outside of cobotwire keep.
+    kept: dict[str, Any] = field(default_factory=dict)
     pins: dict[int, bool] = field(default_factory=dict)
     pin_modes: dict[int, int] = field(default_factory=dict)
     basic_pins: dict[int, bool] = field(default_factory=dict)

@@ -12,6 +12,13 @@ from cobotwire.simulator.behaviour import (  # noqa: F401  (importing them regis
     system,
     upkeep,
 )
-from cobotwire.simulator.behaviour.registry import BEHAVIOURS, Behaviour, Sized, behaviour
+from cobotwire.simulator.behaviour.registry import (
+    BEHAVIOURS,
+    Behaviour,
+    Behaviours,
+    Sized,
+    behaviour,
+    own,
+)
 
-__all__ = ["BEHAVIOURS", "Behaviour", "Sized", "behaviour"]
+__all__ = ["BEHAVIOURS", "Behaviour", "Behaviours", "Sized", "behaviour", "own"]

@@ -4,7 +4,8 @@ A behaviour takes the arm's state, the time and the typed request, and returns t
 serves every edition that has the command: arguments that an edition lacks are None. A behaviour
 may return None or leave out optional fields of its reply: the arm then fills in usual legal values.
 It may also state how many data bytes the reply has (:class:`Sized`).
-:func:`query` and :func:`stored` register the behaviours that most commands have.
+:func:`query` and :func:`stored` register the behaviours that most commands have. A command without
+a behaviour is remembered (:mod:`cobotwire.simulator.remembered`).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Reply, Request
+from cobotwire.protocol.table import Command
 from cobotwire.simulator.state import ArmState
 
 
@@ -37,49 +39,82 @@ class Behaviour(NamedTuple):
 
 Value = TypeVar("Value")
 
-BEHAVIOURS: dict[str, Behaviour] = {}
+
+class Behaviours(dict[str, Behaviour]):
+    """Behaviours by the name of their command.
+
+    A package of your own has one of its own, so that its commands cannot be mistaken for those of
+    another protocol::
+
+        behaviours = Behaviours()
 
 
-def behaviour(
-    request_type: type[RequestT],
-) -> Callable[
-    [Callable[[ArmState, float, RequestT], Result]], Callable[[ArmState, float, RequestT], Result]
-]:
-    """Register a function as the behaviour of the command that a request type belongs to."""
+        @behaviours.behaviour(messages.SetMode)
+        def set_mode(arm, now, request):
+            arm.kept["mode"] = request.mode
+    """
 
-    def register(
-        behave: Callable[[ArmState, float, RequestT], Result],
-    ) -> Callable[[ArmState, float, RequestT], Result]:
-        if request_type.command in BEHAVIOURS:
-            raise ValueError(f"two behaviours are registered for {request_type.command}")
-        BEHAVIOURS[request_type.command] = Behaviour(request_type, behave)
-        return behave
+    def behaviour(
+        self, request_type: type[RequestT]
+    ) -> Callable[
+        [Callable[[ArmState, float, RequestT], Result]],
+        Callable[[ArmState, float, RequestT], Result],
+    ]:
+        """Register a function as the behaviour of the command that a request type belongs to."""
 
-    return register
+        def register(
+            behave: Callable[[ArmState, float, RequestT], Result],
+        ) -> Callable[[ArmState, float, RequestT], Result]:
+            if request_type.command in self:
+                raise ValueError(f"two behaviours are registered for {request_type.command}")
+            self[request_type.command] = Behaviour(request_type, behave)
+            return behave
+
+        return register
+
+    def query(
+        self,
+        request_type: type[Request[Value]],
+        value: Callable[[ArmState, float, Any], Value | None],
+    ) -> None:
+        """Let a command reply with a value that ``value`` returns; None: the arm fills it in."""
+
+        @self.behaviour(request_type)
+        def reply(arm: ArmState, now: float, request: Request[Value]) -> Reply[Value] | None:
+            found = value(arm, now, request)
+            # Type checkers do not know the fields of a query's reply: the first one is the value.
+            reply_type: Any = request_type.reply_type
+            return None if found is None else reply_type(found)
+
+    def stored(
+        self, attribute: str, setter: type[Request[None]], getter: type[Request[Any]]
+    ) -> None:
+        """Let a setter store its only argument in an attribute; let a query return it."""
+
+        @self.behaviour(setter)
+        def store(arm: ArmState, now: float, request: Request[None]) -> None:
+            [value] = request.fields.values()
+            setattr(arm, attribute, value)
+
+        self.query(getter, lambda arm, now, request: getattr(arm, attribute))
 
 
-def query(
-    request_type: type[Request[Value]], value: Callable[[ArmState, float, Any], Value | None]
-) -> None:
-    """Let a command reply with a value that ``value`` returns; None: the arm fills it in."""
-
-    @behaviour(request_type)
-    def reply(arm: ArmState, now: float, request: Request[Value]) -> Reply[Value] | None:
-        found = value(arm, now, request)
-        # Type checkers do not know the fields of a query's reply: the first one is the value.
-        reply_type: Any = request_type.reply_type
-        return None if found is None else reply_type(found)
+# The behaviours that come with cobotwire.
+BEHAVIOURS = Behaviours()
+behaviour, query, stored = BEHAVIOURS.behaviour, BEHAVIOURS.query, BEHAVIOURS.stored
 
 
-def stored(attribute: str, setter: type[Request[None]], getter: type[Request[Any]]) -> None:
-    """Let a setter store its only argument in an attribute of the arm; let a query return it."""
+def own(command: Command) -> Behaviour | None:
+    """Return the behaviour of cobotwire for a command; None if there is none.
 
-    @behaviour(setter)
-    def store(arm: ArmState, now: float, request: Request[None]) -> None:
-        [value] = request.fields.values()
-        setattr(arm, attribute, value)
-
-    query(getter, lambda arm, now, request: getattr(arm, attribute))
+    A command of another protocol that only shares the name has other arguments; this behaviour
+    would not understand them.
+    """
+    found = BEHAVIOURS.get(command.name)
+    if found is None or command.package.startswith("cobotwire."):
+        return found
+    given = {field.name for variant in command.request for field in variant.fields}
+    return found if given <= set(vars(found.request_type.from_fields({}))) else None
 
 
 def row(values: Iterable[float] | None) -> Any:
