@@ -5,10 +5,8 @@ No YAML writer is used: ``load`` finds the place, and lines are inserted there.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.build.packages import names_package
@@ -90,16 +88,4 @@ def built_with(path: Path, changed: dict[Path, str]) -> Edition:
     Raises:
         SpecError: the changed edition has problems; their places refer to the changed files.
     """
-    files = {file.resolve() for file in files_of(path)}
-    texts = {file.resolve(): text for file, text in changed.items()}
-    here = Path.cwd().resolve()
-    top = Path(os.path.commonpath([here, *files]))
-    with TemporaryDirectory() as folder:
-        # Copy the files with their relative paths, so that they find each other.
-        for file in files:
-            copy = Path(folder) / file.relative_to(top)
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            copy.write_text(texts.get(file) or file.read_text(encoding="utf-8"), encoding="utf-8")
-        root = Path(folder) / here.relative_to(top)
-        root.mkdir(parents=True, exist_ok=True)
-        return build_edition(Path(folder) / path.resolve().relative_to(top), root)
+    return build_edition(path, Path.cwd(), {file.resolve(): text for file, text in changed.items()})

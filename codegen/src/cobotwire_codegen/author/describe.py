@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from textwrap import fill, indent
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.author.codes import Explanation
-from cobotwire_codegen.model import Command, Edition, Evidence, Variant, Vector
+from cobotwire_codegen.model import Command, Edition, Evidence, Field, Quantity, Variant, Vector
 from cobotwire_codegen.render import markdown, words
+from cobotwire_codegen.wire import encode_variant
 
 _WIDTH = 96
 
@@ -28,6 +30,43 @@ def describe_code(explanation: Explanation) -> str:
 def describe_command(edition: Edition, command: Command) -> str:
     """Return the reference of a command."""
     return "\n".join(line.rstrip() for line in _command(edition, command))
+
+
+def describe_vector(edition: Edition, vector: Vector) -> str:
+    """Return a vector's frame byte by byte, with raw and physical values."""
+    head = f"{vector.name}: {vector.direction} of {vector.command}"
+    if vector.frame is None:
+        return head
+    lines = [head, markdown.hexed(vector.frame), ""]
+    if vector.derived is not None:
+        origin = vector.derived
+        lines[2:] = [f"derived from {markdown.hexed(origin.frame)} of {origin.edition}", ""]
+    command = next(each for each in edition.commands if each.name == vector.command)
+    values = dict(vector.values)
+    variant, data = encode_variant(command, vector.direction, values)
+    start = len(vector.frame) - edition.frame.check_size - len(data)
+    for field in variant:
+        size = field.type.size
+        raw = vector.frame[start : start + size]
+        lines.append(f"{start:>3}  {markdown.hexed(raw):<18} {_decoded(field, values, raw)}")
+        start += size
+    return "\n".join(lines)
+
+
+def _decoded(field: Field, values: dict[str, object], data: bytes) -> str:
+    """Return a field's raw and physical values."""
+    picked = str(values.get(field.selector))
+    type = next((type for member, type in field.cases if member.name == picked), field.type)
+    shown = []
+    for name, part in type.parts:
+        word, data = data[: part.size], data[part.size :]
+        number = int.from_bytes(word, part.wire.order)
+        raw = number - 256**part.size if number > part.wire.signed_at else number
+        unit = f" {part.unit}" if isinstance(part, Quantity) and part.unit else ""
+        value = part.read(word)
+        physical = words.decimal(value) if isinstance(value, Fraction) else value
+        shown.append(f"{name or field.name} = {physical}{unit} (raw {raw})")
+    return ", ".join(shown)
 
 
 def _command(edition: Edition, command: Command) -> Iterator[str]:

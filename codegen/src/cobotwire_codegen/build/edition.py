@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from cobotwire_codegen import language
@@ -11,7 +11,7 @@ from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.frame import build_frame_format
 from cobotwire_codegen.build.geometry import build_geometry
 from cobotwire_codegen.build.inherit import carried
-from cobotwire_codegen.build.parts import Files, Inherited, Parts, add_own
+from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_own
 from cobotwire_codegen.build.types import Types
 from cobotwire_codegen.build.vectors import build_erratum, build_vector
 from cobotwire_codegen.errors import Problem, SpecError
@@ -19,14 +19,20 @@ from cobotwire_codegen.model import Edition, Family, Frame, Vector
 from cobotwire_codegen.reader import Reader
 
 
-def build_edition(path: Path, root: Path) -> Edition:
+def build_edition(path: Path, root: Path, unsaved: Mapping[Path, str] | None = None) -> Edition:
     """Return an edition; file names in messages are relative to ``root``.
+
+    Args:
+        path: the edition's file.
+        root: the folder to which file names in messages are relative.
+        unsaved: texts that replace the content of files on disk, by resolved path.
 
     Raises:
         SpecError: reading found problems; the error carries all of them.
     """
     problems: list[Problem] = []
-    reader, parts = _collect(path, root, problems, ())
+    texts = Texts(root, unsaved or {})
+    reader, parts = _collect(path, texts, problems, ())
     edition = _build(reader, parts, problems)
     if problems:
         raise SpecError(problems)
@@ -34,10 +40,10 @@ def build_edition(path: Path, root: Path) -> Edition:
 
 
 def _collect(
-    path: Path, root: Path, problems: list[Problem], above: tuple[Path, ...]
+    path: Path, texts: Texts, problems: list[Problem], above: tuple[Path, ...]
 ) -> tuple[Reader, Parts]:
     """Return the parts of an edition: those of its base, changed by the delta, then its own."""
-    files = Files(path.parent, root, problems)
+    files = Files(path.parent, texts, problems)
     reader = Reader(files.load(path), language.EDITION, "the edition", problems)
     is_delta = reader.record is language.DeltaEdition
     base = reader.node(language.DeltaEdition.base) if is_delta else None
@@ -48,7 +54,7 @@ def _collect(
         if base_path.resolve() in above:
             problem = Problem(base.place, "circular-base", "an edition cannot be its own base")
             raise SpecError([*problems, problem])
-        base_reader, parts = _collect(base_path, root, problems, above)
+        base_reader, parts = _collect(base_path, texts, problems, above)
         parts.base = _build(base_reader, parts, problems)
         parts.vectors = []
         parts.inherited = [Inherited(each, each.command) for each in parts.base.vectors]

@@ -6,6 +6,7 @@ fits into one file.
 
 from __future__ import annotations
 
+from collections import abc
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,11 +17,12 @@ from cobotwire_codegen.build.packages import names_package, packaged_edition
 from cobotwire_codegen.errors import Place, Problem, SpecError, nearest
 from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.language.shapes import items_of
-from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load, parse
 from cobotwire_codegen.model import Change, Edition, Vector
 from cobotwire_codegen.reader import Reader
 
 Named = dict[str, tuple[Place, Node]]
+Unsaved = abc.Mapping[Path, str]
 
 
 @dataclass
@@ -72,19 +74,31 @@ class Parts:
             yield from family.commands
 
 
+class Texts:
+    """Loads files by path; texts that an editor has not saved yet replace their content."""
+
+    def __init__(self, root: Path, unsaved: Unsaved) -> None:
+        self._root, self._unsaved = root.resolve(), unsaved
+
+    def load(self, path: Path) -> Node:
+        """Return a file's content; messages name it relative to the root."""
+        path = path.resolve()
+        shown = path.relative_to(self._root) if path.is_relative_to(self._root) else path
+        text = self._unsaved.get(path)
+        return load(path, shown.as_posix()) if text is None else parse(text, shown.as_posix())
+
+
 class Files:
     """Loads the files that an edition names, relative to the edition's own file."""
 
-    def __init__(self, folder: Path, root: Path, problems: list[Problem]) -> None:
+    def __init__(self, folder: Path, texts: Texts, problems: list[Problem]) -> None:
         self._folder = folder
-        self._root = root
+        self._texts = texts
         self._problems = problems
 
     def load(self, path: Path) -> Node:
         """Return a file's content."""
-        path, root = path.resolve(), self._root.resolve()
-        shown = path.relative_to(root) if path.is_relative_to(root) else path
-        return load(path, shown.as_posix())
+        return self._texts.load(path)
 
     def path(self, node: Node) -> Path:
         """Return the path of the file, or of the package's edition, that a node names.

@@ -10,6 +10,7 @@ from cobotwire_codegen.cli.diff import diff
 from cobotwire_codegen.cli.explain import explain
 from cobotwire_codegen.cli.generate import generate
 from cobotwire_codegen.cli.init import init
+from cobotwire_codegen.cli.lsp import lsp
 from cobotwire_codegen.cli.model import model
 from cobotwire_codegen.cli.new_command import new_command
 from cobotwire_codegen.cli.reconcile import reconcile
@@ -17,6 +18,7 @@ from cobotwire_codegen.cli.render import render
 from cobotwire_codegen.cli.schema import schema
 from cobotwire_codegen.cli.shared import root_option
 from cobotwire_codegen.cli.vectors import vectors
+from cobotwire_codegen.cli.watch import watch
 
 _EPILOG = (
     "Exit codes: 0 success; 1 something is stale or differs; 2 the spec or the command line is "
@@ -58,6 +60,8 @@ VERBS = (
     new_command,
     vectors,
     reconcile,
+    watch,
+    lsp,
 )
 for verb in VERBS:
     main.add_command(verb)

@@ -1,0 +1,183 @@
+"""A real client of the Language Server Protocol talks to ``cobotwire-gen lsp`` over stdio."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+from lsprotocol import types as lsp
+from pygls.lsp.client import LanguageClient
+from pygls.uris import from_fs_path
+
+import vectors
+from codegen.author import samples
+
+SECONDS = 30.0
+
+
+class Editor:
+    """What an editor does, for one file at a time."""
+
+    def __init__(self, client: LanguageClient) -> None:
+        self.client = client
+        self.published: dict[str, list[lsp.Diagnostic]] = {}
+        self.changed = asyncio.Event()
+        self.version = 0
+
+    async def show(self, path: Path, text: str) -> None:
+        """Open a file, or change its text, without saving it; wait for its problems."""
+        self.changed.clear()
+        self.published.pop(uri(path), None)
+        self.version += 1
+        if self.version == 1:
+            item = lsp.TextDocumentItem(uri(path), "yaml", self.version, text)
+            self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
+        else:
+            document = lsp.VersionedTextDocumentIdentifier(self.version, uri(path))
+            whole = lsp.TextDocumentContentChangeWholeDocument(text)
+            self.client.text_document_did_change(lsp.DidChangeTextDocumentParams(document, [whole]))
+        async with asyncio.timeout(SECONDS):
+            while uri(path) not in self.published:
+                await self.changed.wait()
+                self.changed.clear()
+
+    def problems(self, path: Path) -> list[str]:
+        found = self.published[uri(path)]
+        return [f"{p.range.start.line + 1}:{p.range.start.character + 1}: {p.code}" for p in found]
+
+    async def hover(self, path: Path, text: str, word: str, after: str = "") -> str:
+        where = at(text, word, after)
+        document = lsp.TextDocumentIdentifier(uri(path))
+        found = await self.client.text_document_hover_async(lsp.HoverParams(document, where))
+        if found is None:
+            return ""
+        assert isinstance(found.contents, lsp.MarkupContent)
+        return found.contents.value
+
+    async def complete(self, path: Path, where: lsp.Position) -> list[str]:
+        document = lsp.TextDocumentIdentifier(uri(path))
+        params = lsp.CompletionParams(document, where)
+        found = await self.client.text_document_completion_async(params)
+        assert isinstance(found, list)
+        return [item.label for item in found]
+
+    async def definition(self, path: Path, text: str, word: str, after: str = "") -> str:
+        document = lsp.TextDocumentIdentifier(uri(path))
+        params = lsp.DefinitionParams(document, at(text, word, after))
+        found = await self.client.text_document_definition_async(params)
+        if found is None:
+            return ""
+        assert isinstance(found, lsp.Location)
+        return f"{found.uri.rpartition('/')[2]}:{found.range.start.line + 1}"
+
+
+def uri(path: Path) -> str:
+    return from_fs_path(str(path.resolve())) or ""
+
+
+def at(text: str, word: str, after: str = "") -> lsp.Position:
+    """Return the position of a word's first letter; the word follows ``after``."""
+    start = text.index(word, text.index(after))
+    return lsp.Position(text[:start].count("\n"), start - (text[:start].rfind("\n") + 1))
+
+
+@asynccontextmanager
+async def editing(root: Path) -> AsyncIterator[Editor]:
+    client = LanguageClient("test", "1")
+    editor = Editor(client)
+
+    @client.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)  # type: ignore[untyped-decorator]
+    def published(given: lsp.PublishDiagnosticsParams) -> None:
+        editor.published[given.uri] = list(given.diagnostics)
+        editor.changed.set()
+
+    source = str(vectors.ROOT / "codegen" / "src")
+    os.environ["PYTHONPATH"] = source + os.pathsep + os.environ.get("PYTHONPATH", "")
+    await client.start_io(sys.executable, "-m", "cobotwire_codegen", "lsp")
+    params = lsp.InitializeParams(lsp.ClientCapabilities(), root_uri=uri(root))
+    async with asyncio.timeout(SECONDS):
+        await client.initialize_async(params)
+    client.initialized(lsp.InitializedParams())
+    try:
+        yield editor
+    finally:
+        async with asyncio.timeout(SECONDS):
+            await client.shutdown_async(None)
+            client.exit(None)
+            await client.stop()  # type: ignore[no-untyped-call]
+
+
+def session(root: Path, play: Callable[[Editor], Awaitable[None]]) -> None:
+    async def run() -> None:
+        async with editing(root) as editor:
+            await play(editor)
+
+    asyncio.run(run())
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("PYTHONPATH", os.environ.get("PYTHONPATH", ""))
+    return samples.copied(tmp_path)
+
+
+def test_problems_of_unsaved_text_appear_at_their_place_and_go_away(folder: Path) -> None:
+    lamp = folder / "lamp.yaml"
+    text = lamp.read_text()
+
+    async def play(editor: Editor) -> None:
+        await editor.show(lamp, text)
+        assert editor.problems(lamp) == []
+        broken = text.replace("safety: query", "safety: qery", 1)
+        place = at(broken, "qery")
+        await editor.show(lamp, broken)
+        assert editor.problems(lamp) == [f"{place.line + 1}:{place.character + 1}: unknown-word"]
+        await editor.show(lamp, text)
+        assert editor.problems(lamp) == []
+
+    session(folder, play)
+    assert lamp.read_text() == text
+
+
+def test_hover_completion_and_definition_of_the_280(tmp_path: Path) -> None:
+    spec = vectors.ROOT / "spec"
+    changes = spec / "editions" / "mycobot280" / "changes.yaml"
+    replies = spec / "editions" / "mycobot280" / "vectors" / "replies.yaml"
+
+    async def play(editor: Editor) -> None:
+        text = replies.read_text()
+        await editor.show(replies, text)
+        assert editor.problems(replies) == []
+        shown = await editor.hover(
+            replies, text, "values", "name: get-coords-reply-twos-complement"
+        )
+        assert "values: The values of the fields" in shown
+        shown = await editor.hover(replies, text, "FE", "name: get-coords-reply-twos-complement")
+        assert "coords" in shown
+        assert "millimetre (raw " in shown
+        shown = await editor.hover(replies, text, "get_coords", "get-coords-reply-twos-complement")
+        assert shown.startswith("```text\nget_coords: ")
+        goal = await editor.definition(replies, text, "get_coords", "get-coords-reply-twos")
+        assert goal == "coords.yaml:8"
+
+        editor.version = 0
+        text = changes.read_text()
+        await editor.show(changes, text)
+        # From the delta to what it removes and changes in its base.
+        assert (await editor.definition(changes, text, "signed_word")).startswith("types.yaml:")
+        removed = await editor.definition(changes, text, "get_speed", "- remove:")
+        assert removed.startswith(("motion.yaml:", "jog.yaml:", "servo.yaml:"))
+
+        added = f"{text}  - change: get_coords\n    set: {{safety: \n"
+        await editor.show(changes, added)
+        end = lsp.Position(added.count("\n") - 1, len("    set: {safety: "))
+        assert "motion" in await editor.complete(changes, end)
+        line = lsp.Position(added.count("\n") - 2, len("  - change: "))
+        assert "get_angles" in await editor.complete(changes, line)
+
+    session(vectors.ROOT, play)
