@@ -28,7 +28,15 @@ class InLoop:
             raise
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(self.client, name)
+        return self._blocking(getattr(self.client, name))
+
+    def at(self, address: int | str) -> Any:
+        return self._blocking(self.client.at(address))
+
+    def _blocking(self, found: Any) -> Any:
+        """Return an attribute in the blocking client's interface."""
+        if isinstance(found, AsyncClient):
+            return _ViewInLoop(self, found)
         if not inspect.iscoroutinefunction(found):
             return found
         return lambda *arguments, **options: self._run(found(*arguments, **options))
@@ -55,6 +63,16 @@ class InLoop:
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()
+
+
+class _ViewInLoop:
+    """A client for another address, in the loop of the first."""
+
+    def __init__(self, arm: InLoop, client: AsyncClient) -> None:
+        self._arm, self._client = arm, client
+
+    def __getattr__(self, name: str) -> Any:
+        return self._arm._blocking(getattr(self._client, name))
 
 
 class _StreamInLoop:

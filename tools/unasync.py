@@ -74,6 +74,8 @@ PASSAGES = [
             on_error: ``stop`` sends stop once when an exception leaves the ``with`` block, Ctrl-C
                 included, and when a waited motion fails; ``leave`` leaves the arm as it is. Leaving
                 the block without an exception changes nothing.
+            address: the device that requests go to, by its number or name, if the edition has
+                addresses; default: the edition's first. See :meth:`at`.
 
         Raises:
             UsageError: an argument is not allowed, or the file of the recording exists already.

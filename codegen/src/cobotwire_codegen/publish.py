@@ -18,6 +18,7 @@ from typing import Any
 from cobotwire_codegen import lower
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model import (
+    Address,
     Command,
     Edition,
     Enum,
@@ -87,7 +88,7 @@ def _document(edition: Edition) -> Record:
             header=_hex(frame.header),
             footer=_hex(frame.footer),
             check=frame.check,
-            addresses=[_member(member) for member in frame.addresses],
+            addresses=[_address(address) for address in frame.addresses],
             maximum_data=frame.maximum_data,
             maximum_length=lower.maximum_length(edition),
             baudrate=frame.baudrate,
@@ -241,6 +242,12 @@ def _wire(wire: Wire) -> Record:
         **encoding,
         "doc": wire.doc,
     }
+
+
+def _address(address: Address) -> list[Any]:
+    """Return name, byte and description of an address, and whose replies it has if not its own."""
+    replies = [] if address.replies == "own" else [address.replies]
+    return [address.name, address.value, address.doc, *replies]
 
 
 def _member(member: Member) -> list[Any]:

@@ -8,7 +8,12 @@ import click
 
 from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.cli.shared.arm_options import arm_options, open_arm
+from cobotwire.cli.shared.arm_options import (
+    address_option,
+    arm_options,
+    open_arm,
+    parse_address,
+)
 from cobotwire.cli.shared.call_arguments import parse
 from cobotwire.cli.shared.completers import complete_commands, complete_ports
 from cobotwire.cli.shared.output import as_json_value, format_result
@@ -25,6 +30,7 @@ from cobotwire.session.request import RequestEncoder
 @click.argument("name", shell_complete=complete_commands)
 @click.argument("args", nargs=-1, metavar="[ARGS]...")
 @arm_options
+@address_option
 @click.option(
     "--timeout", type=float, help="Seconds to wait for the reply [default: the command's]."
 )
@@ -40,6 +46,7 @@ def call(
     args: tuple[str, ...],
     baudrate: int | None,
     record: str | None,
+    address: str | None,
     timeout: float | None,
     force: bool,
     as_json: bool,
@@ -63,6 +70,7 @@ def call(
     motion.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     package = editions.load(edition)
+    to = None if address is None else parse_address(address)
     command = package.TABLE.command(name)
     arguments = parse(command, args)
     # A bad value is reported before the arm is asked whether it obeys.
@@ -70,7 +78,7 @@ def call(
     with (
         open_arm(port, package.TABLE, baudrate, record) as transport,
         # A query that fails must not stop a motion that an earlier call began.
-        package.CLIENT(transport, timeout=timeout, on_error="leave") as arm,
+        package.CLIENT(transport, timeout=timeout, on_error="leave", address=to) as arm,
     ):
         checks = command.starts_motion and not force
         if checks:

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from cobotwire import editions
-from cobotwire.cli.shared.arm_options import baudrate_option
+from cobotwire.cli.shared.arm_options import address_option, baudrate_option, parse_address
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.conform_report import (
     ReportFiles,
@@ -70,6 +70,7 @@ IN_MEMORY = "simulated arm in memory"
     help="Commands that the arm need not support, separated by commas.",
 )
 @baudrate_option
+@address_option
 @click.option("--linger", type=float, help="Milliseconds to listen after a reply [default: 4].")
 @click.option("--simulated", is_flag=True, help="Test a simulated arm instead of URL.")
 @report_options
@@ -84,6 +85,7 @@ def device(
     retries: int,
     optional: str,
     baudrate: int | None,
+    address: str | None,
     linger: float | None,
     simulated: bool,
     files: ReportFiles,
@@ -118,6 +120,7 @@ def device(
                 repeat=repeat,
                 retries=retries,
                 optional=names,
+                address=None if address is None else parse_address(address),
             )
             _run(tester)
     conclude(tester.report, files)

@@ -152,7 +152,7 @@ class _StreamPrinter:
         colour = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
         paint = frame_colours(codec.table.frame) if colour else None
         if self._options.each_byte:
-            return byte_by_byte(self.reader, codec.table.frame, paint)
+            return byte_by_byte(self.reader, codec.table, paint)
         return one_line(self.reader, paint)
 
     def print(self, items: list[Item]) -> None:

@@ -29,6 +29,7 @@ class AsyncStream:
         self,
         connection: AsyncConnection,
         settings: Settings,
+        encoder: RequestEncoder,
         requests: tuple[Request[Any], ...],
         rate: float,
     ) -> None:
@@ -39,7 +40,6 @@ class AsyncStream:
         """
         table = settings.codec.table
         check_requests(requests, table)
-        encoder = RequestEncoder(settings.codec)
         self._requests = requests
         self._encoded = [encoder.encode_request(request) for request in requests]
         self._connection = connection

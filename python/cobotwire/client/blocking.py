@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from copy import copy
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -19,11 +20,12 @@ from cobotwire.client.opening import (
     settings,
 )
 from cobotwire.client.traffic import TrafficListener
+from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import CaptureError, CobotwireError, MotionTimeout
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
-from cobotwire.session.request import RequestEncoder, result_of
+from cobotwire.session.request import RequestEncoder, check_acknowledged, result_of
 from cobotwire.transport import Transport
 
 if TYPE_CHECKING:
@@ -56,6 +58,7 @@ class Client:
         trace: TrafficListener | None = None,
         record: RecordPath | None = None,
         on_error: OnError = "stop",
+        address: int | str | None = None,
     ) -> None:
         """Open the port.
 
@@ -76,6 +79,8 @@ class Client:
             on_error: ``stop`` sends stop once when an exception leaves the ``with`` block, Ctrl-C
                 included, and when a waited motion fails; ``leave`` leaves the arm as it is. Leaving
                 the block without an exception changes nothing.
+            address: the device that requests go to, by its number or name, if the edition has
+                addresses; default: the edition's first. See :meth:`at`.
 
         Raises:
             UsageError: an argument is not allowed, or the file of the recording exists already.
@@ -85,7 +90,10 @@ class Client:
         self._stops = check_on_error(on_error) == "stop"
         self._stopped_for: BaseException | None = None
         self.codec = self._settings.codec.name
-        self._encoder = RequestEncoder(self._settings.codec)
+        self._address = find_address(self.table, address)
+        self._encoder = RequestEncoder(self._settings.codec, self._address)
+        # This client for other addresses, by the address byte.
+        self._views: dict[int, Self] = {}
         codec_used = self._settings.codec
         speed = self.table.baudrate if baudrate is None else baudrate
         opener = PortOpener(port, speed, codec_used, record)
@@ -112,6 +120,8 @@ class Client:
             self.close()
             return
         self._stop_for(error)
+        for view in self._views.values():
+            view._stop_for(error)
         try:
             self.close()
         except CaptureError as incomplete:
@@ -119,7 +129,29 @@ class Client:
             error.add_note(str(incomplete))
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} on {self._connection.url}, {self.codec} codec>"
+        to = "" if self._address is None else f", address {self._address.name}"
+        return f"<{type(self).__name__} on {self._connection.url}{to}, {self.codec} codec>"
+
+    def at(self, address: int | str) -> Self:
+        """Return this client for another address, a number or a name.
+
+            arm.at("left").get_angles()
+
+        Both share the transport and the session: closing one closes the other.
+
+        Raises:
+            UsageError: the edition has no such address.
+        """
+        wanted = find_address(self.table, address)
+        if wanted is None or wanted == self._address:
+            return self
+        found = self._views.get(wanted.value)
+        if found is None:
+            found = copy(self)
+            found._address = wanted
+            found._encoder = RequestEncoder(self._settings.codec, wanted)
+            found = self._views.setdefault(wanted.value, found)
+        return found
 
     def add_traffic_listener(self, listener: TrafficListener) -> Callable[[], None]:
         """Call ``listener`` with everything that passes the connection from now on, as it passes.
@@ -166,7 +198,8 @@ class Client:
         # Imported here: few programs stream, and all of them import this.
         from cobotwire.client.streaming import Stream
 
-        return Stream(self._connection, self._settings.for_stream(timeout), requests, rate)
+        settings = self._settings.for_stream(timeout)
+        return Stream(self._connection, settings, self._encoder, requests, rate)
 
     def _stop_for(self, error: BaseException) -> bool:
         """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
@@ -201,4 +234,7 @@ class Client:
         """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says."""
         if ack_within is not None:
             check_seconds("ack_within", ack_within)
-        self._connection.send(self._encoder.encode_request(request), ack_within)
+        encoded = self._encoder.encode_request(request)
+        if ack_within is not None:
+            check_acknowledged(encoded)
+        self._connection.send(encoded, ack_within)

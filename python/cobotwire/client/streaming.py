@@ -30,6 +30,7 @@ class Stream:
         self,
         connection: Connection,
         settings: Settings,
+        encoder: RequestEncoder,
         requests: tuple[Request[Any], ...],
         rate: float,
     ) -> None:
@@ -40,7 +41,6 @@ class Stream:
         """
         table = settings.codec.table
         check_requests(requests, table)
-        encoder = RequestEncoder(settings.codec)
         self._requests = requests
         self._encoded = [encoder.encode_request(request) for request in requests]
         self._connection = connection

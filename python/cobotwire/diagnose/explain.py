@@ -8,9 +8,10 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec, DecodedMessage
+from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.frame_index import FrameIndex
-from cobotwire.protocol.table import Direction, Field, FrameFormat, Number
+from cobotwire.protocol.table import Direction, Field, Number, Table
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 # A polled arm repeats itself: the readings of this many different frames are kept.
@@ -67,12 +68,14 @@ class FrameReader:
             return Reading(direction, None, error)
 
 
-def frame_parts(frame: FrameFormat, data: bytes, message: DecodedMessage) -> Iterator[Part]:
+def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[Part]:
     """Yield every byte of a legal frame with its meaning, in order."""
+    frame = table.frame
     start = frame.length_at
     yield Part(0, data[: len(frame.header)], "header", "a frame starts here")
     if message.address is not None:
-        yield Part(start - 1, data[start - 1 : start], "address", str(message.address))
+        device = address_name(table, message.address)
+        yield Part(start - 1, data[start - 1 : start], "address", device)
     length = data[start]
     yield Part(start, data[start : start + 1], "LEN", f"{length}: {length} bytes follow")
     command = message.command
@@ -111,7 +114,9 @@ def format_message(message: DecodedMessage) -> str:
         text = _format_tuple(numbers) if field.many else format_value(field, *next(numbers))
         values.append(f"{field.name}={text}")
     arrow = "" if message.direction == "request" else "-> "
-    return f"{arrow}{message.command.name}({', '.join(values)})"
+    way = "to" if message.direction == "request" else "from"
+    device = "" if message.address is None else f" {way} address {message.address}"
+    return f"{arrow}{message.command.name}({', '.join(values)}){device}"
 
 
 def _format_tuple(numbers: Iterator[tuple[Number, Any]]) -> str:

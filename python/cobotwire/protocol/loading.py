@@ -10,6 +10,7 @@ from typing import Any
 
 from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import (
+    Address,
     Case,
     Command,
     Dimensions,
@@ -46,10 +47,11 @@ def load_table(package: str) -> Table:
             bytes.fromhex(frame.get("footer", "")),
             frame["maximum_length"],
             frame["check"],
-            tuple([value for _, value, _ in frame.get("addresses", ())]),
+            tuple([value for _, value, *_ in frame.get("addresses", ())]),
         ),
         tuple([reader.command(record) for record in document["commands"]]),
         _dimensions(edition.get("geometry")),
+        tuple([Address(*address) for address in frame.get("addresses", ())]),
     )
 
 

@@ -25,6 +25,7 @@ from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.numbers import Number
 
 __all__ = [
+    "Address",
     "Case",
     "Check",
     "Command",
@@ -208,9 +209,30 @@ class Dimensions(NamedTuple):
     encoder_signs: tuple[int, ...]
 
 
+class Address(NamedTuple):
+    """A value of the address byte.
+
+    Attributes:
+        name: its name in the edition.
+        value: the byte.
+        doc: which device has it.
+        replies: to a request, replies come from this address (``own``), from any address
+            (``any``: several devices receive it), or from none (``none``).
+    """
+
+    name: str
+    value: int
+    doc: str = ""
+    replies: Literal["own", "any", "none"] = "own"
+
+
 @dataclass(frozen=True, slots=True)
 class Table:
-    """One edition of the protocol; ``geometry`` is None if the edition does not state it."""
+    """One edition of the protocol.
+
+    ``geometry`` is None if the edition does not state it. ``addresses`` describes the addresses
+    of ``frame``, in the same order; it is empty if they have no names.
+    """
 
     edition: str
     title: str
@@ -219,6 +241,7 @@ class Table:
     frame: FrameFormat
     commands: tuple[Command, ...]
     geometry: Dimensions | None = None
+    addresses: tuple[Address, ...] = ()
 
     def command(self, name: str) -> Command:
         """Return the command called ``name``.

@@ -15,8 +15,10 @@ from math import inf
 from typing import NamedTuple
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
+from cobotwire.protocol.addresses import ANYBODY
 from cobotwire.protocol.errors import LinkError, ProtocolError
 from cobotwire.session.events import FrameEvent
+from cobotwire.session.matching import can_come_from, repliers_meet
 from cobotwire.session.pending import Pending
 from cobotwire.session.policy import GRACE_SECONDS
 from cobotwire.session.request import EncodedRequest, as_call
@@ -52,7 +54,9 @@ class ExpectedAck:
         """Count an acknowledgement of the command: of another request, as long as it can be."""
         self.doubts = [until for until in self.doubts if until > began_at]
         if self.doubts:
-            self.doubts = self.doubts[1:]
+            if self.request.replier != ANYBODY:
+                # Of a broadcast several devices may acknowledge each other request.
+                self.doubts = self.doubts[1:]
         elif frame.offset >= self.offset:
             self.certain = True
 
@@ -104,7 +108,19 @@ class _CommandAcks:
             ack.until = min(ack.until, ack.sent_at + seconds)
         self.forget_expired(now)
         for ack in self.uncertain:
-            ack.doubts = sorted(other.until for other in self.expected if other is not ack)
+            ack.doubts = self.doubts_of(ack.request, ack)
+
+    def doubts_of(self, request: EncodedRequest, ack: ExpectedAck | None = None) -> list[float]:
+        """Return the doubts of a request, by all that is expected except for its own ``ack``."""
+        return sorted(
+            other.until
+            for other in self.expected
+            if other is not ack and repliers_meet(other.request, request)
+        )
+
+    def oldest_of(self, address: int | None) -> ExpectedAck | None:
+        """Return the oldest acknowledgement that this address can send; None: it can send none."""
+        return next((ack for ack in self.expected if can_come_from(address, ack.request)), None)
 
     def forget_expired(self, now: float) -> None:
         while self.expected and self.expected[0].until <= now:
@@ -121,6 +137,7 @@ class Acks:
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
+        self._format = codec.table.frame
         self._commands: dict[int, _CommandAcks] = {}
         self.waiting: list[PendingAck] = []
         # Whether this firmware was seen to acknowledge a motion at its start.
@@ -146,11 +163,12 @@ class Acks:
             acks.began_at = now
         ack = ExpectedAck(request, now, now + max(within or 0.0, usual), offset)
         for earlier in acks.uncertain:
-            insort(earlier.doubts, ack.until)
+            if repliers_meet(earlier.request, request):
+                insort(earlier.doubts, ack.until)
         if within is None:
             acks.expected.append(ack)
             return ack, None
-        ack.doubts = sorted(earlier.until for earlier in acks.expected)
+        ack.doubts = acks.doubts_of(request)
         acks.expected.append(ack)
         acks.uncertain.append(ack)
         pending = PendingAck(ack, now + within)
@@ -174,17 +192,23 @@ class Acks:
         if acks is None:
             return None
         acks.forget_expired(began_at)
-        if not acks.expected or frame.offset < acks.expected[0].offset:
+        address = self._format.address(frame.data)
+        oldest = acks.oldest_of(address)
+        if oldest is None or frame.offset < oldest.offset:
             return None
-        oldest = acks.expected[0]
         try:
             message = frame.decode("reply", of=oldest.request.command.name)
         except ProtocolError:
             return None
         self._learn(acks, now)
-        acks.expected.popleft()
+        # Those that learning has shortened are over.
+        settled = acks.oldest_of(address)
+        if settled is not None and settled.request.replier != ANYBODY:
+            # Several devices may acknowledge a broadcast: it stays until its time is over.
+            acks.expected.remove(settled)
         for ack in acks.uncertain:
-            ack.count(frame, began_at)
+            if can_come_from(address, ack.request):
+                ack.count(frame, began_at)
         self._end_certain(message)
         return Acknowledged(oldest.request, message)
 

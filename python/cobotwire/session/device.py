@@ -30,6 +30,7 @@ class TextReceived(NamedTuple):
 
     command: Command
     fields: dict[str, str]
+    address: int | None = None
 
 
 DeviceEvent = RequestReceived | MalformedRequest | TextReceived | Noise
@@ -42,6 +43,7 @@ class DeviceSession:
         self._codec = codec
         self._framer = codec.framer("request")
         self._text_of: Command | None = None
+        self._text_to: int | None = None
         self._text = b""
 
     @property
@@ -57,8 +59,12 @@ class DeviceSession:
         """Give up what is unfinished, since the line has been idle; return what it is."""
         return self._sort(self._framer.flush())
 
-    def encode_reply(self, name: str, values: Mapping[str, Any]) -> bytes:
+    def encode_reply(
+        self, name: str, values: Mapping[str, Any], address: int | None = None
+    ) -> bytes:
         """Return the bytes of a reply: the variant that has exactly these fields.
+
+        ``address`` is that of the device; None: the edition's first one, if it has addresses.
 
         Raises:
             UsageError: the edition does not allow this reply.
@@ -69,8 +75,9 @@ class DeviceSession:
         for variant in command.reply:
             names = [field.name for field in variant.fields]
             if set(names) == set(values):
-                return self._codec.encode(name, "reply", [values[field] for field in names])
-        return self._codec.encode(name, "reply", tuple(values.values()))
+                row = [values[field] for field in names]
+                return self._codec.encode(name, "reply", row, address=address)
+        return self._codec.encode(name, "reply", tuple(values.values()), address=address)
 
     def _sort(self, received: Sequence[Event]) -> list[DeviceEvent]:
         events: list[DeviceEvent] = []
@@ -89,7 +96,7 @@ class DeviceSession:
         except ProtocolError as error:
             return MalformedRequest(frame, error)
         if message.command.request_text is not None:
-            self._text_of = message.command
+            self._text_of, self._text_to = message.command, message.address
         return RequestReceived(frame, message)
 
     def _read_text(self, data: bytes) -> Iterator[TextReceived]:
@@ -103,4 +110,4 @@ class DeviceSession:
         except ProtocolError:
             return
         self._text_of, self._text = None, b""
-        yield TextReceived(command, fields)
+        yield TextReceived(command, fields, self._text_to)

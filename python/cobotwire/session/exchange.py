@@ -29,6 +29,7 @@ from math import inf
 from typing import Any
 
 from cobotwire.codec.interface import Codec, Event, Frame, Noise
+from cobotwire.protocol.addresses import ANYBODY, NOBODY
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.session.acks import Acks, PendingAck
 from cobotwire.session.alignment import Alignment
@@ -40,7 +41,7 @@ from cobotwire.session.events import (
     SessionEvent,
 )
 from cobotwire.session.leftover import LateFrame, Leftover
-from cobotwire.session.matching import repeats_arguments, replies_elsewhere
+from cobotwire.session.matching import can_come_from, repeats_arguments, replies_elsewhere
 from cobotwire.session.other_frames import OtherFrames
 from cobotwire.session.outstanding import OutstandingReplies, late_replies
 from cobotwire.session.pending import Pending, PendingRequest
@@ -58,6 +59,7 @@ class Exchange:
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
         self._framer = codec.framer("reply")
+        self._format = codec.table.frame
         self._replying_ids = {c.id for c in codec.table.commands if c.answers}
         self.alignment = Alignment(codec)
         self._sent_last = b""
@@ -95,7 +97,7 @@ class Exchange:
         """
         self._echo.sent_one_way(request, self._framer.fed)
         self._sent_last = request.frame
-        if not request.command.ack:
+        if not request.command.ack or request.replier == NOBODY:
             return request.frame + request.text, None
         ack, pending = self._acks.expect(request, now, self._framer.fed, ack_within)
         if request.command.id in self._replying_ids:
@@ -279,7 +281,10 @@ class Exchange:
     # What ends a request.
 
     def _reply(self, waiting: PendingRequest, fields: dict[str, Any], now: float) -> None:
-        if len(waiting.attempt_times) > 1:
+        if waiting.request.replier == ANYBODY:
+            # Other devices may reply too.
+            self._outstanding.expect_late(waiting, 0)
+        elif len(waiting.attempt_times) > 1:
             self._outstanding.expect_late(waiting, 1)
         waiting.reply(fields, now)
 
@@ -327,6 +332,10 @@ class Exchange:
         if waiting is None or not waiting.accepts(frame):
             return self._match_other(frame, waiting, now, is_copy)
         request = waiting.request
+        if request.replier is not None:
+            address = self._format.address(frame.data)
+            if not can_come_from(address, request):
+                return self._match_other(frame, waiting, now, is_copy)
         try:
             message = frame.decode("reply", of=request.command.name)
         except ProtocolError as error:

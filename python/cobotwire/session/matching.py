@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from cobotwire.codec.interface import DecodedMessage, Frame
+from cobotwire.protocol.addresses import ANYBODY
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command, Table, Variant
 from cobotwire.session.request import EncodedRequest
+
+
+def can_come_from(address: int | None, request: EncodedRequest) -> bool:
+    """Return whether a reply of this address can belong to the request."""
+    return request.replier == address or request.replier == ANYBODY
+
+
+def repliers_meet(one: EncodedRequest, other: EncodedRequest) -> bool:
+    """Return whether a reply of one address can belong to both requests."""
+    return one.replier == other.replier or ANYBODY in (one.replier, other.replier)
 
 
 def repeats_arguments(message: DecodedMessage, request: EncodedRequest) -> bool:
@@ -26,7 +37,7 @@ def can_reply_to(frame: Frame, request: EncodedRequest) -> bool:
         message = frame.decode("reply", of=request.command.name)
     except ProtocolError:
         return False
-    return repeats_arguments(message, request)
+    return can_come_from(message.address, request) and repeats_arguments(message, request)
 
 
 def replies_elsewhere(frame: Frame, command: Command, table: Table) -> bool:
@@ -60,7 +71,7 @@ def _exclusive(one: Command, other: Command) -> bool:
 def replies_differ(one: EncodedRequest, other: EncodedRequest) -> bool:
     """Return whether no reply to one request can be mistaken for a reply to the other."""
     command = other.command
-    if one.command.id != command.id:
+    if one.command.id != command.id or not repliers_meet(one, other):
         return True
     if one.command.name != command.name:
         return _exclusive(one.command, command)

@@ -66,7 +66,7 @@ class ReceivedMeanwhile:
         return tuple(
             _noise_line(item, next(diagnoses))
             if isinstance(item, _NoiseSpan)
-            else f"{_kind(item, request)} {_hex(item.frame.data, len(item.frame.data))}"
+            else f"{_kind(item, command.id)} {_hex(item.frame.data, len(item.frame.data))}"
             for item in self._items
         )
 
@@ -107,13 +107,12 @@ def _noise_line(span: _NoiseSpan, diagnosis: str) -> str:
     return f"{line}: {diagnosis}" if diagnosis else line
 
 
-def _kind(event: FrameEvent, request: bytes) -> str:
+def _kind(event: FrameEvent, request_id: int) -> str:
     if isinstance(event, LateReply):
         return f"late reply to {event.command.name}"
     if isinstance(event, AckReceived):
         # An acknowledgement has only the command's id, so an earlier request may have caused it.
-        same = request[: len(event.frame.data)][3:4] == event.frame.data[3:4]
-        doubt = ", perhaps of an earlier request" if same else ""
+        doubt = ", perhaps of an earlier request" if event.frame.command == request_id else ""
         return f"acknowledgement of {event.command.name}{doubt}"
     return "the request's own bytes" if isinstance(event, EchoReceived) else "frame"
 

@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec
+from cobotwire.protocol.addresses import NOBODY, address_name, find_address, replier_of
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.rejection import reject_radians
-from cobotwire.protocol.table import Command
+from cobotwire.protocol.table import Address, Command
 from cobotwire.session import text
 
 
@@ -17,20 +18,26 @@ class EncodedRequest(NamedTuple):
     """A request as it goes over the line.
 
     ``arguments`` are those that a reply can repeat, with the values that it would repeat; empty
-    where no reply repeats any. ``text`` follows some requests outside the frame.
+    where no reply repeats any. ``text`` follows some requests outside the frame. ``replier`` is
+    the address that its reply must have, ANYBODY or NOBODY; None if frames have no address.
     """
 
     command: Command
     frame: bytes
     text: bytes
     arguments: dict[str, Any]
+    replier: int | None = None
 
 
 class RequestEncoder:
-    """Encodes requests; what does not depend on the arguments is computed once."""
+    """Encodes requests to one address; what does not depend on the arguments is computed once."""
 
-    def __init__(self, codec: Codec) -> None:
+    def __init__(self, codec: Codec, address: Address | None = None) -> None:
+        """Take the address of every request; left out: the first one of the edition, if any."""
         self._codec = codec
+        self._to = address or find_address(codec.table, None)
+        self._address = None if self._to is None else self._to.value
+        self._replier = replier_of(self._to)
         # The commands that were used, and whether a reply can repeat arguments of theirs.
         self._commands: dict[str, tuple[Command, bool]] = {}
         # A request without arguments is always the same bytes.
@@ -62,14 +69,14 @@ class RequestEncoder:
             UsageError: there is no such command, or an argument is not allowed.
         """
         command, can_repeat = self._command(name)
-        frame = self._codec.encode(name, "request", values)
+        frame = self._codec.encode(name, "request", values, address=self._address)
         if command.request_text is not None:
             sent_text = text.encode(command.request_text, text_values or {})
-            return EncodedRequest(command, frame, sent_text, {})
+            return EncodedRequest(command, frame, sent_text, {}, self._replier)
         # Decoding our own frame gives the arguments as a reply would repeat them.
         message = self._codec.decode("request", frame, of=name) if can_repeat else None
         arguments = message.fields if message is not None else {}
-        request = EncodedRequest(command, frame, b"", arguments)
+        request = EncodedRequest(command, frame, b"", arguments, self._replier)
         if not values:
             self._known[name] = request
         return request
@@ -78,6 +85,8 @@ class RequestEncoder:
         found = self._commands.get(name)
         if found is None:
             command = self._codec.table.command(name)
+            if self._replier == NOBODY and command.answers:
+                raise _unanswered(name, self._to)
             found = self._commands[name] = command, _can_repeat(command)
         return found
 
@@ -89,7 +98,25 @@ def request_of(frame: bytes, codec: Codec) -> EncodedRequest | None:
     except ProtocolError:
         return None
     arguments = message.fields if _can_repeat(message.command) else {}
-    return EncodedRequest(message.command, frame, b"", arguments)
+    replier = replier_of(find_address(codec.table, message.address))
+    return EncodedRequest(message.command, frame, b"", arguments, replier)
+
+
+def check_acknowledged(request: EncodedRequest) -> None:
+    """Check that the acknowledgement of a request can be waited for.
+
+    Raises:
+        UsageError: no device acknowledges a request to its address.
+    """
+    if request.replier == NOBODY:
+        message = f"{request.command.name}() cannot be waited for: nobody replies to its address"
+        raise UsageError("ack_within", message=message)
+
+
+def _unanswered(name: str, address: Address | None) -> UsageError:
+    assert address is not None, "only an address can have no replies"
+    message = f"{name}() has a reply, and nobody replies to the address {address.name}"
+    return UsageError("address", address.name, message=message)
 
 
 def _in_units_of_caller(error: UsageError, command: Command, request: Request[Any]) -> UsageError:
@@ -108,10 +135,11 @@ def _can_repeat(command: Command) -> bool:
 
 
 def as_call(request: EncodedRequest, codec: Codec) -> str:
-    """Return the request as a person writes it: ``get_encoder(joint=1)``."""
-    fields = codec.decode("request", request.frame, of=request.command.name).fields
-    arguments = ", ".join(f"{name}={value}" for name, value in fields.items())
-    return f"{request.command.name}({arguments})"
+    """Return the request as a person writes it: ``get_encoder(joint=1)``, ``stop() to LEFT``."""
+    message = codec.decode("request", request.frame, of=request.command.name)
+    arguments = ", ".join(f"{name}={value}" for name, value in message.fields.items())
+    to = "" if message.address is None else f" to {address_name(codec.table, message.address)}"
+    return f"{request.command.name}({arguments}){to}"
 
 
 def result_of(request: Request[Result], fields: Mapping[str, Any]) -> Result:

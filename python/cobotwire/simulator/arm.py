@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
+from cobotwire.codec.interface import DecodedMessage
+from cobotwire.protocol.addresses import devices_of, find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply
 from cobotwire.protocol.table import Command, Table
@@ -46,6 +48,9 @@ class Note(NamedTuple):
 
 class SimulatedArm:
     """An arm that speaks an edition. Pass it your own clock to step its time.
+
+    If the edition has addresses, every device that has one is an arm with a state of its own;
+    ``state`` is that of the first, and :meth:`state_at` returns each.
 
     The arm is a peer (:mod:`cobotwire.simulator.peer`) for one client; :meth:`connect` adds more.
     """
@@ -88,11 +93,41 @@ class SimulatedArm:
         self._on_note = on_note
         self._notes: deque[Note] = deque(maxlen=NOTES_KEPT)
         self._geometry = geometry or geometry_of(table)
-        self.state = self._new_state()
+        devices: list[int | None] = [device.value for device in devices_of(table)]
+        # The state of each device by its address; None where frames have no address.
+        self._states: dict[int | None, ArmState] = {
+            address: self._new_state() for address in devices or [None]
+        }
         if powered:
-            self.state.power_on()
+            for state in self._states.values():
+                state.power_on()
         self._behaviours = installed(table.edition) if behaviours is None else behaviours
         self._own_connection = ArmConnection(self, on_event)
+
+    @property
+    def state(self) -> ArmState:
+        """The state of the arm; of several devices that have addresses, of the first."""
+        return next(iter(self._states.values()))
+
+    @state.setter
+    def state(self, state: ArmState) -> None:
+        self._states[next(iter(self._states))] = state
+
+    def state_at(self, address: int | str) -> ArmState:
+        """Return the state of the device that has an address.
+
+        Raises:
+            UsageError: the edition has no such address, or several devices have it.
+        """
+        found = find_address(self.table, address)
+        if found is None or found.value not in self._states:
+            names = ", ".join(device.name for device in devices_of(self.table))
+            raise UsageError("address", address, names or "nothing: the edition has no addresses")
+        return self._states[found.value]
+
+    def receivers(self, address: int | None) -> tuple[int | None, ...]:
+        """Return the addresses of the devices that receive a request to an address."""
+        return (address,) if address in self._states else tuple(self._states)
 
     def connect(self, on_event: EventListener | None = None) -> ArmConnection:
         """Connect one more client: it shares the arm's state; its requests are parsed separately.
@@ -101,32 +136,40 @@ class SimulatedArm:
         """
         return ArmConnection(self, on_event or self._on_event)
 
-    def lead(self, points: Iterable[tuple[float, Sequence[float]]]) -> None:
+    def lead(
+        self,
+        points: Iterable[tuple[float, Sequence[float]]],
+        address: int | str | None = None,
+    ) -> None:
         """Lead the arm by hand whenever no joint is held; if none is now, begin at once.
 
         Args:
             points: for each point, the seconds since the release, and the joints' angles. From
                 where they are, the joints turn evenly to the first, then to the next. They stay at
                 the last point, and stop as soon as a joint is held. Empty: nobody leads the arm.
+            address: which of several devices is led; None: the first.
 
         Raises:
-            UsageError: a time is not after the one before, or a point has not one angle per joint.
+            UsageError: a time is not after the one before, a point has not one angle per joint,
+                or no single device has the address.
         """
-        self.state.hand = checked(points, self.table.joints)
-        if self.state.released:
-            self.state.release(self.clock())
+        state = self.state if address is None else self.state_at(address)
+        state.hand = checked(points, self.table.joints)
+        if state.released:
+            state.release(self.clock())
 
     def restart(self) -> None:
         """Lose all settings, as in a power cycle. The joints and the gripper keep their positions.
 
         The arm counts its starts.
         """
-        now, before = self.clock(), self.state
-        self.state = self._new_state()
-        self.state.angles.place(before.standing(now), now)
-        self.state.gripper.place(before.gripper.position(now), now)
-        self.state.starts = before.starts + 1
-        self.state.hand = before.hand
+        now = self.clock()
+        for address, before in self._states.items():
+            self._states[address] = state = self._new_state()
+            state.angles.place(before.standing(now), now)
+            state.gripper.place(before.gripper.position(now), now)
+            state.starts = before.starts + 1
+            state.hand = before.hand
         self._own_connection.reset()
 
     @property
@@ -156,27 +199,38 @@ class SimulatedArm:
         """Forget an incomplete request on the arm's own connection; its client has left."""
         self._own_connection.forget_client()
 
-    def perform(self, command: Command, fields: Mapping[str, Any]) -> Reply[Any] | Sized | None:
+    def perform(
+        self, command: Command, fields: Mapping[str, Any], address: int | None
+    ) -> Reply[Any] | Sized | None:
         """Perform a command; return the reply, None if the behaviour leaves it to the arm.
 
-        ``fields`` are those of the request, as the codec decodes them.
+        ``fields`` are those of the request, as the codec decodes them; ``address`` is that of the
+        device, None if it has none.
         """
         behaviour = self._behaviours.get(command.name) or own(command)
         if behaviour is None:
-            self.state.remembered.store(self.table, command, fields)
+            self._states[address].remembered.store(self.table, command, fields)
             return None
         request, now = behaviour.request_type.from_fields(fields), self.clock()
-        self.state.record(now)
-        reply = behaviour.behave(self.state, now, request)
-        for text in self.state.remarks:
+        state = self._states[address]
+        state.record(now)
+        reply = behaviour.behave(state, now, request)
+        for text in state.remarks:
             self.note(command, text)
-        self.state.remarks.clear()
+        state.remarks.clear()
         return reply
 
-    def encode_sized(self, command: Command, sized: Sized) -> bytes:
+    def recall(
+        self, command: Command, given: Mapping[str, Any], address: int | None
+    ) -> dict[str, Any]:
+        """Return what a device remembers of the values that a query reports."""
+        return self._states[address].remembered.recall(command, given)
+
+    def encode_sized(self, command: Command, sized: Sized, address: int | None) -> bytes:
         """Return the bytes of a reply in the variant that has as many data bytes."""
         [variant] = [i for i, each in enumerate(command.reply) if each.size == sized.size]
-        return self.codec.encode(command.name, "reply", sized.reply.values, variant=variant)
+        values = sized.reply.values
+        return self.codec.encode(command.name, "reply", values, variant=variant, address=address)
 
     def note(self, command: Command, text: str) -> None:
         """Add a note."""
@@ -242,30 +296,41 @@ class ArmConnection:
 
     def _handle(self, event: DeviceEvent) -> bytes:
         if isinstance(event, RequestReceived):
-            return self._reply_to(event)
+            replies = [self._reply_of(event, each) for each in self._receivers(event.message)]
+            return b"".join(replies) if self._is_answered(event.message) else b""
         if isinstance(event, TextReceived):
-            self._arm.perform(event.command, event.fields)
+            for address in self._arm.receivers(event.address):
+                self._arm.perform(event.command, event.fields, address)
         # The document has no error reply: noise and malformed requests get none.
         return b""
 
-    def _reply_to(self, received: RequestReceived) -> bytes:
+    def _receivers(self, message: DecodedMessage) -> tuple[int | None, ...]:
+        return self._arm.receivers(message.address)
+
+    def _is_answered(self, message: DecodedMessage) -> bool:
+        """Return whether the address of a request has replies."""
+        address = find_address(self._arm.table, message.address)
+        return address is None or address.replies != "none"
+
+    def _reply_of(self, received: RequestReceived, address: int | None) -> bytes:
+        """Perform a request on the device that has an address; return its reply."""
         command, given = received.message.command, received.message.fields
         # A command with a text after its frame is performed once the text is complete.
         performed = command.request_text is None
-        reply = self._arm.perform(command, given) if performed else None
+        reply = self._arm.perform(command, given, address) if performed else None
         if not command.answers and not (command.ack and self._arm.acks):
             return b""
         if isinstance(reply, Sized):
-            return self._arm.encode_sized(command, reply)
-        remembered = self._arm.state.remembered
-        result = remembered.recall(command, given) if reply is None else reply.fields
+            return self._arm.encode_sized(command, reply, address)
+        result = self._arm.recall(command, given, address) if reply is None else reply.fields
         fields = completed(command, given, result)
         try:
-            return self._session.encode_reply(command.name, fields)
+            return self._session.encode_reply(command.name, fields, address)
         except UsageError:
             # The wire has no value for a distant pose, or for some limits.
             self._arm.note(command, "replied with the nearest value that the wire can express")
-            return self._session.encode_reply(command.name, clamped(command, result, fields))
+            nearest = clamped(command, result, fields)
+            return self._session.encode_reply(command.name, nearest, address)
 
 
 def _joint_limits(table: Table) -> list[tuple[float, float]]:

@@ -56,9 +56,10 @@ def _variant(command: Command, result: Mapping[str, Any]) -> Variant:
 
 
 def _legal(field: Field, usual: int) -> Any:
-    """Return the legal value that is nearest to the usual one."""
+    """Return the usual value if it is legal; else the nearest one, or the first of a list."""
+    listed = usual if usual in field.choices else next(iter(field.choices), None)
     values = [
-        number.physical(field.choices[0] if field.choices else number.clamp(usual))
+        number.physical(number.clamp(usual) if listed is None else listed)
         for number in field.cases[0].numbers
     ]
     return values if field.many else values[0]

@@ -51,7 +51,7 @@ NEW: dict[str, Any] = {
     "changes": (model.Change(PLACE, "It changed.", "So.", ()),),
     "disputed": (model.Dispute(PLACE, "It does.", "So.", "low", ()),),
     "errata": (model.Erratum(PLACE, (), "text", (), None, "a", "b", "c"),),
-    "addresses": (model.Member(PLACE, "ALL", 0, ""),),
+    "addresses": (model.Address(PLACE, "ALL", 0, "", "own"),),
     "rejected": ("bad-length", 2),
     "derived": model.Derivation("small", b"\xfe", ()),
     "source": ((1, 2),),

@@ -6,7 +6,7 @@ from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Parts
 from cobotwire_codegen.errors import Place, Problem
 from cobotwire_codegen.load import Node
-from cobotwire_codegen.model import Frame, Member
+from cobotwire_codegen.model import Address, Frame
 from cobotwire_codegen.reader import Reader
 
 _FOOTED = ("command", "data", "footer")
@@ -56,12 +56,13 @@ def _compare(frame: Reader, built: Frame) -> None:
         frame.problem("bad-frame", message)
 
 
-def _addresses(frame: Reader) -> tuple[Member, ...]:
+def _addresses(frame: Reader) -> tuple[Address, ...]:
     entries = frame.get(language.Frame.addresses)
     return tuple(_address(name, place, node, frame.problems) for name, place, node in entries)
 
 
-def _address(name: str, place: Place, node: Node, problems: list[Problem]) -> Member:
+def _address(name: str, place: Place, node: Node, problems: list[Problem]) -> Address:
     spec = language.Address
     reader = Reader(node, spec, f"the address {name}", problems)
-    return Member(place, name, reader.get(spec.value), reader.get(spec.doc))
+    value, doc = reader.get(spec.value), reader.get(spec.doc)
+    return Address(place, name, value, doc, reader.get(spec.replies))

@@ -91,6 +91,19 @@ def reserved(edition: Edition) -> Iterator[Problem]:
                 yield _reserved(name, text.place)
 
 
+def addresses_apart(edition: Edition) -> Iterator[Problem]:
+    """Report addresses that would hide a command, another address, or an attribute of clients."""
+    seen = {command.name: command.place for command in edition.commands}
+    for address in edition.frame.addresses:
+        name = address.attribute
+        if name in RESERVED_COMMANDS:
+            yield _reserved(name, address.place)
+        elif name in seen:
+            message = f"clients already have {name}, for {seen[name]}; rename the address"
+            yield Problem(address.place, "reserved-name", message)
+        seen.setdefault(name, address.place)
+
+
 def items_free(edition: Edition) -> Iterator[Problem]:
     """Report parts of named tuples that would hide methods of tuples or types."""
     for type in edition.types:
@@ -152,4 +165,4 @@ def _classes(edition: Edition) -> Iterator[tuple[str, Place]]:
             yield type.class_name, type.place
 
 
-RULES = (reserved, items_free, classes_apart)
+RULES = (reserved, addresses_apart, items_free, classes_apart)

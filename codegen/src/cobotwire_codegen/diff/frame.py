@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from cobotwire_codegen.diff import prose, words
 from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.match import match
-from cobotwire_codegen.model import Frame, Member
+from cobotwire_codegen.model import Address, Frame
 
 
 def frame_changes(old: Frame, new: Frame) -> Iterator[Finding]:
@@ -25,7 +25,7 @@ def frame_changes(old: Frame, new: Frame) -> Iterator[Finding]:
     yield from prose.doc("frame", old.doc, new.doc)
 
 
-def _addresses(old: tuple[Member, ...], new: tuple[Member, ...]) -> Iterator[Finding]:
+def _addresses(old: tuple[Address, ...], new: tuple[Address, ...]) -> Iterator[Finding]:
     where = "frame/addresses"
     matched = match(old, new, lambda member: member.value)
     # Without addresses, frames have no address byte; with addresses, a client sends the first.
@@ -37,6 +37,9 @@ def _addresses(old: tuple[Member, ...], new: tuple[Member, ...]) -> Iterator[Fin
     for member in matched.added:
         yield finding("address-added", f"{where}/{member.name}", "", words.member(member))
     for before, after in matched.pairs:
+        if before.replies != after.replies:
+            where_now = f"{where}/{after.name}"
+            yield finding("address-replies-changed", where_now, before.replies, after.replies)
         if before.name != after.name:
             yield finding("address-renamed", f"{where}/{after.name}", before.name, after.name)
         yield from prose.doc(f"{where}/{after.name}", before.doc, after.doc)

@@ -31,6 +31,7 @@ class Rule:
 
 
 _WIRE = {
+    "address-replies-changed": "replies to it were of {old}, are of {new}: they are mismatched",
     "addresses-changed": "addresses were {old}, are {new}: frames reach other devices, or none",
     "argument-added-required": "the request now carries {new}: callers must pass it",
     "argument-removed": "the request no longer carries {old}: callers cannot pass it",

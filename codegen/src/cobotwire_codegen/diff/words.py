@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 
-from cobotwire_codegen.model import Command, Member, Quantity, Text, Variant, Wire
+from cobotwire_codegen.model import Address, Command, Member, Quantity, Text, Variant, Wire
 from cobotwire_codegen.render.words import decimal, lines
 
 LONGEST = 60
@@ -66,7 +66,7 @@ def sign(wire: Wire) -> str:
     return f"{wire.minimum}..{wire.maximum}"
 
 
-def member(found: Member) -> str:
+def member(found: Member | Address) -> str:
     """Return a member with its raw value."""
     return f"{found.name} = {found.value}"
 

@@ -6,7 +6,7 @@ from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.names import ADDRESS
 from cobotwire_codegen.language.records import Named, Part, Record, optional, required
 from cobotwire_codegen.language.shapes import Hex, Text, Texts, Whole, Word
-from cobotwire_codegen.language.words import CHECKS
+from cobotwire_codegen.language.words import CHECKS, REPLIES
 
 
 class Address(Record):
@@ -14,7 +14,12 @@ class Address(Record):
 
     value = required(Whole(0, 255, "bad-frame"), "The byte.")
     doc = required(Text(), "Which device has this address.")
-    EXAMPLE = "{value: 1, doc: The left arm.}"
+    replies = optional(
+        Word(REPLIES, REPLIES.values()),
+        "From which address the replies to a request come that is sent to this one.",
+        "own",
+    )
+    EXAMPLE = "{value: 0, doc: Every arm., replies: any}"
 
 
 class Frame(Record):
@@ -32,8 +37,8 @@ class Frame(Record):
     check = optional(Word(CHECKS, CHECKS.values()), "How a damaged frame is detected.", "footer")
     addresses = optional(
         Named(Address, ADDRESS),
-        "The values of the address byte before LEN; a client sends the first. Left out: frames "
-        "have no address byte.",
+        "The values of the address byte before LEN; a client sends the first unless it is given "
+        "another. Left out: frames have no address byte.",
     )
     source = facts.source()
     EXAMPLE = """\

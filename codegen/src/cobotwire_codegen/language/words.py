@@ -14,6 +14,11 @@ CHECKS = {
     "crc16-modbus": "A CRC-16/MODBUS over everything before it, high byte first.",
     "sum": "The low byte of the sum of CMD and data.",
 }
+REPLIES = {
+    "own": "From this address: one device has it.",
+    "any": "From any address: several devices have it, and each may reply.",
+    "none": "There are none: it is a broadcast.",
+}
 ROLES = {
     "joint targets": "Moves all joints; the first argument is the row of targets.",
     "joint target": "Moves one joint: the first argument selects it, the second is its target.",

@@ -13,6 +13,7 @@ from cobotwire_codegen.model.commands import (
     Variant,
 )
 from cobotwire_codegen.model.edition import (
+    Address,
     Derivation,
     Edition,
     Erratum,
@@ -34,6 +35,7 @@ from cobotwire_codegen.model.types import (
 )
 
 __all__ = [
+    "Address",
     "Change",
     "Command",
     "Derivation",

@@ -9,7 +9,23 @@ from typing import Literal
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model.commands import Command, Family
 from cobotwire_codegen.model.facts import Change, Lines
-from cobotwire_codegen.model.types import Member, Type, Wire
+from cobotwire_codegen.model.types import Type, Wire
+
+
+@dataclass(frozen=True, slots=True)
+class Address:
+    """A value of the address byte, and from which address the replies to it come."""
+
+    place: Place
+    name: str
+    value: int
+    doc: str
+    replies: str
+
+    @property
+    def attribute(self) -> str:
+        """The attribute of clients that is the client for this address."""
+        return self.name.lower()
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +36,7 @@ class Frame:
     header: bytes
     check: Literal["footer", "crc16-modbus", "sum"]
     footer: bytes
-    addresses: tuple[Member, ...]
+    addresses: tuple[Address, ...]
     maximum_data: int
     doc: str
     baudrate: int

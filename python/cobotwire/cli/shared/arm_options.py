@@ -18,6 +18,14 @@ Verb = Callable[..., Any]
 baudrate_option = click.option(
     "--baudrate", type=int, help="Bits a second [default: the edition's]."
 )
+address_option = click.option(
+    "--address", help="The device, by its name or number [default: the edition's first]."
+)
+
+
+def parse_address(text: str) -> int | str:
+    """Return an address as clients take it: a number, or a name."""
+    return int(text) if text.isascii() and text.isdigit() else text
 
 
 def arm_options(verb: Verb) -> Verb:

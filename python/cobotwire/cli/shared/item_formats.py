@@ -19,7 +19,7 @@ from cobotwire.diagnose.explain import (
     format_message,
     frame_parts,
 )
-from cobotwire.protocol.table import FrameFormat
+from cobotwire.protocol.table import Table
 
 # Bytes of a finding that are shown on its line.
 SHOWN = 16
@@ -67,7 +67,7 @@ def _pieces(item: Item) -> str:
     return around + (" (continued)" if item.continued else "")
 
 
-def byte_by_byte(reader: FrameReader, frame: FrameFormat, paint: Paint | None) -> Format:
+def byte_by_byte(reader: FrameReader, table: Table, paint: Paint | None) -> Format:
     """Return a formatter: each byte of a frame on a line; noise, and why it is not a frame."""
 
     def format(item: Item) -> str:
@@ -76,7 +76,7 @@ def byte_by_byte(reader: FrameReader, frame: FrameFormat, paint: Paint | None) -
             lines = [f"frame   {paint(item.data) if paint else as_hex(item.data)}"]
             for reading in readings:
                 lines.append(f"  {_reading(reading)}")
-                lines += _parts(frame, item.data, reading)
+                lines += _parts(table, item.data, reading)
             return "\n".join(lines)
         shown = click.style(as_hex(item.data), fg="red") if paint else as_hex(item.data)
         lines = [f"noise   {shown}   {item.reason}", f"  {item.describe()}"]
@@ -86,12 +86,12 @@ def byte_by_byte(reader: FrameReader, frame: FrameFormat, paint: Paint | None) -
     return format
 
 
-def _parts(frame: FrameFormat, data: bytes, reading: Reading) -> list[str]:
+def _parts(table: Table, data: bytes, reading: Reading) -> list[str]:
     if reading.message is None:
         return []
     return [
         f"    {part.offset:>3}  {as_hex(part.data):<6} {part.name:<14} {part.meaning}"
-        for part in frame_parts(frame, data, reading.message)
+        for part in frame_parts(table, data, reading.message)
     ]
 
 
@@ -126,4 +126,6 @@ def _reading_object(reading: Reading) -> dict[str, Any]:
         return {"direction": reading.direction, "error": str(reading.error)}
     message = reading.message
     fields = {name: as_json_value(value) for name, value in message.fields.items()}
-    return {"direction": reading.direction, "command": message.command.name, "fields": fields}
+    to = {} if message.address is None else {"address": message.address}
+    described = {"direction": reading.direction, "command": message.command.name}
+    return {**described, **to, "fields": fields}

@@ -75,10 +75,12 @@ class JsonLines:
             return {"event": "noise", "data": as_hex(event.data), "reason": event.reason}
         if isinstance(event, RequestReceived):
             fields = {name: as_json_value(value) for name, value in event.message.fields.items()}
+            address = event.message.address
             return {
                 "event": "received",
                 "data": as_hex(event.frame.data),
                 "command": event.message.command.name,
+                **({} if address is None else {"address": address}),
                 "fields": fields,
                 **({"reply": as_hex(reply)} if reply else {}),
             }

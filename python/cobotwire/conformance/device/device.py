@@ -14,7 +14,7 @@ from cobotwire.conformance.device.requests import Known, units
 from cobotwire.conformance.device.response import Response
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request, Result
-from cobotwire.protocol.table import Command, Role, Table
+from cobotwire.protocol.table import Address, Command, Role, Table
 from cobotwire.session.request import EncodedRequest
 
 Restore = Callable[[], object]
@@ -42,12 +42,13 @@ class Device:
         permissions: Permissions,
         timing: Timing,
         retries: int = 0,
+        address: Address | None = None,
     ) -> None:
         self.connection = connection
         self.table: Table = codec.table
         self.permissions = permissions
         self.timing = timing
-        self.requester = Requester(connection, codec, timing)
+        self.requester = Requester(connection, codec, timing, address)
         self.retries = retries
         # Reply times in seconds, by command.
         self.reply_seconds: dict[str, list[float]] = {}

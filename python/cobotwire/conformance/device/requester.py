@@ -12,7 +12,8 @@ from cobotwire.conformance.device.response import ReceivedReply, Response
 from cobotwire.diagnose import Diagnoser, Finding
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Reply, Request
-from cobotwire.protocol.table import Command, TextReply
+from cobotwire.protocol.table import Address, Command, TextReply
+from cobotwire.session.matching import can_come_from
 from cobotwire.session.request import EncodedRequest, RequestEncoder, as_call
 from cobotwire.session.text import TextCollector
 
@@ -36,11 +37,17 @@ class Timing:
 class Requester:
     """Sends requests of one edition on one connection, and returns what came after each."""
 
-    def __init__(self, connection: DeviceConnection, codec: Codec, timing: Timing) -> None:
+    def __init__(
+        self,
+        connection: DeviceConnection,
+        codec: Codec,
+        timing: Timing,
+        address: Address | None = None,
+    ) -> None:
         self._connection = connection
         self._codec = codec
         self._timing = timing
-        self._requests = RequestEncoder(codec)
+        self._requests = RequestEncoder(codec, address)
         self._framer = codec.framer("reply")
         self._diagnoser = Diagnoser(codec)
 
@@ -135,11 +142,14 @@ class Requester:
 
     def _sort(self, response: Response, events: list[Event], start: float) -> None:
         """Keep frames at once, and feed all events to the diagnoser: noise may need later bytes."""
-        command = response.request.command
+        request = response.request
+        command = request.command
         for event in events:
             if not isinstance(event, Frame):
                 continue
-            if event.command == command.id and command.reply:
+            address = self._codec.table.frame.address(event.data)
+            own = event.command == command.id and can_come_from(address, request)
+            if own and command.reply:
                 response.replies.append(self._read(event, self._connection.now - start, command))
             else:
                 response.others.append(event)

@@ -16,6 +16,7 @@ from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.report import Cause, Report, Result, Verdict
 from cobotwire.conformance.suite import Group
 from cobotwire.conformance.tally import Tally, merged
+from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command, Table
 
@@ -51,6 +52,7 @@ class Tester:
         repeat: int = 1,
         retries: int = 0,
         optional: frozenset[str] = frozenset(),
+        address: int | str | None = None,
     ) -> None:
         """Prepare a run; nothing is sent.
 
@@ -63,7 +65,14 @@ class Tester:
             repeat: how often each body is run; if the runs differ, the verdict is unstable.
             retries: how often a query is repeated if nothing comes.
             optional: commands that the device may lack: if it is silent, they are not supported.
+            address: the device's address, by number or name; left out: the edition's first one.
+
+        Raises:
+            UsageError: the edition has no such address, or a request to it has no reply.
         """
+        device_address = find_address(table, address)
+        if device_address is not None and device_address.replies == "none":
+            raise UsageError("address", device_address.name, "an address that has replies")
         self.connection = connection
         self.table = table
         self._repeat = repeat
@@ -75,8 +84,10 @@ class Tester:
             permissions=permissions or Permissions(),
             timing=timing or Timing(),
             retries=retries,
+            address=device_address,
         )
-        self.report = Report("device", table.edition, connection.name)
+        at = "" if device_address is None else f" at address {device_address.name}"
+        self.report = Report("device", table.edition, f"{connection.name}{at}")
         self.report.reply_seconds = self.device.reply_seconds
         self.report.deadline_seconds = {c.name: c.deadline_ms / 1000 for c in table.commands}
 
