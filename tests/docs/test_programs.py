@@ -1,0 +1,91 @@
+"""Run the programs of the guide on simulated arms; the page includes these same files."""
+
+from __future__ import annotations
+
+import asyncio
+import runpy
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cobotwire import LinkError
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm
+from cobotwire.simulator.kinematics import prepare
+from vectors import ROOT
+
+FOLDER = ROOT / "docs" / "guide" / "programs"
+# The arm's seconds in one of ours.
+RATE = 50.0
+
+
+class _Arms:
+    def __init__(self, stack: ExitStack) -> None:
+        self._stack = stack
+
+    def new(self, **options: Any) -> tuple[SimulatedArm, str]:
+        """Return a simulated arm, served on a pty, and its port."""
+        clock = RunningClock(RATE)
+        arm = SimulatedArm(TABLE, clock=clock, **options)
+        return arm, self._stack.enter_context(PtyServer(arm, clock)).url
+
+
+@pytest.fixture
+def arms() -> Iterator[_Arms]:
+    prepare()
+    with ExitStack() as stack:
+        yield _Arms(stack)
+
+
+def load(name: str) -> dict[str, Any]:
+    return runpy.run_path(str(FOLDER / f"{name}.py"))
+
+
+def test_page_shows_every_program() -> None:
+    page = (FOLDER.parent / "programs.md").read_text(encoding="utf-8")
+    programs = sorted(FOLDER.glob("*.py"))
+    assert len(programs) == 3
+    assert [path for path in programs if f"}} programs/{path.name}\n" not in page] == []
+
+
+def test_pick_and_place_grips_at_one_place_and_opens_at_the_other(
+    arms: _Arms, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arm, port = arms.new()
+    program = load("pick_and_place")
+    program["main"](port)
+    lines = capsys.readouterr().out.splitlines()
+    closed, opened = program["CLOSED"], program["OPEN"]
+    assert lines[:2] == [f"gripper at {closed} percent", f"gripper at {opened} percent"]
+    assert arm.state.angles.target(0.0) == pytest.approx(program["READY"], abs=0.1)
+    assert [note for note in arm.notes if "ignored" in note.text or "rejected" in note.text] == []
+
+
+def test_teach_and_replay_repeats_the_way_of_the_hand(arms: _Arms) -> None:
+    arm, port = arms.new(powered=True)
+    last = (40.0, -30.0, 10.0, 0.0, 0.0, 20.0)
+    arm.lead([(5.0, (40.0, 0.0, 0.0, 0.0, 0.0, 0.0)), (15.0, last)])
+    way = load("teach_and_replay")["main"](port, 0.5)
+    assert len(way) > 3
+    assert way[-1] == pytest.approx(last, abs=0.1)
+    assert arm.state.angles.target(0.0) == pytest.approx(last, abs=0.1)
+
+
+def test_two_arms_move_in_step(arms: _Arms, capsys: pytest.CaptureFixture[str]) -> None:
+    (_, left), (_, right) = arms.new(), arms.new()
+    asyncio.run(load("two_arms")["main"](left, right))
+    *lines, end = capsys.readouterr().out.splitlines()
+    assert end == "both arms are back"
+    found = [(line.split()[0], round(float(line.split()[-1]))) for line in lines]
+    for at, angle in enumerate((40, -40, 0)):
+        assert sorted(found[2 * at : 2 * at + 2]) == sorted([(left, angle), (right, -angle)])
+
+
+def test_failure_of_one_of_two_arms_ends_the_other(arms: _Arms, tmp_path: Path) -> None:
+    _, left = arms.new()
+    with pytest.raises(ExceptionGroup) as caught:
+        asyncio.run(load("two_arms")["main"](left, str(tmp_path / "nothing")))
+    assert caught.group_contains(LinkError)
