@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -10,16 +11,17 @@ from pathlib import Path
 
 import pytest
 
+import in_process
 import vectors
+from cobotwire_codegen.cli import main
 from cobotwire_codegen.render.vectors_json import vectors_json
+from in_process import Ended
 
 GENERATED = ("python/cobotwire/editions/mycobot", "docs/reference", "docs/_static/decoder/tables")
 
 
-def run(root: Path, *words: str, seed: str = "0") -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "cobotwire_codegen", "--root", str(root), *words]
-    environment = {"PYTHONHASHSEED": seed, "PATH": "/usr/bin"}
-    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+def run(root: Path, *words: str) -> Ended:
+    return in_process.run(main, "cobotwire-gen", "--root", str(root), *words)
 
 
 @pytest.fixture
@@ -29,77 +31,90 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Generate a project in another process; a test changes only a copy of it."""
+    root = tmp_path_factory.mktemp("template")
+    shutil.copytree(vectors.ROOT / "spec", root / "spec")
+    _generate(root, seed="1")
+    return root
+
+
+@pytest.fixture
+def generated(template: Path, tmp_path: Path) -> Path:
+    """Copy a project with its generated files."""
+    return Path(shutil.copytree(template, tmp_path / "generated"))
+
+
+def _generate(root: Path, seed: str) -> None:
+    command = [sys.executable, "-m", "cobotwire_codegen", "--root", str(root)]
+    environment = {**os.environ, "PYTHONHASHSEED": seed}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert done.returncode == 0, done.stderr
+
+
 def _files(root: Path) -> dict[str, bytes]:
     paths = (p for folder in GENERATED for p in (root / folder).rglob("*") if p.is_file())
     found = (p for p in paths if "__pycache__" not in p.parts)
     return {str(path.relative_to(root)): path.read_bytes() for path in found}
 
 
-def test_committed_files_are_fresh(project: Path) -> None:
-    assert run(project).returncode == 0
-    assert _files(project) == _files(vectors.ROOT)
-    assert len(_files(project)) > 30
+def test_committed_files_are_fresh(template: Path) -> None:
+    assert _files(template) == _files(vectors.ROOT)
+    assert len(_files(template)) > 30
 
 
-def test_output_does_not_depend_on_the_hash_seed(project: Path) -> None:
-    run(project, seed="1")
-    first = _files(project)
-    shutil.rmtree(project / "python")
-    run(project, seed="2")
-    assert _files(project) == first
+def test_output_does_not_depend_on_the_hash_seed(project: Path, template: Path) -> None:
+    _generate(project, seed="2")
+    assert _files(project) == _files(template)
 
 
-def test_second_run_of_the_generator_changes_nothing(project: Path) -> None:
-    run(project)
-    assert "0 file(s) changed" in run(project).stdout
-    assert run(project, "--check").stdout == "fresh\n"
+def test_second_run_of_the_generator_changes_nothing(generated: Path) -> None:
+    assert "0 file(s) changed" in run(generated).stdout
+    assert run(generated, "--check").stdout == "fresh\n"
 
 
-def test_check_prints_a_diff_of_stale_files(project: Path) -> None:
-    run(project)
-    path = project / GENERATED[0] / "values.py"
+def test_check_prints_a_diff_of_stale_files(generated: Path) -> None:
+    path = generated / GENERATED[0] / "values.py"
     path.write_text(path.read_text().replace("class Angles", "class Angels"))
     before = path.read_bytes()
-    result = run(project, "--check")
+    result = run(generated, "--check")
     assert result.returncode == 1
     assert f"stale: {path}" in result.stdout
     assert "-class Angels(NamedTuple):\n+class Angles(NamedTuple):" in result.stdout
     assert path.read_bytes() == before, "--check writes nothing"
 
 
-def test_check_reports_missing_and_left_over_files(project: Path) -> None:
-    run(project)
-    (project / GENERATED[0] / "enums.py").unlink()
-    (project / GENERATED[0] / "messages" / "old.py").write_text("")
-    result = run(project, "--check")
+def test_check_reports_missing_and_left_over_files(generated: Path) -> None:
+    (generated / GENERATED[0] / "enums.py").unlink()
+    (generated / GENERATED[0] / "messages" / "old.py").write_text("")
+    result = run(generated, "--check")
     assert result.returncode == 1
     assert "missing: " in result.stdout
     assert "left over: " in result.stdout
     assert "2 generated file(s) are stale" in result.stdout
-    run(project)
-    assert run(project, "--check").returncode == 0
-    assert not (project / GENERATED[0] / "messages" / "old.py").exists()
+    run(generated)
+    assert run(generated, "--check").returncode == 0
+    assert not (generated / GENERATED[0] / "messages" / "old.py").exists()
 
 
-def test_products_are_written_only_with_their_option(project: Path) -> None:
-    run(project)
-    assert not (project / "targets").exists()
-    assert not (project / "rust").exists()
-    assert run(project, "--products").returncode == 0
+def test_products_are_written_only_with_their_option(generated: Path) -> None:
+    assert not (generated / "targets").exists()
+    assert not (generated / "rust").exists()
+    assert run(generated, "--products").returncode == 0
     for product in ("c/mycobot280/mycobot280.h", "vectors/schema.json", "wireshark/mycobot.lua"):
-        assert (project / "targets" / product).stat().st_size > 1000
-    assert (project / "rust/core/tests/data/mycobot280.json").exists()
-    assert run(project, "--products", "--check").stdout == "fresh\n"
-    (project / "targets/construct/mycobot.py").unlink()
-    assert run(project, "--check").returncode == 0
-    assert run(project, "--products", "--check").returncode == 1
+        assert (generated / "targets" / product).stat().st_size > 1000
+    assert (generated / "rust/core/tests/data/mycobot280.json").exists()
+    assert run(generated, "--products", "--check").stdout == "fresh\n"
+    (generated / "targets/construct/mycobot.py").unlink()
+    assert run(generated, "--check").returncode == 0
+    assert run(generated, "--products", "--check").returncode == 1
 
 
-def test_file_with_other_line_ends_is_stale(project: Path) -> None:
-    run(project)
-    path = project / "docs/reference/mycobot/README.md"
+def test_file_with_other_line_ends_is_stale(generated: Path) -> None:
+    path = generated / "docs/reference/mycobot/README.md"
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-    assert run(project, "--check").returncode == 1
+    assert run(generated, "--check").returncode == 1
 
 
 def test_generator_with_bad_spec_writes_nothing_and_exits_with_2(project: Path) -> None:

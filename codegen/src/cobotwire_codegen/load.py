@@ -73,7 +73,7 @@ def load(path: Path, shown: str | None = None) -> Node:
     except OSError as error:
         reason = error.strerror or str(error)
         raise SpecError([Problem(Place(name, 1, 1), "unreadable", reason)]) from error
-    return _parsed(_decoded(data, name), name)
+    return parse(_decoded(data, name), name)
 
 
 def _decoded(data: bytes, name: str) -> str:
@@ -92,14 +92,12 @@ def _at(before: str, name: str) -> Place:
     return Place(name, before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1)
 
 
-# An edition and its deltas load the same files. Nobody changes a node.
 @lru_cache(maxsize=256)
-def _parsed(text: str, name: str) -> Node:
-    return parse(text, name)
-
-
 def parse(text: str, name: str) -> Node:
     """Return the root node of YAML text; ``name`` stands for the file in messages.
+
+    Parsing takes most of the time of a build, and the files of a base are read again for each of
+    its deltas. So equal text gets the same nodes; nobody may change them.
 
     Raises:
         SpecError: the text is not YAML, gives a key twice, or exceeds a limit.

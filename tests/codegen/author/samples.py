@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
+import in_process
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
+from cobotwire_codegen.cli import main
 from cobotwire_codegen.errors import Problem, SpecError
+from in_process import Ended
 
 FOLDER = Path(__file__).parent / "samples"
 EDITIONS = ("lamp.yaml", "lamp2.yaml", "bus.yaml")
@@ -29,13 +30,7 @@ def problems(path: Path) -> list[Problem]:
     return []
 
 
-def run(
-    folder: Path, *words: str, given: str | bytes | None = None
-) -> subprocess.CompletedProcess[str]:
+def run(folder: Path, *words: str, given: str | bytes = b"") -> Ended:
     """Call ``cobotwire-gen`` in a folder, without a terminal."""
-    data = given.encode() if isinstance(given, str) else given or b""
-    command = [sys.executable, "-m", "cobotwire_codegen", *words]
-    result = subprocess.run(command, cwd=folder, input=data, capture_output=True, check=False)
-    return subprocess.CompletedProcess(
-        command, result.returncode, result.stdout.decode(), result.stderr.decode()
-    )
+    data = given.encode() if isinstance(given, str) else given
+    return in_process.run(main, "cobotwire-gen", *words, given=data, folder=folder)

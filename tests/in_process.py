@@ -1,0 +1,36 @@
+"""Run a command line in this process: the start of another costs more than most tests."""
+
+from __future__ import annotations
+
+from contextlib import chdir
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+from click.testing import CliRunner
+
+
+class Ended(NamedTuple):
+    """How a program ended, with the attributes of a ``CompletedProcess``."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def run(
+    command: click.Command,
+    program: str,
+    *words: str,
+    given: bytes = b"",
+    folder: Path | None = None,
+) -> Ended:
+    """Run a command as a program of that name, in a folder, with the given standard input.
+
+    An exception that would end a program with a traceback is raised.
+    """
+    with chdir(folder or Path.cwd()):
+        done = CliRunner(catch_exceptions=False).invoke(
+            command, words, input=given, prog_name=program
+        )
+    return Ended(done.exit_code, done.stdout, done.stderr)
