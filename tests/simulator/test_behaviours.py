@@ -138,7 +138,7 @@ def test_what_read_by_promises_is_remembered_in_every_edition(
         fields = {field.name: _highest(field) for field in setting.variant.fields}
         if setting.command.request_text is not None:
             fields |= dict.fromkeys(setting.command.request_text.fields, "text")
-        arm.perform(setting.command, fields)
+        arm.perform(setting.command, fields, None)
         asked = {f.name: fields[f.name] for f in setting.query_variant.fields}
         found = arm.state.remembered.recall(setting.query, asked)
         assert found == {reported: fields[argument] for reported, argument in setting.pairs}
