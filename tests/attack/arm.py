@@ -83,7 +83,7 @@ class NumberingArm:
         now, damaged = self._clock(), request != self.arrived
         if not damaged:
             self.received.append((now, request))
-        if command.answers:
+        if command.requires_reply:
             values = reply_values(command, next(self._numbers), event.message.fields)
             frame = self._codec.encode(command.name, "reply", list(values.values()))
             self.last = Made(

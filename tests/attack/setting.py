@@ -63,7 +63,7 @@ class Setting:
     def begin(self, user: int, drawn: Drawn) -> Call:
         """Note that a call begins; end the run if it is the last one."""
         frame = self.codec.encode(drawn.name, "request", drawn.arguments)
-        query = self.table.command(drawn.name).answers
+        query = self.table.command(drawn.name).requires_reply
         call = self.record.begin(user, drawn.name, frame, drawn.ack_within, query)
         self.over |= call.number >= self.plan.calls
         return call

@@ -7,9 +7,11 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import click
 import pytest
 
 from cobotwire import editions
+from cobotwire.cli.app import VERBS, app
 from cobotwire.cli.completion import SHELLS
 from cobotwire.simulator.faults import shipped
 from command_line import PROGRAM, run_program
@@ -53,7 +55,8 @@ def test_ports_are_completed_for_every_verb_that_opens_one(tmp_path: Path) -> No
         "serial_ports.ports = lambda: [Port(device='/dev/ttyACM7')]\n"
         "from cobotwire.cli import main; main()"
     )
-    for verb in ("call", "doctor", "monitor", "conform device"):
+    assert _taking_a_port() == {"call", "doctor", "identify", "monitor", "conform device"}
+    for verb in _taking_a_port():
         words = ["cobotwire", *verb.split(), "/dev/ttyA"]
         given = {"COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
         result = subprocess.run(
@@ -70,30 +73,100 @@ def test_ports_are_completed_for_every_verb_that_opens_one(tmp_path: Path) -> No
 def test_script_is_accepted_by_its_shell(shell: str, tmp_path: Path) -> None:
     script = run_program("completion", shell).stdout
     assert f"_COBOTWIRE_COMPLETE={shell}_complete" in script
-    program = shutil.which(shell)
-    if program is None:
-        pytest.skip(f"{shell} is not installed")
     path = tmp_path / "script"
     path.write_text(script)
-    result = subprocess.run([program, "-n", path], capture_output=True, text=True, check=False)
+    result = subprocess.run(
+        [needed(shell), "-n", path], capture_output=True, text=True, check=False
+    )
     assert (result.returncode, result.stderr) == (0, "")
 
 
-def test_bash_completes_with_the_printed_script(tmp_path: Path) -> None:
+@pytest.fixture
+def path_with_program(tmp_path: Path) -> str:
+    """Return a search path on which the command line is the program cobotwire."""
     program = tmp_path / "cobotwire"
     program.write_text(f"#!/bin/sh\nexec {PROGRAM[0]} -c '{PROGRAM[2]}' \"$@\"\n")
     program.chmod(0o755)
+    return f"{tmp_path}:{os.environ['PATH']}"
+
+
+def needed(shell: str) -> str:
+    program = shutil.which(shell)
+    if program is None:
+        pytest.skip(f"{shell} is not installed")
+    return program
+
+
+# The line that a user types, and the only word with which Tab completes it.
+TYPED = [("sim --scenario pan", "panic"), ("call /dev/x get_enc", "get_encoder")]
+
+
+@pytest.mark.parametrize(("line", "word"), TYPED)
+def test_bash_completes_with_the_printed_script(
+    line: str, word: str, path_with_program: str
+) -> None:
     script = (
         'eval "$(cobotwire completion bash)"\n'
-        "COMP_WORDS=(cobotwire sim --scenario pan); COMP_CWORD=3\n"
+        f"COMP_WORDS=(cobotwire {line}); COMP_CWORD={len(line.split())}\n"
         "_cobotwire_completion cobotwire\n"
         'echo "${COMPREPLY[@]}"'
     )
-    result = subprocess.run(
-        ["bash", "-c", script],
+    result = run_shell("bash", script, path_with_program)
+    assert (result.stdout.split()[0], result.stderr) == (word, "")
+
+
+@pytest.mark.parametrize(("line", "word"), TYPED)
+def test_fish_completes_with_the_printed_script(
+    line: str, word: str, path_with_program: str
+) -> None:
+    script = f'cobotwire completion fish | source; complete -C "cobotwire {line}"'
+    result = run_shell("fish", script, path_with_program)
+    assert result.stdout.split()[0] == word, result.stderr
+
+
+def test_zsh_completes_what_is_typed_with_the_printed_script(
+    tmp_path: Path, path_with_program: str
+) -> None:
+    needed("zsh")
+    # A second zsh on a pseudo-terminal: completion works only where a user types.
+    script = f"""
+    zmodload zsh/zpty
+    zpty shell 'TERM=dumb zsh -f -i'
+    zpty -w shell "autoload -U compinit; compinit -u -d {tmp_path}/dump"
+    zpty -w shell 'eval "$(cobotwire completion zsh)"; print rea''dy'
+    zpty -r shell found '*ready*'
+    zpty -w -n shell $'cobotwire sim --scenario pan\t'
+    zpty -r shell found '*panic*' && print -r -- ${{found##*scenario }}
+    zpty -d shell
+    """
+    result = run_shell("zsh", script, path_with_program)
+    assert result.stdout.strip().startswith("panic"), result.stderr
+
+
+def run_shell(shell: str, script: str, path: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [needed(shell), "-c", script],
         capture_output=True,
         text=True,
-        env={**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"},
+        timeout=60,
+        env={**os.environ, "PATH": path},
         check=False,
     )
-    assert (result.stdout, result.stderr) == ("panic\n", "")
+
+
+def _taking_a_port() -> set[str]:
+    """Return the verbs that take the URL of an arm."""
+    context = click.Context(app)
+    found = {verb: app.get_command(context, verb) for verb in VERBS}
+    conform = found["conform"]
+    assert isinstance(conform, click.Group)
+    found |= {f"conform {name}": command for name, command in conform.commands.items()}
+    return {
+        verb
+        for verb, command in found.items()
+        if command and any(each.metavar == "URL" for each in command.params if _is_argument(each))
+    }
+
+
+def _is_argument(parameter: click.Parameter) -> bool:
+    return isinstance(parameter, click.Argument)

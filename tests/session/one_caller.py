@@ -35,7 +35,7 @@ class OneCaller:
     ) -> bytes:
         """Send a request; return its bytes, empty while it is held."""
         request = self.encode(name, values)
-        if not request.command.answers:
+        if not request.command.requires_reply:
             return self.exchange.send_one_way(request, now)[0]
         self.pending = self.exchange.submit(request, now, ONCE, timeout)
         return self.exchange.outgoing(now, drained=True)

@@ -33,7 +33,12 @@ from cobotwire.simulator.tcp import address
 @click.option(
     "--listen", default="pty", show_default=True, help="Where to serve: pty, or socket://HOST:PORT."
 )
-@click.option("--expect", metavar="FILE", help="The calls that the client makes, one per line.")
+@click.option(
+    "--expect",
+    type=click.Path(),
+    metavar="FILE",
+    help="The calls that the client makes, one per line.",
+)
 @click.option("--misbehave", default="", help=f"Send bad replies, any of {','.join(FAULTS)}.")
 @click.option(
     "--every",

@@ -24,7 +24,12 @@ from cobotwire.protocol.errors import UsageError
 # Our options come before COMMAND; everything after it belongs to COMMAND.
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
 @click.argument("command", nargs=-1, required=True)
-@click.option("--expected", metavar="FILE", help="Known failures: a name and a reason per line.")
+@click.option(
+    "--expected",
+    type=click.Path(),
+    metavar="FILE",
+    help="Known failures: a name and a reason per line.",
+)
 @click.option("--only", metavar="PATTERN", help="Send only questions with a matching name.")
 @click.option(
     "--timeout", type=float, default=10.0, show_default=True, help="Seconds to wait for an answer."

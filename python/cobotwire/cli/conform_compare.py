@@ -24,8 +24,8 @@ STYLES = {"worse": "red", "better": "green"}
 
 
 @click.command(short_help="Compare two reports on the same subject.")
-@click.argument("before")
-@click.argument("after")
+@click.argument("before", type=click.Path())
+@click.argument("after", type=click.Path())
 @click.option("--json", "as_json", is_flag=True, help="Print the differences as JSON.")
 def compare(before: str, after: str, as_json: bool) -> None:
     """Compare the reports BEFORE and AFTER, which were written with --json.

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from cobotwire.cli.shared.arm_options import baudrate_option
+from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.exit_codes import NO_REPLY
 from cobotwire.cli.shared.output import as_json_value, format_result
 from cobotwire.inspect.identification import Evidence, Identification
@@ -16,7 +17,7 @@ from cobotwire.inspect.identification import identify as identify_arm
 
 
 @click.command(short_help="Find out which edition an arm speaks.")
-@click.argument("port", metavar="URL")
+@click.argument("port", metavar="URL", shell_complete=complete_ports)
 @baudrate_option
 @click.option(
     "--timeout", type=float, default=0.5, show_default=True, help="Seconds to wait for a reply."

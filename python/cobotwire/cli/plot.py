@@ -28,7 +28,14 @@ from cobotwire.protocol.printable import printable
 
 @click.command(short_help="Draw a recording.")
 @click.argument("file", type=click.Path())
-@click.option("-o", "--output", required=True, metavar="PICTURE", help="A .png, .svg or .pdf file.")
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(),
+    metavar="PICTURE",
+    help="A .png, .svg or .pdf file.",
+)
 @interface_option
 @click.option("--pose", is_flag=True, help="Draw the last pose of the arm as a stick figure.")
 @click.pass_obj

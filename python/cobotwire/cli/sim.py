@@ -59,6 +59,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
 @click.option("--no-acks", is_flag=True, help="Send no acknowledgements, as older firmware.")
 @click.option(
     "--led",
+    type=click.Path(),
     metavar="FILE",
     help="Lead the arm by hand when it is released: lines of seconds and angles.",
 )
@@ -69,7 +70,12 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
 )
 @click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
-@click.option("--view", metavar="PICTURE", help="Draw the arm into a .png, .svg or .pdf file.")
+@click.option(
+    "--view",
+    type=click.Path(),
+    metavar="PICTURE",
+    help="Draw the arm into a .png, .svg or .pdf file.",
+)
 @click.option(
     "--scenario",
     shell_complete=complete_scenarios,

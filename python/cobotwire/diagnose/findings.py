@@ -69,6 +69,11 @@ class Finding:
         """Return whether the controller reboots, if the finding is a sign of a failure."""
         return True
 
+    @property
+    def ordinary(self) -> bool:
+        """Return whether the line of an arm that works carries it too."""
+        return False
+
     def describe(self) -> str:
         """Describe the finding on one line."""
         return self.kind

@@ -35,6 +35,11 @@ class Text(Finding):
     summary_prefix: ClassVar[str] = "text: "
     summary_noun: ClassVar[str] = "line"
 
+    @property
+    def ordinary(self) -> bool:
+        """Return True: firmware that works prints such lines."""
+        return True
+
     def describe(self) -> str:
         """Describe the text."""
         return f"text: {self.example()}"
@@ -55,6 +60,11 @@ class CommandError(Finding):
         "(lsof PORT), whether the cable is too long, and whether the hub has power"
     )
     readable: ClassVar[bool] = True
+
+    @property
+    def ordinary(self) -> bool:
+        """Return True: the arm works on after it."""
+        return True
 
     def describe(self) -> str:
         """Describe the error."""

@@ -32,6 +32,11 @@ class Nuls(Finding):
         """Return "" if the controller restarts, since NULs do not say why."""
         return "" if self.reboot else None
 
+    @property
+    def ordinary(self) -> bool:
+        """Return True for a few NULs: they are not a restart."""
+        return not self.reboot
+
     def describe(self) -> str:
         """Describe the run."""
         return f"{self.count} NULs" + (": the controller restarts" if self.reboot else "")

@@ -66,6 +66,11 @@ class ServoPacket(Finding):
     summary_prefix: ClassVar[str] = "servo bus leak: "
     summary_noun: ClassVar[str] = "packet"
 
+    @property
+    def ordinary(self) -> bool:
+        """Return True: arms that work leak such packets."""
+        return True
+
     def describe(self) -> str:
         """Describe the packet."""
         doubt = " (or a status with errors)" if self.ambiguous else ""

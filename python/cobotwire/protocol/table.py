@@ -162,7 +162,7 @@ class Command:
         return self.safety == "motion" and any(variant.fields for variant in self.request)
 
     @property
-    def answers(self) -> bool:
+    def requires_reply(self) -> bool:
         """Whether the protocol requires a reply."""
         return (bool(self.reply) and not self.ack) or self.text is not None
 

@@ -60,7 +60,7 @@ class Exchange:
         self._codec = codec
         self._framer = codec.framer("reply")
         self._format = codec.table.frame
-        self._replying_ids = {c.id for c in codec.table.commands if c.answers}
+        self._replying_ids = {c.id for c in codec.table.commands if c.requires_reply}
         self.alignment = Alignment(codec)
         self._sent_last = b""
         # Where in the stream the bytes began that were received last.

@@ -59,7 +59,7 @@ class OtherFrames:
         """
         late = self._outstanding.find(frame, now)
         if late is not None:
-            if late.request.command.answers:
+            if late.request.command.requires_reply:
                 # It stays outstanding: this may be a copy, with the reply itself still to come.
                 return self._note(LateReply(late.request.command, frame), waiting)
             self._outstanding.settle(late)

@@ -85,7 +85,7 @@ class RequestEncoder:
         found = self._commands.get(name)
         if found is None:
             command = self._codec.table.command(name)
-            if self._replier == NOBODY and command.answers:
+            if self._replier == NOBODY and command.requires_reply:
                 raise _unanswered(name, self._to)
             found = self._commands[name] = command, _can_repeat(command)
         return found

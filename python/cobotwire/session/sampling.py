@@ -131,7 +131,7 @@ def check_requests(requests: Sequence[Request[Any]], table: Table) -> None:
         if not isinstance(request, Request):
             raise UsageError(name, request, "a request such as GetAngles()")
         command = table.command(request.command)
-        if command.safety != "query" or not command.answers:
+        if command.safety != "query" or not command.requires_reply:
             message = f"{name} is {command.name}, which is not a query; a stream can send "
             raise UsageError(name, request, message=message + _queries(table))
         if request in requests[:index]:
@@ -140,4 +140,4 @@ def check_requests(requests: Sequence[Request[Any]], table: Table) -> None:
 
 
 def _queries(table: Table) -> str:
-    return ", ".join(c.name for c in table.commands if c.safety == "query" and c.answers)
+    return ", ".join(c.name for c in table.commands if c.safety == "query" and c.requires_reply)

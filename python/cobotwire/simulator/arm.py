@@ -318,7 +318,7 @@ class ArmConnection:
         # A command with a text after its frame is performed once the text is complete.
         performed = command.request_text is None
         reply = self._arm.perform(command, given, address) if performed else None
-        if not command.answers and not (command.ack and self._arm.acks):
+        if not command.requires_reply and not (command.ack and self._arm.acks):
             return b""
         if isinstance(reply, Sized):
             return self._arm.encode_sized(command, reply, address)

@@ -109,9 +109,9 @@ def test_wrong_lines_of_an_explanation_cause_the_code_and_right_ones_do_not(
 
 
 def test_explain_prints_all_parts_of_a_code(tmp_path: Path) -> None:
-    result = samples.run(tmp_path, "explain", "uneven-cases")
+    result = samples.run(tmp_path, "explain", "cases-differ-in-size")
     assert result.returncode == 0
-    for part in (CODES["uneven-cases"].means, "Why: ", "Fix: ", "TURN: {type: pose}"):
+    for part in (CODES["cases-differ-in-size"].means, "Why: ", "Fix: ", "TURN: {type: pose}"):
         assert part in result.stdout
 
 
@@ -144,7 +144,8 @@ def test_explain_uses_the_given_edition() -> None:
 
 
 @pytest.mark.parametrize(
-    ("word", "near"), [("uneven-case", "uneven-cases"), ("send_angel", "send_angle")]
+    ("word", "near"),
+    [("cases-differ-in-siz", "cases-differ-in-size"), ("send_angel", "send_angle")],
 )
 def test_explain_suggests_the_nearest_word_for_an_unknown_one(word: str, near: str) -> None:
     result = samples.run(vectors.ROOT, "explain", word)

@@ -41,11 +41,11 @@ def wrong_times(session: Session) -> Iterator[ClientMutant]:
             again = (*session.writes(whole)[:2], Sent(after, whole), Sent(PAUSE, session.query))
             name = f"resent: {place}: after {after:g} s"
             yield ClientMutant("resent", name, session.script(), again)
-    elif session.command.answers:
+    elif session.command.requires_reply:
         again = (*session.writes(whole)[:2], Sent(0.002, whole), Sent(PAUSE, session.query))
         name = f"repeated too soon: {place}: again after 2 ms"
         yield ClientMutant("repeated too soon", name, session.script(), again)
-    if session.command.answers:
+    if session.command.requires_reply:
         early = (*session.writes(whole)[:2], Sent(0.002, session.query))
         name = f"reply not awaited: {place}: another query after 2 ms"
         yield ClientMutant("reply not awaited", name, session.script(), early)
@@ -75,9 +75,11 @@ def wrong_turns(table: Table, sessions: list[Session]) -> Iterator[ClientMutant]
 
 def _before_late_replies(sessions: list[Session]) -> Iterator[ClientMutant]:
     for session in sessions:
-        if not session.command.answers or _echoes(session.command):
+        if not session.command.requires_reply or _echoes(session.command):
             continue
-        like = [s for s in sessions if s.command.id == session.command.id and s.command.answers]
+        like = [
+            s for s in sessions if s.command.id == session.command.id and s.command.requires_reply
+        ]
         other = next((s for s in like if s.frame != session.frame), None)
         if other is not None:
             script = (session.script()[1], other.script()[1])

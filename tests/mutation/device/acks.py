@@ -33,7 +33,7 @@ def wrong_acks(table: Table) -> Iterator[Mutant]:
     for command in distinct(table):
         if not command.ack:
             yield _mutant(table, command, "it reports done", DONE)
-        if not command.ack and not command.answers:
+        if not command.ack and not command.requires_reply:
             yield _mutant(table, command, "it has no data", b"")
 
 

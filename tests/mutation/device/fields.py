@@ -50,7 +50,7 @@ class WrongField(Fault):
 def wrong_fields(table: Table) -> Iterator[Mutant]:
     """Yield a mutant for each field of each required reply and each way to send it wrong."""
     for command in distinct(table):
-        for field in reply_fields(command) if command.answers else ():
+        for field in reply_fields(command) if command.requires_reply else ():
             number = field.cases[0].numbers[0]
             for alteration in ECHOES if field.echo else ALTERATIONS:
                 if alteration.fits(field, number):

@@ -35,7 +35,7 @@ class WrongTime(Fault):
 def wrong_times(table: Table) -> Iterator[Mutant]:
     """Yield a mutant for each reply and wrong time; for acknowledgements, only with copies."""
     for command in distinct(table):
-        ways = WAYS if command.answers else TWICE if command.reply else ()
+        ways = WAYS if command.requires_reply else TWICE if command.reply else ()
         for kind, text, send in ways:
             yield _mutant(table, command, kind, text, send)
 

@@ -76,7 +76,7 @@ def _undefined(table: Table, mutant: Mutant) -> str:
 
 def _replied(table: Table, name: str) -> list[str]:
     command = table.command(name)
-    return [field.name for field in reply_fields(command)] if command.answers else []
+    return [field.name for field in reply_fields(command)] if command.requires_reply else []
 
 
 def _range(values: set[int | float]) -> str:
@@ -91,7 +91,7 @@ def _field(table: Table, mutant: Mutant) -> Field | None:
     if not mutant.command:
         return None
     command = table.command(mutant.command)
-    if not command.answers:
+    if not command.requires_reply:
         return None
     return next((f for f in reply_fields(command) if f.name == mutant.field), None)
 
@@ -110,7 +110,7 @@ def _reported(table: Table, name: str, field: Field) -> bool:
     return any(
         _units(field) and _units(other) == _units(field)
         for query in table.commands
-        if query.answers and query.id != command.id
+        if query.requires_reply and query.id != command.id
         for other in reply_fields(query)
     )
 

@@ -96,7 +96,7 @@ def cases_alike(edition: Edition) -> Iterator[Problem]:
         for field in command.fields:
             if len({type.size for _, type in field.cases}) > 1:
                 message = f"the cases of {field.name} differ in size"
-                yield Problem(field.place, "uneven-cases", message)
+                yield Problem(field.place, "cases-differ-in-size", message)
 
 
 def echoes_match(edition: Edition) -> Iterator[Problem]:

@@ -31,7 +31,7 @@ def parse_address(text: str) -> int | str:
 def arm_options(verb: Verb) -> Verb:
     """Add the options of every verb that opens the port of an arm."""
     record_option = click.option(
-        "--record", metavar="FILE", help="Record all traffic to FILE (pcapng)."
+        "--record", type=click.Path(), metavar="FILE", help="Record all traffic to FILE (pcapng)."
     )
     return baudrate_option(record_option(verb))
 

@@ -66,11 +66,18 @@ def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         if name == "--json":
             # As in every other verb, --json alone prints JSON.
             json_option = click.option(
-                name, is_flag=False, flag_value="-", metavar="[FILE]", help=f"{text} (or print it)."
+                name,
+                type=click.Path(),
+                is_flag=False,
+                flag_value="-",
+                metavar="[FILE]",
+                help=f"{text} (or print it).",
             )
             found = json_option(found)
             continue
-        found = click.option(name, metavar="FILE", help=f"{text} (-: standard output).")(found)
+        found = click.option(
+            name, type=click.Path(), metavar="FILE", help=f"{text} (-: standard output)."
+        )(found)
     return found
 
 

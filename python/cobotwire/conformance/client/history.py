@@ -71,7 +71,7 @@ class Received:
     @property
     def awaits_reply(self) -> bool:
         """Whether the edition requires a reply."""
-        return self.command is not None and self.command.answers
+        return self.command is not None and self.command.requires_reply
 
     @property
     def changes_state(self) -> bool:

@@ -91,7 +91,7 @@ class Device:
     def count(self, response: Response) -> Response:
         """Count the reply time of a response, and return the response."""
         command = response.request.command
-        if command.answers and response.valid is not None:
+        if command.requires_reply and response.valid is not None:
             self.reply_seconds.setdefault(command.name, []).append(response.valid.seconds)
         return response
 

@@ -76,7 +76,7 @@ class Requester:
         response = Response(request)
         if request.command.text is not None:
             self._await_text(response, request.command.text, start)
-        elif request.command.answers:
+        elif request.command.requires_reply:
             self._await_reply(response, start)
         self.listen(response, start, self._after(response))
         return response
@@ -102,7 +102,7 @@ class Requester:
         """Return how long to listen for a second reply, a late one, or one that is not due."""
         if response.replies:
             return self._timing.linger
-        replies = response.request.command.answers
+        replies = response.request.command.requires_reply
         return self._timing.grace if replies else self._timing.silence
 
     def _await_reply(self, response: Response, start: float) -> None:

@@ -6,14 +6,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cobotwire.codec.interface import DecodedMessage, Frame
-from cobotwire.diagnose import CommandError, DamagedFrame, Finding, Nuls, ServoPacket, Text
+from cobotwire.diagnose import DamagedFrame, Finding
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Reply
 from cobotwire.session.matching import repeats_arguments
 from cobotwire.session.request import EncodedRequest
-
-# What a healthy arm's line carries besides frames: packets of the servo bus, the firmware's text.
-NOISE = (ServoPacket, Text, CommandError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +40,7 @@ class Response:
     @property
     def noise(self) -> list[Finding]:
         """What a healthy arm's line carries besides frames."""
-        return [finding for finding in self.findings if _is_noise(finding)]
+        return [finding for finding in self.findings if finding.ordinary]
 
     @property
     def unexpected(self) -> list[str]:
@@ -52,7 +49,7 @@ class Response:
         return found + [
             f"{finding.kind} {shown(finding.data)}"
             for finding in self.findings
-            if not _is_noise(finding)
+            if not finding.ordinary
         ]
 
     @property
@@ -92,7 +89,3 @@ def shown(data: bytes, most: int = 40) -> str:
     """Return bytes as hex, shortened if they are many."""
     text = data[:most].hex(" ").upper()
     return text if len(data) <= most else f"{text} ... ({len(data)} bytes)"
-
-
-def _is_noise(finding: Finding) -> bool:
-    return isinstance(finding, NOISE) or (isinstance(finding, Nuls) and not finding.reboot)

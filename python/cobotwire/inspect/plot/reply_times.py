@@ -31,7 +31,7 @@ class Pairing:
 
     def __init__(self, table: Table) -> None:
         self.times = ReplyTimes()
-        self._deadlines = {c.id: c.deadline_ms / 1000 for c in table.commands if c.answers}
+        self._deadlines = {c.id: c.deadline_ms / 1000 for c in table.commands if c.requires_reply}
         self._open: dict[int, float] = {}
 
     def sent(self, at: float, id: int) -> None:

@@ -42,7 +42,7 @@ class Chooser:
         command = request.command
         return {
             "requests": request.id is not None,
-            "replies": command is not None and command.answers,
+            "replies": command is not None and command.requires_reply,
             "acknowledgements": command is not None and command.ack,
             "malformed input": request.id is None,
         }[self.fault.only]

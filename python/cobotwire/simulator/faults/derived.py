@@ -75,7 +75,7 @@ def _faults(exchange: Exchange, command: Command, where: _Where, codec: Codec) -
     replies = [e for e in events if isinstance(e, Frame) and e.command == command.id]
     if not replies:
         # A reply of text has no frame: it is lost only if nothing arrived.
-        if command.reply and (command.answers or command.ack):
+        if command.reply and (command.requires_reply or command.ack):
             yield Lost(commands=where.commands, nth=where.nth)
         return
     start, size = replies[0].offset, len(replies[0].data)

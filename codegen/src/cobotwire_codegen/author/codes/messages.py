@@ -169,7 +169,7 @@ EXPLANATIONS = (
         "X: {type: length}\nTURN: {type: angle}",
     ),
     Explanation(
-        "uneven-cases",
+        "cases-differ-in-size",
         "The cases of a field have different sizes.",
         "The position of the next field would depend on a value.",
         "Use types of the same size, or list the variants.",

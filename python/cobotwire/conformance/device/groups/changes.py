@@ -24,7 +24,7 @@ def _may_be_acknowledged(command: Command) -> bool:
 
 
 def _is_replied_to(command: Command) -> bool:
-    return command.answers
+    return command.requires_reply
 
 
 SILENT = TestCase("one-way-silent", "A one-way request is not replied to.", applies=_is_silent)
@@ -52,7 +52,7 @@ def request_change(probe: Probe, request: Request[Any]) -> Response:
     response = probe.device.request(request)
     command = response.request.command
     call = probe.device.requester.describe(response.request)
-    if command.answers:
+    if command.requires_reply:
         _judge_reply(probe, response, call)
     elif command.ack:
         _judge_acknowledgement(probe, response, call)

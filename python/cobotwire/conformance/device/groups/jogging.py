@@ -24,7 +24,7 @@ SLOW = 20
 
 def _shape(command: Command) -> tuple[Field, Field] | None:
     """Return the fields of a motion for its part and its distance or direction; else None."""
-    if command.safety != "motion" or command.role or command.read_by or command.answers:
+    if command.safety != "motion" or command.role or command.read_by or command.requires_reply:
         return None
     fields = command.request[0].fields
     if len(fields) != 3 or any(field.many for field in fields):

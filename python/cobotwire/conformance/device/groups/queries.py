@@ -38,7 +38,7 @@ REPEATS = TestCase(
 
 def is_query(table: Table, command: Command) -> bool:
     """Return whether a command only reads."""
-    return command.safety == "query" and command.answers
+    return command.safety == "query" and command.requires_reply
 
 
 def _query(probe: Probe) -> None:
