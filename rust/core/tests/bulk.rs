@@ -1,24 +1,13 @@
 //! Bulk reading has the same results as framer and decoder, for every frame and byte.
 
-// A failing test may panic.
-#![allow(
-    clippy::expect_used,
-    clippy::indexing_slicing,
-    clippy::panic,
-    clippy::unwrap_used
-)]
-
-mod common;
-mod records;
-
 use std::sync::Arc;
 
+use crate::common::Dice;
+use crate::records::Edition;
 use cobotwire_core::{
     Cells, ColumnReader, Columns, Direction, Event, Framer, Listening, Numbers, OffsetReader,
     Plans, Spans, Table, Tally, Value, VariantId, decode,
 };
-use common::Dice;
-use records::Edition;
 
 /// The results of framer and decoder.
 #[derive(Default)]

@@ -1,21 +1,11 @@
 //! Other frame formats: with a CRC, or with an address byte and a sum; and variants that share an
 //! id and a size.
 
-// A failing test may panic.
-#![allow(
-    clippy::expect_used,
-    clippy::indexing_slicing,
-    clippy::panic,
-    clippy::unwrap_used
-)]
-
-mod common;
-
+use crate::common::{Sample, Samples, events, field, frame_format, number, table, table_of};
 use cobotwire_core::{
     Check, Choice, DecodeError, Decoded, Direction, EncodeError, Field, FrameFormat, Framer,
     Listening, Reason, Table, Value, crc16_modbus, decode, encode,
 };
-use common::{Sample, Samples, events, field, frame_format, number, table, table_of};
 
 const CRC_FRAME: [u8; 7] = [0xFE, 0xFE, 0x04, 0x58, 0x01, 0xFD, 0x87]; // of a real arm
 const SUM_FRAME: [u8; 7] = [0xFE, 0xFE, 0x02, 0x03, 0x20, 0xF0, 0x10];

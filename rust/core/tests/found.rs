@@ -1,25 +1,13 @@
 //! Checks the inputs of `tests/found`: fuzzing found them, or people wrote them as hard cases.
 
-// A failing test may panic.
-#![allow(
-    clippy::expect_used,
-    clippy::indexing_slicing,
-    clippy::panic,
-    clippy::unwrap_used
-)]
-
-mod common;
-mod records;
-mod replay;
-
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::common::{Owned, events};
+use crate::records::Edition;
+use crate::replay::{Single, Stream};
 use cobotwire_core::{DecodeError, Event, Framer, OffsetReader, Rules, decode};
-use common::{Owned, events};
-use records::Edition;
-use replay::{Single, Stream};
 
 fn folder(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -75,7 +63,7 @@ fn recorded(stream: &Stream) -> Vec<Owned> {
 fn cut(framer: &mut Framer, stream: &Stream) -> Vec<Owned> {
     let mut all: Vec<Owned> = Vec::new();
     let mut add = |event: Event<'_>| {
-        let (offset, data, reason) = common::owned(event);
+        let (offset, data, reason) = crate::common::owned(event);
         match all.last_mut() {
             Some(last) if reason.is_some() && last.2 == reason => last.1.extend(data),
             _ => all.push((offset, data, reason)),
@@ -94,7 +82,7 @@ fn cut(framer: &mut Framer, stream: &Stream) -> Vec<Owned> {
 #[test]
 fn every_found_stream_has_its_recorded_events() {
     let tables = tables();
-    let streams = replay::streams(&text("streams.txt"));
+    let streams = crate::replay::streams(&text("streams.txt"));
     assert!(!streams.is_empty());
     for stream in &streams {
         let events = cut(&mut framer(&tables, stream), stream);
@@ -105,7 +93,7 @@ fn every_found_stream_has_its_recorded_events() {
 #[test]
 fn events_of_every_found_stream_do_not_depend_on_chunks() {
     let tables = tables();
-    for stream in replay::streams(&text("streams.txt")) {
+    for stream in crate::replay::streams(&text("streams.txt")) {
         if stream.chunks.iter().any(|(_, silence)| *silence) {
             continue;
         }
@@ -120,7 +108,7 @@ fn events_of_every_found_stream_do_not_depend_on_chunks() {
 #[test]
 fn bulk_reading_finds_the_frames_of_every_found_stream() {
     let tables = tables();
-    for stream in replay::streams(&text("streams.txt")) {
+    for stream in crate::replay::streams(&text("streams.txt")) {
         if stream.chunks.iter().any(|(_, silence)| *silence) {
             continue;
         }
@@ -144,7 +132,7 @@ fn bulk_reading_finds_the_frames_of_every_found_stream() {
 #[test]
 fn every_found_frame_is_decoded_or_rejected_as_recorded() {
     let tables = tables();
-    let singles = replay::singles(&text("frames.txt"));
+    let singles = crate::replay::singles(&text("frames.txt"));
     assert!(!singles.is_empty());
     for single in &singles {
         assert_eq!(

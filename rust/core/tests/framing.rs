@@ -1,20 +1,10 @@
 //! Checks the laws of framing: every byte is accounted for, chunking does not matter, and every
 //! undamaged frame is found.
 
-// A failing test may panic.
-#![allow(
-    clippy::expect_used,
-    clippy::indexing_slicing,
-    clippy::panic,
-    clippy::unwrap_used
-)]
-
-mod common;
-
 use std::sync::LazyLock;
 
+use crate::common::{Dice, Owned, events, field, number, owned, table, word};
 use cobotwire_core::{Direction, Event, Framer, Listening, Reason, Table};
-use common::{Dice, Owned, events, field, number, owned, table, word};
 
 /// Return a table with the replies 20 without data, 21 with one word and 22 with six words.
 fn three() -> Table {

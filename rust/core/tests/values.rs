@@ -1,20 +1,10 @@
 //! Checks encoding and decoding: the arithmetic, the round trip, and the place of each mistake.
 
-// A failing test may panic.
-#![allow(
-    clippy::expect_used,
-    clippy::indexing_slicing,
-    clippy::panic,
-    clippy::unwrap_used
-)]
-
-mod common;
-
+use crate::common::{Broken, Sample, Samples, field, frame_format, number, table, word};
 use cobotwire_core::{
     BadValue, Case, Choice, DecodeError, Direction, EncodeError, Field, Misfit, Number, Order,
     Reason, Table, TableError, Value, ValueFault, decode, encode,
 };
-use common::{Broken, Sample, Samples, field, frame_format, number, table, word};
 
 type Encoded = Result<Vec<u8>, EncodeError<Sample>>;
 

@@ -3,23 +3,12 @@
 //! The generator writes the spec's vectors into `data` (`make products`), which git ignores.
 //! `samples` is written by hand in the same format, for features that no edition has.
 
-// A failing test may panic.
-#![allow(
-    clippy::expect_used,
-    clippy::indexing_slicing,
-    clippy::panic,
-    clippy::unwrap_used
-)]
-
-mod common;
-mod records;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::common::{Sample, Samples, events};
+use crate::records::{Edition, Vector};
 use cobotwire_core::{Choice, DecodeError, Direction, Framer, Listening, Value, decode, encode};
-use common::{Sample, Samples, events};
-use records::{Edition, Vector};
 
 /// Noise that forms no frame together with the bytes after it.
 const NOISE: [&[u8]; 5] = [

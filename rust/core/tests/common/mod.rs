@@ -1,8 +1,5 @@
 //! Helpers of the tests: values to encode, and small tables.
 
-// Each test file compiles this by itself and uses a part of it.
-#![allow(dead_code)]
-
 use cobotwire_core::{
     Case, Check, Command, Event, Field, FrameFormat, Framer, Given, Number, Order, Reason, Row,
     Table, Unread, ValueFault, Variant,

@@ -1,8 +1,5 @@
 //! Reads the generator's JSON: the records of Python's `cobotwire.protocol.table` by attribute.
 
-// Each test file compiles this by itself and uses a part of it.
-#![allow(dead_code)]
-
 use cobotwire_core::{
     Case, Check, Command, Direction, Field, FrameFormat, Number, Order, Table, Variant,
 };
