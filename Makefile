@@ -2,16 +2,18 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
-# The Python tests run in three lanes at once: two that compute, and one that mostly waits for ports.
-COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec typing)
-SIMULATING := $(addprefix tests/,conformance docs inspect peers simulator targets/c targets/decoder)
+# The Python tests run in four lanes at once. The first computes; the others also wait for ports, so
+# that two processors are seldom idle. The last lane has all tests that no other lane names.
+COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec targets typing)
+SIMULATING := $(addprefix tests/,conformance docs inspect simulator)
+CALLING := $(addprefix tests/,cli newcomer peers)
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests simulating-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack
+.PHONY: help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -20,7 +22,9 @@ help: ## list the targets
 demo: .venv/.native ## drive a simulated arm over a pty and check every reply
 	$(BIN)/cobotwire demo --codec native
 
-test: lint rust-test python-test ## run everything: linters, types, generated files, Rust, Python
+test: .venv/.tools .venv/.native ## run everything: linters, types, generated files, Rust, Python
+	$(MAKE) --no-print-directory --jobs 2 $(IN_TURN) lint rust-test
+	$(MAKE) --no-print-directory python-test
 
 lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the binary, generated files
 	$(BIN)/cobotwire-gen --check
@@ -36,8 +40,8 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 rust-test: products ## run the Rust tests
 	cargo test --workspace --quiet
 
-python-test: .venv/.tools .venv/.native ## run the Python tests on both codecs, in three lanes
-	$(MAKE) --no-print-directory --jobs 3 $(IN_TURN) computing-tests simulating-tests waiting-tests
+python-test: .venv/.tools .venv/.native ## run the Python tests on both codecs, in four lanes
+	$(MAKE) --no-print-directory --jobs 4 $(IN_TURN) computing-tests simulating-tests calling-tests waiting-tests
 
 computing-tests:
 	$(BIN)/python -m pytest $(COMPUTING)
@@ -45,8 +49,11 @@ computing-tests:
 simulating-tests:
 	$(BIN)/python -m pytest $(SIMULATING)
 
+calling-tests:
+	$(BIN)/python -m pytest $(CALLING)
+
 waiting-tests:
-	$(BIN)/python -m pytest $(addprefix --ignore=,$(COMPUTING) $(SIMULATING))
+	$(BIN)/python -m pytest $(addprefix --ignore=,$(COMPUTING) $(SIMULATING) $(CALLING))
 
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen
