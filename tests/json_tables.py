@@ -43,7 +43,8 @@ def table_of(record: dict[str, Any]) -> Table:
 
 def _command(record: dict[str, Any]) -> Command:
     variants = {way: tuple(map(_variant, record.get(way, ()))) for way in ("request", "reply")}
-    return Command(**{**record, **variants, "notes": tuple(record.get("notes", ()))})
+    listed = {name: tuple(record.get(name, ())) for name in ("notes", "arguments")}
+    return Command(**{**record, **variants, **listed})
 
 
 def _variant(record: dict[str, Any]) -> Variant:
@@ -52,6 +53,8 @@ def _variant(record: dict[str, Any]) -> Variant:
 
 def _field(record: dict[str, Any]) -> Field:
     rows = {name: tuple(record.get(name, ())) for name in ("choices", "labels")}
+    if record.get("default") is not None:
+        rows["default"] = tuple(record["default"])
     return Field(**{**record, **rows, "cases": tuple(map(_case, record["cases"]))})
 
 

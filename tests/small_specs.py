@@ -62,6 +62,7 @@ types:
       doc: Two warmths.
       items: {inner: warmth, outer: warmth}
 """
+PYTHON = Path(__file__).resolve().parent.parent / "python"
 _NUMBERS = count()
 
 

@@ -179,6 +179,7 @@ def _command(family: str, command: Command) -> dict[str, Any]:
             [[name, list(numbers)] for name, numbers in sample] for sample in command.samples
         ],
         "agrees_with": list(command.agrees_with),
+        "arguments": list(command.method_order),
     }
 
 
@@ -199,4 +200,6 @@ def _field(field: Field, variant: tuple[Field, ...]) -> dict[str, Any]:
         "labels": list(labels(field.type)) if field.const is None else [],
         "selector": selector(field, variant),
         "echo": bool(field.echo),
+        "const": field.const,
+        "default": None if field.default is None else list(field.default),
     }

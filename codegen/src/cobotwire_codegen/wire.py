@@ -121,6 +121,23 @@ def encode_value(type: Type, name: str, value: object) -> bytes:
     return _quantity(type, name, value)
 
 
+def raw_values(type: Type, name: str, value: object) -> tuple[int, ...]:
+    """Return the raw values of a value that a type allows; a member may be stated as a number.
+
+    Raises:
+        ValueError: the type does not allow the value.
+    """
+    if isinstance(type, Enum):
+        value = next((m.name for m in type.members if value in (m.name, m.value)), value)
+    data = encode_value(type, name, value)
+    found = []
+    for _, part in type.parts:
+        raw = int.from_bytes(data[: part.size], part.wire.order)
+        found.append(raw - 256**part.size if raw > part.wire.signed_at else raw)
+        data = data[part.size :]
+    return tuple(found)
+
+
 def _quantity(type: Quantity, name: str, value: object) -> bytes:
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
         raise ValueError(f"{name} must be a number")

@@ -80,6 +80,8 @@ def byte_table(frame: FrameFormat, command: Command, variant: Variant) -> Grid:
 
 
 def _allowed(field: Field, number: Number) -> str:
+    if field.const is not None:
+        return f"{field.physical([field.const])}, always"
     if field.kind == "flag":
         return "0 no, 1 yes"
     if field.labels:

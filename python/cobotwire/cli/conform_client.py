@@ -12,7 +12,7 @@ import click
 
 from cobotwire import editions
 from cobotwire.capture.file_errors import unusable_file
-from cobotwire.cli.shared.call_arguments import parse, request_values
+from cobotwire.cli.shared.call_arguments import parse, request_values, variant_of
 from cobotwire.cli.shared.conform_report import (
     ReportFiles,
     conclude,
@@ -179,4 +179,5 @@ def read_script(table: Table, path: str) -> Iterator[ScriptLine]:
 def _script_line(table: Table, words: list[str], place: str) -> ScriptLine:
     """Parse a call; the text that follows some requests is not compared."""
     command = table.command(words[0])
-    return ScriptLine(command, request_values(command, parse(command, words[1:])), place)
+    given = parse(command, words[1:])
+    return ScriptLine(command, request_values(command, given), place, variant_of(command, given))

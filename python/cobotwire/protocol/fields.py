@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from cobotwire.protocol.arguments import Row
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.numbers import Number
 
@@ -34,6 +35,9 @@ class Field:
     values (``()``: every value between minimum and maximum); ``labels`` names them for people.
     If ``selector`` is not -1, it is the index of another field of the variant: the raw value of
     that field picks the case. All cases of a field take the same number of bytes.
+
+    ``const`` is the only raw value of a constant, which is no argument and no result. ``default``
+    are the raw values of an argument that the caller leaves out.
     """
 
     name: str
@@ -45,6 +49,8 @@ class Field:
     labels: tuple[str, ...] = ()
     selector: int = -1
     echo: bool = False
+    const: int | None = None
+    default: tuple[int, ...] | None = None
 
     @property
     def size(self) -> int:
@@ -84,6 +90,13 @@ class Field:
             return raw in self.choices
         return number.minimum <= raw <= number.maximum
 
+    def physical(self, raw: Sequence[int]) -> Any:
+        """Return the value of a field without a selector that holds these raw values."""
+        values = [n.physical(each) for n, each in zip(self.cases[0].numbers, raw)]
+        if self.many:
+            return tuple(values)
+        return bool(values[0]) if self.kind == "flag" and self.const is None else values[0]
+
     def meets(self, number: Number, other: Field, other_number: Number) -> bool:
         """Return whether a raw value is legal in a number of this field and in one of another."""
         for one, two, end in ((self, other, other_number), (other, self, number)):
@@ -103,6 +116,20 @@ class Variant:
     def size(self) -> int:
         """The number of data bytes on the wire, without header, LEN, command id and check."""
         return sum([field.size for field in self.fields])
+
+    @property
+    def row(self) -> Row:
+        """The variant as :mod:`cobotwire.protocol.arguments` describes it."""
+        return tuple(
+            [
+                field.physical([field.const])
+                if field.const is not None
+                else field.name
+                if field.default is None
+                else (field.name, field.physical(field.default))
+                for field in self.fields
+            ]
+        )
 
     def case(self, field: Field, values: Sequence[Any]) -> Case:
         """Return the case of a field in a message with these physical values.
@@ -193,3 +220,13 @@ class Variant:
     def _unselected(self, field: Field, selected: Any) -> UsageError:
         legal = ", ".join([str(when) for case in field.cases for when in case.when])
         return UsageError(self.fields[field.selector].name, selected, f"one of {legal}")
+
+
+def named_fields(variants: tuple[Variant, ...]) -> dict[str, list[Field]]:
+    """Return the fields that are no constants by name, those of the longest variant first."""
+    found: dict[str, list[Field]] = {}
+    for variant in sorted(variants, key=lambda variant: len(variant.fields), reverse=True):
+        for field in variant.fields:
+            if field.const is None:
+                found.setdefault(field.name, []).append(field)
+    return found

@@ -120,6 +120,7 @@ class _Reader:
             read_by and ReadBack(read_by["query"], _tuples(read_by["fields"])),
             _tuples(get("samples", ())),
             tuple(get("agrees_with", ())),
+            tuple(get("arguments", ())),
             self._package,
         )
 
@@ -158,6 +159,8 @@ class _Reader:
             labels,
             names.index(selector) if selector else -1,
             "echo" in record,
+            const,
+            tuple(default) if (default := get("default")) is not None else None,
         )
 
     def _type(self, reference: str | Record) -> Record:

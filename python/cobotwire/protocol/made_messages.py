@@ -8,26 +8,29 @@ from importlib import import_module
 from types import new_class
 from typing import Any, NamedTuple
 
+from cobotwire.protocol.arguments import Row
+from cobotwire.protocol.fields import Field, Variant, named_fields
 from cobotwire.protocol.messages import Reply, Request
 
 MessageTypes = tuple[type[Request[Any]], type[Reply[Any]] | None]
 
 
-class FieldShape(NamedTuple):
-    """What a message class needs to know about a field."""
-
-    name: str
-    type: str
-    """The annotation, as text."""
-    optional: bool
-    """Whether a variant of the message leaves the field out, or the field echoes the request."""
-
-
 class MessageShape(NamedTuple):
-    """What a message class needs to know about a request or reply, with fields in wire order."""
+    """What a message class needs to know about a request or reply.
 
-    fields: tuple[FieldShape, ...]
-    text: tuple[str, ...] = ()
+    Attributes:
+        annotations: the type of each attribute as text; those without a default come first.
+        defaults: the defaults of attributes; None if a variant leaves one out.
+        rows: the variants.
+        text: the attributes that are text outside the frame.
+        results: the attributes of a reply that the client's method returns.
+    """
+
+    annotations: tuple[tuple[str, str], ...]
+    defaults: tuple[tuple[str, Any], ...]
+    rows: tuple[Row, ...]
+    text: tuple[str, ...]
+    results: tuple[str, ...] = ()
 
 
 def class_name(command: str) -> str:
@@ -50,35 +53,86 @@ def made_types(command: str, request: MessageShape, reply: MessageShape | None) 
     the units of the wire.
     """
     name = class_name(command)
-    keywords: dict[str, Any] = {"command": command, "wire": _wire(request), "text": request.text}
+    keywords: dict[str, Any] = {"command": command, **_layout(request)}
     made: Any = new_class(name, (Request,), keywords, _body(request, f"Request {command}."))
     if reply is not None:
-        results = [field.name for field in reply.fields if not field.optional] + list(reply.text)
-        result = _named_tuple(name, results) if len(results) > 1 else None
-        keywords = {"to": made, "result": result, "wire": _wire(reply), "text": reply.text}
+        result = _named_tuple(name, reply.results) if len(reply.results) > 1 else None
+        keywords = {"to": made, "result": result, "results": reply.results, **_layout(reply)}
         new_class(f"{name}Reply", (Reply,), keywords, _body(reply, f"Reply to {command}."))
     return made, made.reply_type
 
 
-def _body(shape: MessageShape, doc: str) -> Callable[[dict[str, Any]], None]:
-    """Return a function that fills the body of a class: annotations, and None as defaults."""
-    required = {field.name: field.type for field in shape.fields if not field.optional}
-    optional = {field.name: field.type for field in shape.fields if field.optional}
-    annotations = required | {name: "str" for name in shape.text} | optional
-    defaults: dict[str, Any] = dict.fromkeys(optional)
-    return lambda body: body.update(
-        __annotations__=annotations, __module__=__name__, __doc__=doc, **defaults
+def request_shape(
+    variants: tuple[Variant, ...], text: tuple[str, ...], order: tuple[str, ...]
+) -> MessageShape:
+    """Return the shape of a request; ``order`` names all its arguments."""
+    return _shape(variants, named_fields(variants), text, order)
+
+
+def reply_shape(variants: tuple[Variant, ...], text: tuple[str, ...], is_ack: bool) -> MessageShape:
+    """Return the shape of a reply; an acknowledgement has no result."""
+    fields = {name: found for name, found in named_fields(variants).items() if not found[0].echo}
+    # What no variant lacks; or else everything, since each variant may report something else.
+    common = [name for name, found in fields.items() if len(found) == len(variants)]
+    results = () if is_ack else tuple(common or fields)
+    return _shape(variants, named_fields(variants), text, (*fields, *text))._replace(
+        results=(*results, *text)
     )
 
 
-def _wire(shape: MessageShape) -> tuple[str, ...]:
-    """Return the field names in wire order; empty if that is the order of declaration."""
-    names = [field.name for field in shape.fields]
-    declared = sorted(shape.fields, key=lambda field: field.optional)
-    return tuple(names) if names != [field.name for field in declared] else ()
+def _shape(
+    variants: tuple[Variant, ...],
+    fields: dict[str, list[Field]],
+    text: tuple[str, ...],
+    order: tuple[str, ...],
+) -> MessageShape:
+    types = dict.fromkeys(text, "str")
+    defaults: dict[str, Any] = {}
+    for name, found in fields.items():
+        types[name] = _annotation(found[0])
+        given = {field.default for field in found}
+        if len(found) < len(variants) or found[0].echo or len(given) > 1:
+            defaults[name] = None
+        elif None not in given:
+            defaults[name] = found[0].physical(found[0].default or ())
+    names = dict.fromkeys((*order, *fields))
+    declared = sorted(names, key=lambda name: name in defaults)
+    return MessageShape(
+        tuple((name, types[name]) for name in declared),
+        tuple(defaults.items()),
+        tuple(variant.row for variant in variants),
+        text,
+    )
 
 
-def _named_tuple(name: str, results: list[str]) -> Any:
+def _annotation(field: Field) -> str:
+    if field.kind == "flag":
+        return "bool"
+    word = "float" if any(number.real for number in field.numbers) else "int"
+    return f"Sequence[{word}]" if field.many else word
+
+
+def _layout(shape: MessageShape) -> dict[str, Any]:
+    """Return the keywords of a class that describe what is on the wire."""
+    if len(set(shape.rows)) > 1:
+        return {"variants": shape.rows, "text": shape.text}
+    [row] = set(shape.rows) or {()}
+    wire = tuple([part[0] if isinstance(part, tuple) else part for part in row])
+    declared = tuple([name for name, _ in shape.annotations if name not in shape.text])
+    return {"wire": wire if wire != declared else (), "text": shape.text}
+
+
+def _body(shape: MessageShape, doc: str) -> Callable[[dict[str, Any]], None]:
+    """Return a function that fills the body of a class: annotations and defaults."""
+    return lambda body: body.update(
+        __annotations__=dict(shape.annotations),
+        __module__=__name__,
+        __doc__=doc,
+        **dict(shape.defaults),
+    )
+
+
+def _named_tuple(name: str, results: tuple[str, ...]) -> Any:
     from collections import namedtuple
 
     return namedtuple(f"{name}Result", results)

@@ -29,6 +29,7 @@ from typing import (
     dataclass_transform,
 )
 
+from cobotwire.protocol.arguments import Chosen, Row, choose
 from cobotwire.protocol.radians import to_degrees, to_radians
 
 Result = TypeVar("Result", covariant=True)
@@ -47,7 +48,10 @@ class Message:
 
     _names: ClassVar[tuple[str, ...]] = ()
     # Names and constants in wire order; empty if that is the order of declaration.
-    _wire: ClassVar[tuple[str | int, ...]] = ()
+    _wire: ClassVar[Row] = ()
+    # The variants, if the given arguments choose one of several; and the choices made so far.
+    _variants: ClassVar[tuple[Row, ...]] = ()
+    _choices: ClassVar[dict[tuple[str, ...], Chosen]]
     _radians: ClassVar[frozenset[str]] = frozenset()
     _text: ClassVar[tuple[str, ...]] = ()
     # Fields that hold several numbers.
@@ -59,9 +63,10 @@ class Message:
     @classmethod
     def _declare(
         cls,
-        wire: tuple[str | int, ...] = (),
+        wire: Row = (),
         radians: tuple[str, ...] = (),
         text: tuple[str, ...] = (),
+        variants: tuple[Row, ...] = (),
     ) -> None:
         """Record the fields of a class, and their order on the wire.
 
@@ -69,6 +74,8 @@ class Message:
             wire: field names and constants in wire order, if it is not the order of declaration.
             radians: fields in radians, which the wire carries in degrees.
             text: fields of text outside the frame.
+            variants: the variants in the order of the table, each in wire order, if they differ in
+                more than optional fields at the end.
         """
         annotations = cls.__annotations__
         names = tuple(annotations)
@@ -76,8 +83,10 @@ class Message:
         # Type checkers derive it from the annotations, and forbid setting it.
         type.__setattr__(cls, "__match_args__", names)
         cls._rows = tuple([name for name in names if annotations[name].startswith("Sequence")])
-        if wire or radians or text or (names and names[-1] in cls.__dict__):
+        if wire or radians or text or variants or (names and names[-1] in cls.__dict__):
             cls._direct = False
+            cls._variants = variants
+            cls._choices = {}
             cls._wire = wire or tuple([name for name in names if name not in text])
             cls._radians = frozenset(radians)
             cls._text = text
@@ -94,6 +103,8 @@ class Message:
                 # A list can change later, and has no hash.
                 if type(fields[name]) is list:
                     fields[name] = tuple(fields[name])
+            if self._variants:
+                fields.update(self._chosen().defaults)
 
         def __setattr__(self, name: str, value: object) -> NoReturn:
             raise AttributeError(f"{type(self).__name__} is immutable; {name} cannot be set")
@@ -104,6 +115,11 @@ class Message:
         def __class_getitem__(cls, result: object) -> type:
             # Only type checkers need the result's type.
             return cls
+
+    @classmethod
+    def _of(cls, *arguments: Any) -> Self:
+        """Return the message with these arguments by position; None leaves an argument out."""
+        return cls(*arguments)
 
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any]) -> Self:
@@ -146,12 +162,25 @@ class Message:
         own, radians = self.__dict__, self._radians
         return [
             part
-            if isinstance(part, int)
+            if type(part) is not str
             else to_degrees(own[part])
             if part in radians
             else own[part]
-            for part in self._wire
+            for part in (self._chosen().wire if self._variants else self._wire)
         ]
+
+    def _chosen(self) -> Chosen:
+        """Return the variant that takes the arguments which are not None.
+
+        Raises:
+            TypeError: no variant takes exactly these arguments.
+        """
+        own = self.__dict__
+        given = tuple([n for n in self._names if own[n] is not None and n not in self._text])
+        found = self._choices.get(given)
+        if found is None:
+            found = self._choices[given] = choose(type(self).__name__, self._variants, given)
+        return found
 
     @property
     def text_values(self) -> dict[str, str]:
@@ -183,6 +212,11 @@ class Request(Message, Generic[Result]):
         cls.command = command
 
     @property
+    def variant_index(self) -> int | None:
+        """The index of the variant that the arguments choose; None: their number decides."""
+        return self._chosen().variant if self._variants else None
+
+    @property
     def values(self) -> tuple[Any, ...]:
         """The values of the frame in the order of the wire, as ``codec.encode`` takes them.
 
@@ -205,19 +239,27 @@ class Reply(Message, Generic[Result]):
     _result_type: ClassVar[Callable[..., Any] | None] = None
 
     def __init_subclass__(
-        cls, *, to: type[Request[Any]], result: Callable[..., Any] | None = None, **layout: Any
+        cls,
+        *,
+        to: type[Request[Any]],
+        result: Callable[..., Any] | None = None,
+        results: tuple[str, ...] | None = None,
+        **layout: Any,
     ) -> None:
         """Record the request's class, and what every message declares.
 
         Args:
             to: the class of the request.
             result: the named tuple of the results, if there are several.
+            results: the fields that are results; None: those that every variant has.
             layout: arguments for :meth:`_declare`.
         """
         cls._declare(**layout)
         cls.command = to.command
         cls.request_type = to
-        cls._results = tuple([name for name in cls._names if name not in cls.__dict__])
+        if results is None:
+            results = tuple([name for name in cls._names if name not in cls.__dict__])
+        cls._results = results
         cls._result_type = result
         to.reply_type = cls
 
@@ -273,7 +315,9 @@ def _converters_of(message: type[Message]) -> dict[str, Callable[[Any], Any]]:
     hints = get_type_hints(message)
     found: dict[str, Callable[[Any], Any]] = {}
     for name in message._names:
-        convert = next(filter(None, map(_converter, (hints[name], *get_args(hints[name])))), None)
+        every = [*filter(None, map(_converter, (hints[name], *get_args(hints[name]))))]
+        # Where variants differ in their enum, the field keeps its number.
+        convert = every[0] if len(every) == 1 else None
         if name in message._radians:
             convert = _in_radians(convert)
         if convert is not None:

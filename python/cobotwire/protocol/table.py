@@ -12,14 +12,14 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.errors import UsageError, did_you_mean
-from cobotwire.protocol.fields import Case, Field, FieldKind, Variant
+from cobotwire.protocol.fields import Case, Field, FieldKind, Variant, named_fields
 from cobotwire.protocol.frame_format import Check, FrameFormat
 from cobotwire.protocol.made_messages import (
-    FieldShape,
-    MessageShape,
     MessageTypes,
     generated_types,
     made_types,
+    reply_shape,
+    request_shape,
 )
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.numbers import Number
@@ -110,7 +110,8 @@ class Command:
     by its ``role``. ``read_by`` names the query that reads back what the command has set.
     ``samples`` lists, by argument, the raw values that a conformance run may send, for the first
     variant with these arguments; if it is empty, the run may send all legal values. ``agrees_with``
-    names the queries that report the same quantity while the arm rests.
+    names the queries that report the same quantity while the arm rests. ``arguments`` is the order
+    of the method's arguments; if it is empty, they have the order of the wire.
     """
 
     id: int
@@ -130,9 +131,16 @@ class Command:
     read_by: ReadBack | None = None
     samples: tuple[tuple[tuple[str, tuple[int, ...]], ...], ...] = ()
     agrees_with: tuple[str, ...] = ()
+    arguments: tuple[str, ...] = ()
     package: str = field(default="", compare=False, repr=False)
     """The generated package that holds the message types; empty if there is none."""
     _types: list[MessageTypes] = field(default_factory=list, init=False, compare=False, repr=False)
+
+    @property
+    def argument_names(self) -> tuple[str, ...]:
+        """The arguments of the client's method in their order."""
+        text = self.request_text.fields if self.request_text else ()
+        return self.arguments or (*named_fields(self.request), *text)
 
     @property
     def request_type(self) -> type[Request[Any]]:
@@ -149,9 +157,12 @@ class Command:
             if self.package:
                 found = generated_types(self.package, self.name)
             else:
-                request, reply = _shape(self.request, self.request_text), None
+                texts = self.request_text.fields if self.request_text else ()
+                request = request_shape(self.request, texts, self.argument_names)
+                reply = None
                 if self.reply or self.text:
-                    reply = _shape(self.reply, self.text)
+                    texts = self.text.fields if self.text else ()
+                    reply = reply_shape(self.reply, texts, self.ack)
                 found = made_types(self.name, request, reply)
             self._types.append(found)
         return self._types[0]
@@ -169,30 +180,6 @@ class Command:
     def variants(self, direction: Direction) -> tuple[Variant, ...]:
         """Return the variants of this command's message in one direction."""
         return self.request if direction == "request" else self.reply
-
-
-def _shape(variants: tuple[Variant, ...], text: TextRequest | TextReply | None) -> MessageShape:
-    """Return what the class of a message needs to know; text fields are outside the frame."""
-    longest_first = sorted(variants, key=lambda variant: len(variant.fields), reverse=True)
-    fields = {field.name: field for variant in longest_first for field in variant.fields}
-    return MessageShape(
-        tuple(
-            FieldShape(name, _annotation(field), field.echo or not _in_all(name, variants))
-            for name, field in fields.items()
-        ),
-        text.fields if text else (),
-    )
-
-
-def _in_all(name: str, variants: tuple[Variant, ...]) -> bool:
-    return all(any(field.name == name for field in variant.fields) for variant in variants)
-
-
-def _annotation(field: Field) -> str:
-    if field.kind == "flag":
-        return "bool"
-    word = "float" if any(number.real for number in field.numbers) else "int"
-    return f"Sequence[{word}]" if field.many else word
 
 
 class Dimensions(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame, Noise
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Command
 from cobotwire.session import text
 
@@ -62,7 +62,7 @@ class DeviceSession:
     def encode_reply(
         self, name: str, values: Mapping[str, Any], address: int | None = None
     ) -> bytes:
-        """Return the bytes of a reply: the variant that has exactly these fields.
+        """Return the bytes of a reply: the first variant with these fields that allows the values.
 
         ``address`` is that of the device; None: the edition's first one, if it has addresses.
 
@@ -72,11 +72,17 @@ class DeviceSession:
         command = self._codec.table.command(name)
         if command.text is not None:
             return text.encode(command.text, values)
-        for variant in command.reply:
+        rejection: UsageError | None = None
+        for index, variant in enumerate(command.reply):
             names = [field.name for field in variant.fields]
             if set(names) == set(values):
-                row = [values[field] for field in names]
-                return self._codec.encode(name, "reply", row, address=address)
+                given = [values[field] for field in names]
+                try:
+                    return self._codec.encode(name, "reply", given, variant=index, address=address)
+                except UsageError as error:
+                    rejection = rejection or error
+        if rejection is not None:
+            raise rejection
         return self._codec.encode(name, "reply", tuple(values.values()), address=address)
 
     def _sort(self, received: Sequence[Event]) -> list[DeviceEvent]:

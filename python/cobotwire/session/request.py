@@ -56,20 +56,26 @@ class RequestEncoder:
         command, _ = self._command(request.command)
         texts = None if command.request_text is None else request.text_values
         try:
-            return self.encode(request.command, values, texts)
+            return self.encode(request.command, values, texts, request.variant_index)
         except UsageError as error:
             raise _in_units_of_caller(error, command, request) from None
 
     def encode(
-        self, name: str, values: Sequence[Any], text_values: Mapping[str, str] | None = None
+        self,
+        name: str,
+        values: Sequence[Any],
+        text_values: Mapping[str, str] | None = None,
+        variant: int | None = None,
     ) -> EncodedRequest:
         """Validate and encode a request by its command's name.
+
+        Without ``variant``, it is the first one with that number of values that allows them.
 
         Raises:
             UsageError: there is no such command, or an argument is not allowed.
         """
         command, can_repeat = self._command(name)
-        frame = self._codec.encode(name, "request", values, address=self._address)
+        frame = self._codec.encode(name, "request", values, variant=variant, address=self._address)
         if command.request_text is not None:
             sent_text = text.encode(command.request_text, text_values or {})
             return EncodedRequest(command, frame, sent_text, {}, self._replier)

@@ -68,6 +68,8 @@ NEW: dict[str, Any] = {
     "printed": b"\xfe",
     "frame": b"\xfe",
     "const": 1,
+    "default": (1,),
+    "arguments": ("new",),
     "example": 3,
     "line": 3,
 }

@@ -93,4 +93,5 @@ def _command(
         notes=reader.get(spec.notes),
         disputed=disputes(reader, spec.disputed),
         changes=tuple(parts.changes.get(name, ())),
+        arguments=reader.get(spec.arguments),
     )

@@ -7,10 +7,12 @@ from typing import Literal
 
 from cobotwire_codegen import language
 from cobotwire_codegen.build.types import Types, stand_in
+from cobotwire_codegen.build.vectors import plain_value
 from cobotwire_codegen.errors import nearest
 from cobotwire_codegen.load import Node, Sequence
 from cobotwire_codegen.model import Field, Member, Type, Variant
 from cobotwire_codegen.reader import Reader, label
+from cobotwire_codegen.wire import raw_values
 
 Direction = Literal["request", "reply"]
 # The largest number of values of a selector, since its cases list each value.
@@ -78,6 +80,7 @@ def _read(node: Node, direction: Direction, outer: Reader, types: Types) -> tupl
         const=_const(reader, type),
         selector=reader.get(language.SelectedRequestField.selector) if is_selected else "",
         cases=(),
+        default=_default(reader, type),
     )
     return field, reader
 
@@ -114,6 +117,25 @@ def _const(reader: Reader, type: Type) -> int | None:
         reader.problem("bad-const", f"the const {value} of {reader.what} does not fit its type")
         return None
     return value
+
+
+def _default(reader: Reader, type: Type) -> tuple[int, ...] | None:
+    """Return the raw values of an argument's default."""
+    key = language.RequestField.default
+    node = reader.node(key) if key.name in reader.record.keys() else None  # noqa: SIM118
+    if node is None:
+        return None
+    spec = language.RequestField
+    if reader.node(spec.const) is not None or reader.get(spec.optional_):
+        other = "const" if reader.node(spec.const) is not None else "optional"
+        message = f"{reader.what} has both a default and {other}; keep one of them"
+        reader.problem("bad-default", message, node.place)
+        return None
+    try:
+        return raw_values(type, reader.get(spec.name), plain_value(node))
+    except ValueError as error:
+        reader.problem("bad-default", f"the default of {reader.what}: {error}", node.place)
+        return None
 
 
 def _selected(

@@ -70,12 +70,13 @@ def _values(reader: Reader) -> tuple[tuple[str, object], ...]:
     if node is None:
         return ()
     found = entries_of(node, f"{key.name} of {reader.what}", reader.problem)
-    return tuple((name, _plain(value)) for name, _, value in found)
+    return tuple((name, plain_value(value)) for name, _, value in found)
 
 
-def _plain(node: Node) -> object:
+def plain_value(node: Node) -> object:
+    """Return a value as the spec states it: an exact number, a word, true or false, or a tuple."""
     if isinstance(node, Sequence):
-        return tuple(_plain(item) for item in node.items)
+        return tuple(plain_value(item) for item in node.items)
     value = node.value if isinstance(node, Scalar) else None
     # Integers become int; every other number stays an exact fraction.
     return int(value) if isinstance(value, Fraction) and value.denominator == 1 else value

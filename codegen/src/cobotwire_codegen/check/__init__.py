@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from cobotwire_codegen.check import (
+    arguments,
     commands,
     evidence,
     names,
@@ -25,6 +26,7 @@ RULES: tuple[Rule, ...] = (
     *types.RULES,
     *commands.RULES,
     *variants.RULES,
+    *arguments.RULES,
     *read_back.RULES,
     *roles.RULES,
     *evidence.RULES,

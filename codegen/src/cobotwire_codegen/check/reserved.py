@@ -24,6 +24,7 @@ RESERVED_FIELDS = _ANNOTATIONS | {
     "self",
     "text_values",
     "values",
+    "variant_index",
 }
 # The attributes that every client has in addition to its commands. The generator does not import
 # the package, so they are repeated here; a test compares them with the classes.

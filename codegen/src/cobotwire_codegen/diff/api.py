@@ -14,7 +14,7 @@ from cobotwire_codegen.render.parameters import (
     Parameter,
     argument_type,
     parameters,
-    result_type,
+    reported_type,
     results,
 )
 
@@ -27,9 +27,19 @@ def signature_changes(where: str, old: Command, new: Command, known: Known) -> I
     stayed = [name for name in after if name in before]
     for name in stayed:
         yield from _argument(f"{where}/request/{name}", before[name], after[name], known)
-    former = [name for name in before if name in after]
-    if former != stayed:
-        yield finding("argument-order-changed", where, words.names(former), words.names(stayed))
+    yield from _order(where, old, new, names)
+
+
+def _order(where: str, old: Command, new: Command, names: dict[str, str]) -> Iterator[Finding]:
+    sides = [[names.get(n, n) for n in old.argument_names], [*new.argument_names]]
+    before, after = ([n for n in side if n in sides[0] and n in sides[1]] for side in sides)
+    stated = [[names.get(n, n) for n in old.arguments], [*new.arguments]]
+    # An argument that is added or removed has a finding of its own.
+    same = set(sides[0]) == set(sides[1]) or not all(stated)
+    if before != after:
+        yield finding("argument-order-changed", where, words.names(before), words.names(after))
+    elif stated[0] != stated[1] and same:
+        yield finding("arguments-restated", where, "", words.names(new.argument_names))
 
 
 def _argument(where: str, old: Parameter, new: Parameter, known: Known) -> Iterator[Finding]:
@@ -47,8 +57,8 @@ def _argument(where: str, old: Parameter, new: Parameter, known: Known) -> Itera
 def result_changes(where: str, old: Command, new: Command, known: Known) -> Iterator[Finding]:
     """Compare the method's result, except for what the reply's findings already report."""
     names = renames(old.replies, new.replies)
-    before = {names.get(p.name, p.name): _renamed(result_type(p), known) for p in results(old)}
-    after = {p.name: result_type(p) for p in results(new)}
+    before = {names.get(p.name, p.name): _renamed(reported_type(p), known) for p in results(old)}
+    after = {p.name: reported_type(p) for p in results(new)}
     # Results that were added or removed with their fields are reported there.
     old_names = {names.get(f.name, f.name) for variant in old.replies for f in variant}
     reported = old_names ^ {f.name for variant in new.replies for f in variant}

@@ -9,6 +9,7 @@ from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.match import match, order
 from cobotwire_codegen.diff.types import Known, members, type_changes
 from cobotwire_codegen.model import Field, Member, Type
+from cobotwire_codegen.render.arguments import default_in_words
 
 
 def field_changes(where: str, part: str, old: Field, new: Field, known: Known) -> Iterator[Finding]:
@@ -24,6 +25,9 @@ def field_changes(where: str, part: str, old: Field, new: Field, known: Known) -
         yield finding(rule, where, old.echo or "none", new.echo or "none")
     if old.optional != new.optional:
         yield finding(f"{part}-now-{'optional' if new.optional else 'required'}", where)
+    if old.default != new.default:
+        kind = "changed" if old.default and new.default else "added" if new.default else "removed"
+        yield finding(f"default-{kind}", where, default_in_words(old), default_in_words(new))
     yield from _types(where, old, new, known)
     # A description that comes from the type is reported for the type.
     if (old.doc, new.doc) != (old.type.doc, new.type.doc):

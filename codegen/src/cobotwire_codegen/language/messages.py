@@ -76,6 +76,14 @@ class _Selected(Record):
 class RequestField(_Typed, _Field):
     """An argument of a request."""
 
+    default = optional(
+        Anything(
+            "a value of the type, as a vector states it",
+            {"type": ["number", "string", "boolean", "array"]},
+        ),
+        "The value that is sent if the caller leaves the argument out: a number in the type's "
+        "unit, a member, true or false, or a list for a value type.",
+    )
     EXAMPLE = '{name: speed, type: speed, doc: "How fast, in percent.", optional: true}'
 
 
@@ -169,8 +177,13 @@ class Command(Record):
     request_variants = optional(
         ListedTwice(ANY_REQUEST_FIELD),
         "The variants of the request, the full one first, if they differ in more than optional "
-        "fields at the end. Decoders distinguish them by length, then by the values that each "
-        "allows.",
+        "fields at the end. Decoders distinguish them by length, then by constants. The arguments "
+        "of a call choose the variant, so no two variants may have the same arguments.",
+    )
+    arguments = optional(
+        Names(),
+        "The names of all arguments in the order of the method, if it is not that of the wire. "
+        "Arguments that can be left out come last.",
     )
     reply = optional(
         Listed(ANY_REPLY_FIELD, _NO_FIELDS), "The data of the reply. Left out: no reply."

@@ -11,6 +11,7 @@ from cobotwire_codegen.model.commands import (
     Samples,
     Text,
     Variant,
+    named_fields,
 )
 from cobotwire_codegen.model.edition import (
     Address,
@@ -62,4 +63,5 @@ __all__ = [
     "Variant",
     "Vector",
     "Wire",
+    "named_fields",
 ]

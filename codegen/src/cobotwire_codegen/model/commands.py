@@ -16,7 +16,8 @@ class Field:
 
     When another field, the ``selector``, decides the type, ``cases`` holds a type for each value of
     the selector, and ``type`` is the first of them. A field with ``const`` always holds that raw
-    value; the caller does not give it.
+    value; the caller does not give it. ``default`` are the raw values of an argument that the
+    caller leaves out.
     """
 
     place: Place
@@ -28,6 +29,7 @@ class Field:
     const: int | None
     selector: str
     cases: tuple[tuple[Member, Type], ...]
+    default: tuple[int, ...] | None = None
 
     @property
     def smallest(self) -> object:
@@ -38,6 +40,21 @@ class Field:
 
 
 Variant = tuple[Field, ...]
+
+
+def named_fields(variants: tuple[Variant, ...]) -> dict[str, tuple[Field, ...]]:
+    """Return the fields of a message that are no constants, those of the longest variant first.
+
+    A name has a field for each variant that contains it.
+    """
+    found: dict[str, list[Field]] = {}
+    for variant in sorted(variants, key=len, reverse=True):
+        for field in variant:
+            if field.const is None:
+                found.setdefault(field.name, []).append(field)
+    return {name: tuple(fields) for name, fields in found.items()}
+
+
 # Raw values to send by argument, for the first variant that has these arguments.
 Samples = tuple[tuple[str, tuple[int, ...]], ...]
 
@@ -78,6 +95,7 @@ class Command:
     the commands that use the same id with other data.
     ``samples`` are the raw values that a conformance run may send when not every legal value is
     harmless; ``agrees_with`` lists queries that report the same values while the arm rests.
+    ``arguments`` is the order of the method's arguments, if it is not that of the wire.
     """
 
     place: Place
@@ -102,11 +120,41 @@ class Command:
     notes: tuple[str, ...]
     disputed: tuple[Dispute, ...]
     changes: tuple[Change, ...]
+    arguments: tuple[str, ...] = ()
 
     @property
     def reply(self) -> Variant:
         """The full variant of the reply; no fields if there is no reply."""
         return self.replies[0] if self.replies else ()
+
+    @property
+    def text_arguments(self) -> tuple[str, ...]:
+        """The arguments that follow the request as text outside the frame."""
+        return tuple(name for name, _ in self.request_text.fields) if self.request_text else ()
+
+    @property
+    def argument_names(self) -> tuple[str, ...]:
+        """The method's arguments in their order: by default, first those that must be given."""
+        if self.arguments:
+            return self.arguments
+        found = named_fields(self.requests)
+        needed = [name for name in found if self.needs(name)]
+        others = sorted(found.keys() - {*needed}, key=list(found).index)
+        others.sort(key=lambda name: len(found[name]), reverse=True)
+        return (*needed, *self.text_arguments, *others)
+
+    @property
+    def method_order(self) -> tuple[str, ...]:
+        """The order of the method's arguments; empty if it is that of the fields, then the text."""
+        names = (*named_fields(self.requests), *self.text_arguments)
+        return () if names == self.argument_names else self.argument_names
+
+    def needs(self, name: str) -> bool:
+        """Return whether every call must give an argument."""
+        fields = named_fields(self.requests).get(name, ())
+        if not fields:
+            return name in self.text_arguments
+        return len(fields) == len(self.requests) and all(f.default is None for f in fields)
 
     @property
     def fields(self) -> tuple[Field, ...]:

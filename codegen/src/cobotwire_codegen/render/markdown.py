@@ -19,6 +19,7 @@ from cobotwire_codegen.model import (
     Value,
     Vector,
 )
+from cobotwire_codegen.render.arguments import constant_in_words, default_in_words
 from cobotwire_codegen.render.escape_markdown import code as code
 from cobotwire_codegen.render.words import decimal
 from cobotwire_codegen.wire import size
@@ -165,7 +166,9 @@ def field_doc(field: Field) -> str:
     if field.optional:
         words.append("May be left out.")
     if field.const is not None:
-        words.append(f"Always {field.const}.")
+        words.append(f"Always {constant_in_words(field)}.")
+    if field.default is not None:
+        words.append(f"Left out: {default_in_words(field)}.")
     return " ".join(words)
 
 

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 from cobotwire_codegen.lower import message_class
-from cobotwire_codegen.model import Command, Enum, Field, Type, Value
+from cobotwire_codegen.model import Command, Enum, Field, Type, Value, Variant
+from cobotwire_codegen.render.arguments import (
+    Argument,
+    arguments,
+    keyword_only,
+    overloads,
+    python_value,
+)
 from cobotwire_codegen.render.layout import laid_out
 from cobotwire_codegen.render.parameters import (
     Parameter,
@@ -29,6 +38,8 @@ class MessageClass:
     """The base class and the keywords."""
     doc: str
     fields: tuple[str, ...]
+    constructors: tuple[str, ...] = ()
+    """The heads of the constructor, one for each variant, if the fields do not state it."""
 
     @property
     def head(self) -> str:
@@ -44,34 +55,67 @@ def message_classes(command: Command) -> tuple[MessageClass, ...]:
 
 
 def _request(command: Command) -> MessageClass:
-    arguments = parameters(command)
-    declared = [argument.name for argument in arguments]
-    longest = max(command.requests, key=len)
-    wire = [_part(field) for field in longest]
+    given = arguments(command)
+    text = command.text_arguments
     keywords = [f'command="{command.name}"']
-    if wire != [_quoted(name) for name in declared]:
-        keywords.append(f"wire={_row(wire)}")
-    keywords += _radians(arguments)
-    text = [name for name, _ in command.request_text.fields] if command.request_text else []
+    names = tuple(argument.name for argument in given if argument.name not in text)
+    rows = [_row_of(variant) for variant in command.requests]
+    keywords += _layout(rows, names, _are_prefixes(command))
+    keywords += _radians(parameters(command))
     if text:
         keywords.append(f"text={_row(map(_quoted, text))}")
-    fields = [f"{argument.name}: {argument_type(argument)}" for argument in arguments]
-    # Arguments with a default come last, also after text.
-    defaults = [f"{f} = None" for f, a in zip(fields, arguments) if a.optional]
-    needed = [f for f, a in zip(fields, arguments) if not a.optional]
     return MessageClass(
         message_class(command.name),
         (f"Request[{returns(command)}]", *keywords),
         f"{command.title}.",
-        (*needed, *(f"{name}: str" for name in text), *defaults),
+        tuple(argument.declaration for argument in given),
+        tuple(constructor(command, variant) for variant in overloads(command)),
     )
+
+
+def _are_prefixes(command: Command) -> bool:
+    """Return whether the number of values decides the variant of a request."""
+    rows = sorted((_row_of(variant) for variant in command.requests), key=len)
+    plain = all(field.default is None for variant in command.requests for field in variant)
+    steps = pairwise(rows)
+    return (plain or len(rows) == 1) and all(
+        len(short) < len(long)
+        and long[: len(short)] == short
+        and all(part.startswith('"') for part in long[len(short) :])
+        for short, long in steps
+    )
+
+
+def _are_shortened(rows: list[tuple[str, ...]]) -> bool:
+    """Return whether the number of values decides the variant of a reply: one leaves fields out."""
+    different = sorted(set(rows), key=len)
+    if len(different) <= 1:
+        return True
+    short, long = different[0], different[-1]
+    left_out = [part for part in long if part not in short]
+    kept = tuple(part for part in long if part in short)
+    return len(different) == 2 and kept == short and all(p.startswith('"') for p in left_out)
+
+
+def constructor(command: Command, variant: tuple[Argument, ...]) -> str:
+    """Return the head of a request's constructor for the arguments of one variant."""
+    return laid_out("def __init__(", declared(command, variant), ") -> None: ...", 8)
+
+
+def declared(command: Command, given: tuple[Argument, ...]) -> list[str]:
+    """Return the arguments of a method's head; those without a position come after a star."""
+    named = keyword_only(command)
+    placed = [argument.declaration for argument in given if argument.name not in named]
+    others = [argument.declaration for argument in given if argument.name in named]
+    return ["self", *placed, *(["*", *others] if others else [])]
 
 
 def _reply(command: Command) -> MessageClass:
     found = results(command)
     every = reply_parameters(command)
-    others = [parameter for parameter in every if parameter not in found]
-    fields = [f"{result.name}: {result_type(result)}" for result in found]
+    needed = [result for result in found if not result.optional]
+    others = [parameter for parameter in every if parameter not in needed]
+    fields = [f"{result.name}: {result_type(result)}" for result in needed]
     fields += [f"{other.name}: {result_type(other)} | None = None" for other in others]
     keywords = [f"to={message_class(command.name)}"]
     if command.text is not None:
@@ -81,9 +125,10 @@ def _reply(command: Command) -> MessageClass:
         keywords.append(f"text={_row(map(_quoted, names))}")
     elif len(found) > 1:
         keywords.append(f"result={result_class(command)}")
-    wire = [_part(field) for field in max(command.replies, key=len, default=())]
-    if wire != [_quoted(parameter.name) for parameter in (*found, *others)]:
-        keywords.append(f"wire={_row(wire)}")
+    if found and not needed:
+        keywords.append(f"results={_row(_quoted(result.name) for result in found)}")
+    rows = [_row_of(variant) for variant in command.replies]
+    keywords += _layout(rows, tuple(p.name for p in (*needed, *others)), _are_shortened(rows))
     keywords += _radians(every)
     kind = "Acknowledgement of" if command.ack else "Reply to"
     return MessageClass(
@@ -94,8 +139,29 @@ def _reply(command: Command) -> MessageClass:
     )
 
 
+def _layout(rows: list[tuple[str, ...]], names: tuple[str, ...], plain: bool) -> list[str]:
+    """Return the keywords that state the variants; ``plain`` if their lengths tell them apart."""
+    if not plain:
+        return [f"variants={_row(map(_row, rows))}"]
+    wire = tuple(_name_or_constant(part) for part in max(rows, key=len, default=()))
+    return [f"wire={_row(wire)}"] if wire != tuple(map(_quoted, names)) else []
+
+
+def _name_or_constant(part: str) -> str:
+    return part[1:].split(",")[0] if part.startswith("(") else part
+
+
+def _row_of(variant: Variant) -> tuple[str, ...]:
+    """Return the parts of a variant as text: names, names with defaults, constants."""
+    return tuple(map(_part, variant))
+
+
 def _part(field: Field) -> str:
-    return _quoted(field.name) if field.const is None else str(field.const)
+    if field.const is not None:
+        return python_value(field.type, (field.const,), on_wire=True)
+    if field.default is not None:
+        return f"({_quoted(field.name)}, {python_value(field.type, field.default)})"
+    return _quoted(field.name)
 
 
 def _radians(parameters: list[Parameter]) -> list[str]:
@@ -128,7 +194,7 @@ def classes_in_method(command: Command) -> set[str]:
 
 
 def _classes_named(command: Command, annotations: list[str]) -> set[str]:
-    words = {word for annotation in annotations for word in annotation.split(" | ")}
+    words = {word for annotation in annotations for word in re.findall(r"\w+", annotation)}
     types = [type for field in command.fields for type in (field.type, *_case_types(field))]
     return {t.class_name for t in types if isinstance(t, Enum | Value) and t.class_name in words}
 

@@ -5,7 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Enum, Field, Flag, Quantity, Type, Value, Variant
+from cobotwire_codegen.model import (
+    Command,
+    Enum,
+    Field,
+    Flag,
+    Quantity,
+    Type,
+    Value,
+    Variant,
+    named_fields,
+)
 from cobotwire_codegen.render.words import allowed
 
 
@@ -34,22 +44,41 @@ class Parameter:
         return " or ".join(dict.fromkeys(allowed(field) for field in self.fields))
 
     @property
+    def default(self) -> tuple[int, ...] | None:
+        """The raw values that all variants use if the argument is left out; None: they differ."""
+        [*defaults] = {field.default for field in self.fields}
+        return defaults[0] if len(defaults) == 1 and not self.optional else None
+
+    @property
+    def may_be_none(self) -> bool:
+        """Whether None says that the argument is left out."""
+        with_default = any(field.default is not None for field in self.fields)
+        return self.default is None and (self.optional or with_default)
+
+    @property
     def radians(self) -> bool:
         """Whether the API uses radians where the wire carries degrees."""
         return any(_radians(type) for type in self.types)
 
 
 def parameters(command: Command) -> list[Parameter]:
-    """Return the arguments of a command: first those that every variant of the request has."""
-    return sorted(_by_name(command.requests), key=lambda parameter: parameter.optional)
+    """Return the arguments of a command that are fields, in the order of its method."""
+    found = {parameter.name: parameter for parameter in _by_name(command.requests)}
+    order = command.argument_names
+    # A name that the order lacks is a problem that the checker reports.
+    return [found[name] for name in dict.fromkeys((*order, *found)) if name in found]
 
 
 def results(command: Command) -> list[Parameter]:
-    """Return what every variant of the reply reports and the request did not contain."""
+    """Return what every variant of the reply reports and the request did not contain.
+
+    If the variants have nothing in common, these are all their fields, each of which may be absent.
+    """
     if command.ack:
         return []
     found = _by_name(command.replies)
-    return [p for p in found if not p.optional and not any(field.echo for field in p.fields)]
+    reported = [p for p in found if not any(field.echo for field in p.fields)]
+    return [p for p in reported if not p.optional] or reported
 
 
 def reply_parameters(command: Command) -> list[Parameter]:
@@ -58,15 +87,9 @@ def reply_parameters(command: Command) -> list[Parameter]:
 
 
 def _by_name(variants: tuple[Variant, ...]) -> list[Parameter]:
-    """Return the fields of all variants by name, those of the longest variant first."""
-    found: dict[str, list[Field]] = {}
-    for variant in sorted(variants, key=len, reverse=True):
-        for field in variant:
-            if field.const is None:
-                found.setdefault(field.name, []).append(field)
     return [
-        Parameter(name, tuple(fields), len(fields) < len(variants))
-        for name, fields in found.items()
+        Parameter(name, fields, len(fields) < len(variants))
+        for name, fields in named_fields(variants).items()
     ]
 
 
@@ -81,7 +104,7 @@ def argument_type(parameter: Parameter) -> str:
     words = dict.fromkeys(_argument(type) for type in parameter.types)
     if set(words) == {"int", "float"}:
         words = {"float": None}
-    return " | ".join([*words, *(["None"] if parameter.optional else [])])
+    return " | ".join([*words, *(["None"] if parameter.may_be_none else [])])
 
 
 def _argument(type: Type) -> str:
@@ -125,7 +148,12 @@ def returns(command: Command) -> str:
         return command.text.class_name
     if not found:
         return "None"
-    return result_type(found[0]) if len(found) == 1 else result_class(command)
+    return reported_type(found[0]) if len(found) == 1 else result_class(command)
+
+
+def reported_type(result: Parameter) -> str:
+    """Return the annotation of a result, which is None if the reply is a variant without it."""
+    return result_type(result) + (" | None" if result.optional else "")
 
 
 def result_class(command: Command) -> str:

@@ -6,15 +6,10 @@ import re
 
 from cobotwire_codegen.lower import message_class
 from cobotwire_codegen.model import Command, Edition, Enum, Family, Flag, Quantity, Value
-from cobotwire_codegen.render.layout import WIDTH, laid_out
-from cobotwire_codegen.render.messages import classes_in_method
-from cobotwire_codegen.render.parameters import (
-    Parameter,
-    argument_type,
-    parameters,
-    results,
-    returns,
-)
+from cobotwire_codegen.render.arguments import Argument, arguments, overloads
+from cobotwire_codegen.render.layout import WIDTH, laid_out, oneline
+from cobotwire_codegen.render.messages import classes_in_method, declared
+from cobotwire_codegen.render.parameters import Parameter, results, returns
 from cobotwire_codegen.render.way import BLOCKING, Way
 from cobotwire_codegen.render.words import units
 
@@ -30,31 +25,38 @@ _SENTENCE = re.compile(r"(?<=[.])\s+(?=[A-Z])")
 
 def signature(command: Command, way: Way = BLOCKING) -> str:
     """Return the head of a command's method."""
-    parts = ["self"]
-    arguments = parameters(command)
-    parts += [f"{a.name}: {argument_type(a)}" for a in arguments if not a.optional]
-    parts += [f"{name}: str" for name in _text_arguments(command)]
-    parts += [f"{a.name}: {argument_type(a)} = None" for a in arguments if a.optional]
+    return _head(command, arguments(command), way, ":")
+
+
+def overload_signatures(command: Command, way: Way = BLOCKING) -> list[str]:
+    """Return the heads of a method's overloads, one for each variant; none if it has none."""
+    return [_head(command, variant, way, ": ...") for variant in overloads(command)]
+
+
+def signatures(command: Command) -> list[str]:
+    """Return every form in which a method can be called, on one line each."""
+    heads = overload_signatures(command) or [signature(command)]
+    return [oneline(head.removesuffix(" ...")) for head in heads]
+
+
+def _head(command: Command, given: tuple[Argument, ...], way: Way, end: str) -> str:
+    parts = declared(command, given)
     if command.ack:
-        parts += ["*", "ack_within: float | None = None"]
-    return laid_out(f"{way.async_}def {command.name}(", parts, f") -> {returns(command)}:", 4)
+        parts += [*([] if "*" in parts else ["*"]), "ack_within: float | None = None"]
+    return laid_out(f"{way.async_}def {command.name}(", parts, f") -> {returns(command)}{end}", 4)
 
 
 def call(command: Command, family: Family, way: Way) -> str:
     """Return the body of a command's method."""
-    arguments = parameters(command)
-    given = [a.name for a in arguments if not a.optional]
-    given += [*_text_arguments(command), *(a.name for a in arguments if a.optional)]
+    given = [argument.name for argument in arguments(command)]
     head = f"return {way.await_}self._call(" if command.awaits_reply else f"{way.await_}self._send("
-    opening = f"messages.{family.name}.{message_class(command.name)}("
+    # The constructor of a request with overloads accepts only what one of them accepts.
+    made = "._of" if overloads(command) else ""
+    opening = f"messages.{family.name}.{message_class(command.name)}{made}("
     request = f"{opening}{', '.join(given)})"
     if 12 + len(request) + len(",") > WIDTH:
         request = laid_out(opening, given, ")", 12)
     return laid_out(head, [request, "ack_within"] if command.ack else [request], ")", 8)
-
-
-def _text_arguments(command: Command) -> list[str]:
-    return [name for name, _ in command.request_text.fields] if command.request_text else []
 
 
 def description(command: Command) -> str:
@@ -75,19 +77,7 @@ def _stems(text: str) -> set[str]:
 
 def argument_lines(command: Command) -> list[str]:
     """Return a line of the docstring for each argument, with its range and unit."""
-    arguments = parameters(command)
-    lines = [_argument_line(argument) for argument in arguments if not argument.optional]
-    if command.request_text is not None:
-        lines += [f"{name}: {_clause(doc)} (ASCII)." for name, doc in command.request_text.fields]
-    return lines + [_argument_line(argument) for argument in arguments if argument.optional]
-
-
-def _argument_line(argument: Parameter) -> str:
-    allowed = (
-        f"in radians; on the wire {argument.allowed}" if argument.radians else argument.allowed
-    )
-    optional = "; optional" if argument.optional else ""
-    return f"{argument.name}: {_clause(argument.doc)} ({allowed}{optional})."
+    return [argument.doc for argument in arguments(command)]
 
 
 def result_line(command: Command) -> str:
@@ -132,8 +122,15 @@ def item_doc(item: Quantity) -> str:
 def imports(family: Family) -> tuple[set[str], bool]:
     """Return the enums and named tuples of a family's methods, and whether these use Sequence."""
     used = set().union(*(classes_in_method(command) for command in family.commands))
-    rows = [p for c in family.commands for p in parameters(c) if isinstance(p.types[0], Value)]
-    return used, bool(rows)
+    found = (argument for command in family.commands for argument in arguments(command))
+    return used, any("Sequence[" in argument.annotation for argument in found)
+
+
+def typing_names(family: Family) -> list[str]:
+    """Return what a family's methods import from ``typing``."""
+    used, sequence = imports(family)
+    names = ["TYPE_CHECKING"] if used or sequence else []
+    return names + (["overload"] if any(map(overloads, family.commands)) else [])
 
 
 def moves(edition: Edition) -> bool:

@@ -8,7 +8,7 @@ from cobotwire_codegen.model import Command, Edition, Enum, Family, Value
 from cobotwire_codegen.render import python_api
 from cobotwire_codegen.render.layout import import_line
 from cobotwire_codegen.render.messages import classes_used, message_classes
-from cobotwire_codegen.render.parameters import result_type, results, returns
+from cobotwire_codegen.render.parameters import reported_type, results, returns
 from cobotwire_codegen.render.way import Way
 
 PACKAGE = "cobotwire.editions"
@@ -106,7 +106,11 @@ class Sharing:
         classes = [found for command in own for found in message_classes(command)]
         lines = []
         if any("Sequence[" in field for found in classes for field in found.fields):
-            lines += ["from collections.abc import Sequence", ""]
+            lines.append("from collections.abc import Sequence")
+        if any(found.constructors for found in classes):
+            lines.append("from typing import TYPE_CHECKING, Any, overload")
+        if lines:
+            lines.append("")
         shared = []
         if self.base is not None:
             for command in (c for c in family.commands if c.name in self.shared_commands):
@@ -157,7 +161,7 @@ def _classes(edition: Edition) -> dict[str, Any]:
         if command.text is not None:
             found[command.text.class_name] = (command.name, command.text.fields)
         elif len(results(command)) > 1:
-            parts = [(r.name, result_type(r), r.doc) for r in results(command)]
+            parts = [(r.name, reported_type(r), r.doc) for r in results(command)]
             found[returns(command)] = (command.name, parts)
     return found
 
@@ -174,6 +178,7 @@ def _methods(family: Family) -> Any:
         [
             (
                 python_api.signature(command),
+                python_api.overload_signatures(command),
                 command.title,
                 python_api.description(command),
                 python_api.argument_lines(command),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from cobotwire.protocol.arguments import choose
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command, Field, Variant
 
@@ -13,38 +14,51 @@ _FLAGS |= {"false": False, "no": False, "off": False, "0": False}
 
 
 def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
-    """Return the arguments by name; words come in the order of the fields or as ``name=value``.
+    """Return the arguments by name; words come in the order of the method or as ``name=value``.
 
-    Fields that a shorter variant of the request leaves out are optional; constant fields are not
-    arguments. The text that follows a request is an argument like the fields.
+    The given names choose the variant of the request. Arguments with a default may be left out. The
+    text that follows a request is an argument like the fields.
 
     Raises:
         UsageError: an argument is missing, unknown, given twice, or not a value of its field.
     """
     text = command.request_text.fields if command.request_text else ()
-    names = [*(field.name for field in _arguments(command.request[0])), *text]
-    given = _by_name(command, names, words)
-    for variant in command.request:
-        fields = _arguments(variant)
-        if {*(field.name for field in fields), *text} == set(given):
-            values = {field.name: parse_value(field, given[field.name]) for field in fields}
-            return values | {name: given[name] for name in text}
-    missing = next(name for name in names if name not in given)
-    message = f"{command.name}() is missing its argument {missing}; {_takes(names)}"
-    raise UsageError(missing, message=message)
+    given = _by_name(command, command.argument_names, words)
+    for name in text:
+        if name not in given:
+            message = f"{command.name}() is missing its argument {name}"
+            raise UsageError(name, message=f"{message}; {_takes(command.argument_names)}")
+    fields = {field.name: field for field in _variant(command, given).fields}
+    return {
+        name: word if name in text else parse_value(fields[name], word)
+        for name, word in given.items()
+    }
 
 
 def request_values(command: Command, given: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Return the values of the request's frame, constant fields included."""
-    fits = (v for v in command.request if all(field.name in given for field in _arguments(v)))
+    """Return the values of the request's frame: the arguments, defaults and constants."""
     return tuple(
-        given.get(field.name, field.choices and field.choices[0]) for field in next(fits).fields
+        given[field.name]
+        if field.name in given
+        else field.physical(field.default or (field.const or 0,))
+        for field in _variant(command, given).fields
     )
 
 
-def _arguments(variant: Variant) -> list[Field]:
-    """Return the fields that are arguments: all but those with one legal value and no label."""
-    return [field for field in variant.fields if len(field.choices) != 1 or field.labels]
+def variant_of(command: Command, given: Mapping[str, Any]) -> int:
+    """Return the index of the variant of a request that the given arguments choose."""
+    return command.request.index(_variant(command, given))
+
+
+def _variant(command: Command, given: Mapping[str, Any]) -> Variant:
+    text = command.request_text.fields if command.request_text else ()
+    fields = [name for name in command.argument_names if name in given and name not in text]
+    rows = tuple(variant.row for variant in command.request)
+    try:
+        chosen = choose(command.name, rows, fields)
+    except TypeError as error:
+        raise UsageError("arguments", message=str(error)) from None
+    return command.request[chosen.first]
 
 
 def _by_name(command: Command, names: Sequence[str], words: Sequence[str]) -> dict[str, str]:

@@ -35,11 +35,15 @@ _SCALES = (10, 100, 1000, 57.29577951308232)
 
 
 class ScriptLine(NamedTuple):
-    """A request that the client must send; ``place`` is its place in the script."""
+    """A request that the client must send; ``place`` is its place in the script.
+
+    ``variant`` is the index of its variant; None: the first that allows the values.
+    """
 
     command: Command
     values: tuple[Any, ...]
     place: str
+    variant: int | None = None
 
 
 class Script:
@@ -53,7 +57,10 @@ class Script:
         """
         self._codec = codec
         self._lines = list(lines)
-        self._frames = [codec.encode(line.command.name, "request", line.values) for line in lines]
+        self._frames = [
+            codec.encode(line.command.name, "request", line.values, variant=line.variant)
+            for line in lines
+        ]
         self._at = 0
         # The frame that was matched with the previous line: a wrong one may be repeated, too.
         self._taken = b""

@@ -6,13 +6,13 @@ emitted. It also fails if the wrong lines of an example do not cause the code, o
 
 from __future__ import annotations
 
-from cobotwire_codegen.author.codes import changes, files, messages, proof, types
+from cobotwire_codegen.author.codes import arguments, changes, files, messages, proof, types
 from cobotwire_codegen.author.codes.explanation import Explanation
 
 __all__ = ["CODES", "Explanation"]
 
 CODES: dict[str, Explanation] = {
     explanation.code: explanation
-    for part in (files, types, messages, proof, changes)
+    for part in (files, types, messages, arguments, proof, changes)
     for explanation in part.EXPLANATIONS
 }

@@ -1,0 +1,137 @@
+"""Describes the arguments of a method, in its order, and the combinations in which to give them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+from cobotwire_codegen.model import Command, Enum, Field, Flag, Quantity, Type, Value, Variant
+from cobotwire_codegen.render.parameters import Parameter, argument_type, parameters
+from cobotwire_codegen.render.words import decimal
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """An argument of a method: its annotation, and its default as text, empty if it has none."""
+
+    name: str
+    annotation: str
+    default: str
+    doc: str
+
+    @property
+    def declaration(self) -> str:
+        """The argument in the head of a method, or the attribute in the body of a class."""
+        default = f" = {self.default}" if self.default else ""
+        return f"{self.name}: {self.annotation}{default}"
+
+
+def arguments(command: Command) -> tuple[Argument, ...]:
+    """Return all arguments of a method in their order."""
+    fields = {parameter.name: parameter for parameter in parameters(command)}
+    return tuple(
+        _of_field(fields[name]) if name in fields else _of_text(command, name)
+        for name in command.argument_names
+    )
+
+
+def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
+    """Return the arguments of each variant; nothing if the head of the method states them.
+
+    It does if each variant adds one argument to the next shorter one, and no type differs.
+    """
+    found = parameters(command)
+    names = sorted(({f.name for f in v if f.const is None} for v in command.requests), key=len)
+    steps = pairwise(names)
+    chain = all(short < long and len(long) == len(short) + 1 for short, long in steps)
+    if chain and all(len({_annotation(field) for field in p.fields}) == 1 for p in found):
+        return ()
+    return tuple(_of_variant(command, variant) for variant in command.requests)
+
+
+def keyword_only(command: Command) -> set[str]:
+    """Return the arguments without a position: if variants differ, those that one of them lacks."""
+    if not overloads(command):
+        return set()
+    return {parameter.name for parameter in parameters(command) if parameter.optional}
+
+
+def default_in_words(field: Field) -> str:
+    """Return a field's default as the docs show it; empty if it has none."""
+    return "" if field.default is None else _in_words(field.type, field.default)
+
+
+def constant_in_words(field: Field) -> str:
+    """Return a field's constant as the docs show it; empty if it has none."""
+    return "" if field.const is None else _in_words(field.type, (field.const,))
+
+
+def _in_words(type: Type, raw: tuple[int, ...]) -> str:
+    if isinstance(type, Enum):
+        return f"{type.from_raw(raw[0])} ({raw[0]})"
+    if isinstance(type, Flag):
+        return str(raw == (1,))
+    numbers = [
+        decimal(each * (part.scale if isinstance(part, Quantity) else Fraction(1)))
+        for each, (_, part) in zip(raw, type.parts)
+    ]
+    return f"({', '.join(numbers)})" if isinstance(type, Value) else numbers[0]
+
+
+def python_value(type: Type, raw: tuple[int, ...], *, on_wire: bool = False) -> str:
+    """Return raw values as a Python expression, in the units of the API or else of the wire."""
+    parts = [_number(part, each, on_wire) for each, (_, part) in zip(raw, type.parts)]
+    if isinstance(type, Value):
+        return f"({parts[0]},)" if len(parts) == 1 else f"({', '.join(parts)})"
+    return str(raw == (1,)) if isinstance(type, Flag) and not on_wire else parts[0]
+
+
+def _number(part: Type, raw: int, on_wire: bool) -> str:
+    if not isinstance(part, Quantity):
+        return str(raw)
+    if part.radians and not on_wire:
+        return repr(math.radians(raw * part.scale))
+    return str(raw) if part.scale == 1 else repr(float(raw * part.scale))
+
+
+def _annotation(field: Field) -> str:
+    return argument_type(Parameter(field.name, (field,), optional=False))
+
+
+def _of_field(parameter: Parameter) -> Argument:
+    default = "None" if parameter.may_be_none else ""
+    if parameter.default is not None:
+        default = python_value(parameter.fields[0].type, parameter.default)
+    return Argument(parameter.name, argument_type(parameter), default, _line(parameter))
+
+
+def _line(parameter: Parameter) -> str:
+    """Return the line of the docstring: what it is, its range and unit, its default."""
+    allowed = parameter.allowed
+    if parameter.radians:
+        allowed = f"in radians; on the wire {allowed}"
+    shown = dict.fromkeys(filter(None, map(default_in_words, parameter.fields)))
+    if shown:
+        allowed += f"; default: {' or '.join(shown)}"
+    elif parameter.optional:
+        allowed += "; optional"
+    return f"{parameter.name}: {parameter.doc.removesuffix('.')} ({allowed})."
+
+
+def _of_text(command: Command, name: str) -> Argument:
+    docs = dict(command.request_text.fields) if command.request_text else {}
+    return Argument(name, "str", "", f"{name}: {docs.get(name, '').removesuffix('.')} (ASCII).")
+
+
+def _of_variant(command: Command, variant: Variant) -> tuple[Argument, ...]:
+    fields = {field.name: field for field in variant if field.const is None}
+    texts = command.text_arguments
+    return tuple(
+        _of_field(Parameter(name, (fields[name],), optional=False))
+        if name in fields
+        else _of_text(command, name)
+        for name in command.argument_names
+        if name in fields or name in texts
+    )

@@ -1,0 +1,78 @@
+"""Choose the variant of a message by the arguments that are given.
+
+A row is one variant as its message class knows it, in the order of the wire: the names of the
+arguments, pairs of a name and its default, and constants.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any, NamedTuple
+
+Row = tuple[Any, ...]
+
+
+class Chosen(NamedTuple):
+    """A variant that takes the given arguments.
+
+    Attributes:
+        first: its index among the variants.
+        variant: the same; None if several take the same arguments, so that the codec decides by the
+            values.
+        wire: the names of its arguments, and its constants, in the order of the wire.
+        defaults: the defaults of the arguments that are not given.
+    """
+
+    first: int
+    variant: int | None
+    wire: Row
+    defaults: dict[str, Any]
+
+
+def choose(call: str, rows: tuple[Row, ...], given: Collection[str]) -> Chosen:
+    """Return the variant that takes exactly the given arguments.
+
+    Raises:
+        TypeError: no variant does; the text names an argument at fault and what is legal.
+    """
+    fitting = [i for i, row in enumerate(rows) if not _missing(row, given) + _odd(row, given)]
+    if not fitting:
+        raise TypeError(misfit(call, rows, given))
+    row = rows[fitting[0]]
+    return Chosen(
+        fitting[0],
+        fitting[0] if len(fitting) == 1 else None,
+        tuple([part[0] if isinstance(part, tuple) else part for part in row]),
+        {part[0]: part[1] for part in row if isinstance(part, tuple) and part[0] not in given},
+    )
+
+
+def misfit(call: str, rows: tuple[Row, ...], given: Collection[str]) -> str:
+    """Return the text of the error that no variant takes exactly the given arguments."""
+    nearest = min(rows, key=lambda row: len(_missing(row, given)) + len(_odd(row, given)))
+    forms = [*dict.fromkeys(map(_shown, rows))]
+    legal = forms[0] if len(forms) == 1 else " or ".join([f"({form})" for form in forms])
+    odd = _odd(nearest, given)
+    if odd:
+        others = [name for name in given if name != odd[0]]
+        beside = f" together with {' and '.join(others)}" if others else ""
+        return f"{call}() does not take its argument {odd[0]}{beside}; it takes {legal}"
+    return f"{call}() is missing its argument {_missing(nearest, given)[0]}; it takes {legal}"
+
+
+def _missing(row: Row, given: Collection[str]) -> list[str]:
+    return [part for part in row if isinstance(part, str) and part not in given]
+
+
+def _odd(row: Row, given: Collection[str]) -> list[str]:
+    taken = {part[0] if isinstance(part, tuple) else part for part in row}
+    return [name for name in given if name not in taken]
+
+
+def _shown(row: Row) -> str:
+    words = [
+        f"{part[0]}={part[1]}" if isinstance(part, tuple) else part
+        for part in row
+        if isinstance(part, str | tuple)
+    ]
+    return ", ".join(words) or "no arguments"
