@@ -97,7 +97,7 @@ def _constant(type: Type, name: str, const: int, value: object) -> bytes:
         written.append(const)
     if value not in written:
         raise ValueError(f"{name} is always {written[0]}")
-    return _word(type.wire, Fraction(const), name)
+    return type.wire.bytes_of(const)
 
 
 def encode_value(type: Type, name: str, value: object) -> bytes:
@@ -132,8 +132,7 @@ def raw_values(type: Type, name: str, value: object) -> tuple[int, ...]:
     data = encode_value(type, name, value)
     found = []
     for _, part in type.parts:
-        raw = int.from_bytes(data[: part.size], part.wire.order)
-        found.append(raw - 256**part.size if raw > part.wire.signed_at else raw)
+        found.append(part.wire.raw_of(data[: part.size]))
         data = data[part.size :]
     return tuple(found)
 

@@ -73,10 +73,7 @@ def _in_words(type: Type, raw: tuple[int, ...]) -> str:
         return f"{type.from_raw(raw[0])} ({raw[0]})"
     if isinstance(type, Flag):
         return str(raw == (1,))
-    numbers = [
-        decimal(each * (part.scale if isinstance(part, Quantity) else Fraction(1)))
-        for each, (_, part) in zip(raw, type.parts)
-    ]
+    numbers = [decimal(_exact(part, each)) for each, (_, part) in zip(raw, type.parts)]
     return f"({', '.join(numbers)})" if isinstance(type, Value) else numbers[0]
 
 
@@ -91,9 +88,17 @@ def python_value(type: Type, raw: tuple[int, ...], *, on_wire: bool = False) -> 
 def _number(part: Type, raw: int, on_wire: bool) -> str:
     if not isinstance(part, Quantity):
         return str(raw)
+    exact = _exact(part, raw)
     if part.radians and not on_wire:
-        return repr(math.radians(raw * part.scale))
-    return str(raw) if part.scale == 1 else repr(float(raw * part.scale))
+        return repr(math.radians(exact))
+    return repr(float(exact)) if part.real else str(exact)
+
+
+def _exact(part: Type, raw: int) -> Fraction:
+    """Return the physical value of a raw value."""
+    value = part.from_raw(raw) if isinstance(part, Quantity) else raw
+    assert isinstance(value, int | Fraction), "a quantity is a number"
+    return Fraction(value)
 
 
 def _annotation(field: Field) -> str:
