@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import pytest
@@ -27,6 +28,11 @@ class Slot(NamedTuple):
     @property
     def number(self) -> Number:
         return self.case.numbers[self.element]
+
+    @property
+    def kind(self) -> Number:
+        """The number without its name and unit, which the rules of encoding do not use."""
+        return replace(self.number, name="", unit="")
 
 
 class CommandVariant(NamedTuple):
@@ -94,7 +100,7 @@ def _with_new_numbers() -> Iterator[str]:
     """Yield the first variant for each kind of number: its scale, sign, order and bounds."""
     seen: set[Number] = set()
     for variant in EVERY:
-        numbers = {slot.number for slot in variant.slots}
+        numbers = {slot.kind for slot in variant.slots}
         if not numbers <= seen:
             seen |= numbers
             yield variant.name
@@ -117,13 +123,22 @@ def _codec_of(variant: CommandVariant, codec: Codec) -> Codec:
 def test_every_raw_value_of_every_field_survives_decode_and_encode(
     codec: Codec, variant: CommandVariant
 ) -> None:
-    """Run through all raw values; at each step, each slot of the variant has another raw value."""
+    """Run through all raw values; at each step, each slot of the variant has another raw value.
+
+    The reference is slow. It runs all values of each kind of number once: the slots of a kind share
+    them. Of other variants it runs some.
+    """
     codec = _codec_of(variant, codec)
     name, way = variant.command.name, variant.direction
-    step = WORDS // len(variant.slots)
+    kinds = [slot.kind for slot in variant.slots]
+    step = -(-WORDS // len(kinds))
     frame = bytearray(variant.frame)
-    # The reference is slow, so it runs all values of each kind of number, and some of each field.
-    words = range(0, WORDS, 1 if codec.name == "native" or variant.name in FIRST else 97)
+    if codec.name == "native":
+        words = range(WORDS)
+    elif variant.name not in FIRST:
+        words = range(0, WORDS, 97)
+    else:
+        words = range(step if len(set(kinds)) == 1 else WORDS)
     for word in words:
         for order, slot in enumerate(variant.slots):
             raw = (word + order * step) % WORDS
@@ -152,11 +167,18 @@ def test_raw_value_of_a_limited_field_survives_or_is_rejected(
         for word in range(0, WORDS, step):
             frame[slot.position : slot.position + 2] = word.to_bytes(2, number.order)
             data = bytes(frame)
-            if not number.minimum <= number.unpack(data, slot.position) <= number.maximum:
-                with pytest.raises(ProtocolError, match=variant.variant.fields[slot.field].name):
-                    codec.decode(variant.direction, data, of=variant.command.name)
+            expected = number.minimum <= number.unpack(data, slot.position) <= number.maximum
+            # pytest.raises would take most of the time of this test.
+            try:
+                values = codec.decode(variant.direction, data, of=variant.command.name).values
+            except ProtocolError as error:
+                rejected = str(error)
+            else:
+                rejected = ""
+            assert (rejected == "") == expected
+            if rejected:
+                assert variant.variant.fields[slot.field].name in rejected
                 continue
-            values = codec.decode(variant.direction, data, of=variant.command.name).values
             legal += 1
             assert codec.encode(variant.command.name, variant.direction, values) == data
         assert legal > 0

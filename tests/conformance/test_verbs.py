@@ -1,4 +1,4 @@
-"""Run the verbs as processes; check output, files and exit codes."""
+"""Run the verbs; check output, files and exit codes."""
 
 from __future__ import annotations
 
@@ -9,10 +9,13 @@ from pathlib import Path
 
 import pytest
 
+import in_process
 import vectors
+from cobotwire.cli.app import app
 from cobotwire.conformance import Verdict
 from cobotwire.conformance.reports import from_json
 from cobotwire.editions.mycobot280 import MyCobot280
+from in_process import Ended
 
 VERB = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
 CONFORM = [*VERB, "--edition", "mycobot280", "conform"]
@@ -27,9 +30,9 @@ arm.send_angle(1, 2.55, 50)
 """
 
 
-def _run(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*CONFORM, *words], capture_output=True, text=True, check=False, cwd=vectors.ROOT
+def _run(*words: str) -> Ended:
+    return in_process.run(
+        app, "cobotwire", "--edition", "mycobot280", "conform", *words, folder=vectors.ROOT
     )
 
 
