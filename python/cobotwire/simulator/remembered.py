@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from cobotwire.protocol.table import Command, Table
@@ -10,6 +11,7 @@ from cobotwire.protocol.table import Command, Table
 Arguments = frozenset[tuple[str, Any]]
 
 
+@dataclass
 class Remembered:
     """The values that commands have set, by the query that reports them.
 
@@ -17,8 +19,7 @@ class Remembered:
     these arguments only.
     """
 
-    def __init__(self) -> None:
-        self._values: dict[tuple[str, Arguments], dict[str, Any]] = {}
+    values: dict[tuple[str, Arguments], dict[str, Any]] = field(default_factory=dict)
 
     def store(self, table: Table, command: Command, fields: Mapping[str, Any]) -> None:
         """Remember what a request sets, if a query reads it back."""
@@ -27,21 +28,21 @@ class Remembered:
         query = table.command(command.read_by.query)
         reported = _reported(query)
         pairs = command.read_by.fields or tuple((name, name) for name in reported)
-        values = {
+        stated = {
             name: fields[source] if isinstance(source, str) else _physical(query, name, source)
             for name, source in pairs
             if not isinstance(source, str) or source in fields
         }
-        asked = {field.name for variant in query.request for field in variant.fields}
+        asked = {each.name for variant in query.request for each in variant.fields}
         key = (query.name, _hashable({n: v for n, v in fields.items() if n in asked}))
         # Newest last, so that it is found last.
-        self._values[key] = {**self._values.pop(key, {}), **values}
+        self.values[key] = {**self.values.pop(key, {}), **stated}
 
     def recall(self, query: Command, fields: Mapping[str, Any]) -> dict[str, Any]:
         """Return the remembered fields of a query's reply; of two values the newer one."""
         asked = _hashable(fields)
         found: dict[str, Any] = {}
-        for (name, arguments), values in self._values.items():
+        for (name, arguments), values in self.values.items():
             if name == query.name and arguments <= asked:
                 found |= values
         return found
@@ -49,13 +50,13 @@ class Remembered:
 
 def _reported(query: Command) -> list[str]:
     """Return the names of the fields of a query's reply that do not repeat its request."""
-    names = [field.name for variant in query.reply for field in variant.fields if not field.echo]
+    names = [each.name for variant in query.reply for each in variant.fields if not each.echo]
     return list(dict.fromkeys([*names, *(query.text.fields if query.text is not None else ())]))
 
 
 def _physical(query: Command, name: str, raw: int) -> Any:
     """Return the physical value of a raw one, as the reply of a query reports it."""
-    fields = (field for variant in query.reply for field in variant.fields if field.name == name)
+    fields = (each for variant in query.reply for each in variant.fields if each.name == name)
     number = next(iter(next(fields).cases[0].numbers))
     return number.physical(raw)
 

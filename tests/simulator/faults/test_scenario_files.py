@@ -169,7 +169,7 @@ def test_python_examples_of_the_guide_run(capsys: pytest.CaptureFixture[str]) ->
     for example in examples:
         exec(compile(example, str(GUIDE), "exec"), {})
     printed = capsys.readouterr().out
-    assert len(examples) == 2
+    assert len(examples) == 3
     assert "b'\\xfe\\xfe\\x0e " in printed
     assert "Angles(j1=0.0" in printed
 
@@ -194,3 +194,23 @@ def test_missing_yaml_library_error_names_the_package_to_install() -> None:
     ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert "UsageError" in ended.stderr
     assert "pip install 'cobotwire[sim]'" in ended.stderr
+
+
+def test_aliases_that_stand_for_a_billion_values_are_refused_at_their_place() -> None:
+    many = ", ".join(["*a"] * 400)
+    text = f"faults:\n  - &a [1, 1, 1, 1]\n  - &b [{many}]\n  - [{many.replace('*a', '*b')}]\n"
+    place = "scenario:2:12: up to here the file has more than 100000 values"
+    with pytest.raises(ScenarioError, match=place):
+        loads(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[" * 3000, r"scenario:1:11: this is nested too deeply"),
+        ("# \n" * 400_000, r"scenario:1:1: the file has more than 1048576 characters, the limit"),
+    ],
+)
+def test_file_above_a_limit_is_refused(text: str, message: str) -> None:
+    with pytest.raises(ScenarioError, match=message):
+        loads(text)

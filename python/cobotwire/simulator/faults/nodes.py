@@ -34,7 +34,7 @@ def parse(text: str, name: str) -> Node:
     """Read one YAML document; messages call the file ``name``.
 
     Raises:
-        ScenarioError: the text is not YAML, has a key twice, or contains a tag.
+        ScenarioError: the text is not YAML, has a key twice, contains a tag, or exceeds a limit.
         UsageError: the YAML library is not installed.
     """
     try:
@@ -43,14 +43,20 @@ def parse(text: str, name: str) -> Node:
     except ImportError:
         message = "fault scenarios need ruamel.yaml: pip install 'cobotwire[sim]'"
         raise UsageError("scenario", message=message) from None
+    if len(text) > MOST_CHARACTERS:
+        message = f"the file has more than {MOST_CHARACTERS} characters, the limit"
+        raise ScenarioError([f"{Place(name, 1, 1)}: {message}"])
     yaml = YAML(typ="safe", pure=True)
+    yaml.max_depth = _DEEPEST + 5  # deeper files are not parsed; the others get a better message
     try:
         # Only nodes and single scalars are read, so that no tag can construct an object.
         reading = _Reading(name, yaml.constructor.construct_object)
         root = reading.node(yaml.compose(text), 0)
     except MarkedYAMLError as error:
         place = _after(Place(name, 1, 1), error.problem_mark or error.context_mark)
-        raise ScenarioError([f"{place}: {_sentence(error.problem)}"]) from None
+        too_deep = "maximum depth" in (error.problem or "")
+        message = TOO_DEEP if too_deep else _sentence(error.problem)
+        raise ScenarioError([f"{place}: {message}"]) from None
     except (YAMLError, RecursionError) as error:
         place = _place_in(text, name, getattr(error, "position", 0))
         raise ScenarioError([f"{place}: not YAML: {_sentence(str(error))}"]) from None
@@ -60,8 +66,13 @@ def parse(text: str, name: str) -> Node:
     return root
 
 
-# A scenario is a mapping with a list of mappings of lists; an alias may contain itself.
+# The limits of a file, many times what the longest scenario needs. An alias counts as often as it
+# is used, since every use is read, and may contain itself.
+MOST_CHARACTERS = 1024 * 1024
+MOST_NODES = 100_000
+# A scenario is a mapping with a list of mappings of lists.
 _DEEPEST = 5
+TOO_DEEP = "this is nested too deeply"
 _TAG = "tag:yaml.org,2002:"
 _PLAIN = ("str", "int", "float", "bool", "null")
 
@@ -73,17 +84,18 @@ class _Reading:
         self.problems: set[tuple[Place, str]] = set()
         self._top = Place(name, 1, 1)
         self._scalar = scalar
-        self._made: dict[tuple[int, int], Node] = {}
+        self._nodes = 0
 
     def node(self, found: Any, depth: int) -> Node:
         """Convert a node, and all nodes in it."""
         if found is None:
             return Node(self._top, None, {})
-        # Convert it once, however many aliases it has: a small file can have a billion of them.
-        made = self._made.get((id(found), depth))
-        if made is None:
-            made = self._made[id(found), depth] = self._make(found, depth)
-        return made
+        self._nodes += 1
+        if self._nodes > MOST_NODES:
+            place = _after(self._top, found.start_mark)
+            message = f"up to here the file has more than {MOST_NODES} values, the limit"
+            raise ScenarioError([f"{place}: {message}; each use of an alias counts"])
+        return self._make(found, depth)
 
     def _make(self, found: Any, depth: int) -> Node:
         place = _after(self._top, found.start_mark)
@@ -94,11 +106,7 @@ class _Reading:
             return Node(place, [self.node(item, depth + 1) for item in found.value], {})
         if kind in _PLAIN and found.id == "scalar":
             return Node(place, self._value(found, place), {})
-        what = (
-            "this is nested too deeply"
-            if depth >= _DEEPEST
-            else f"the tag {found.tag} is not allowed"
-        )
+        what = TOO_DEEP if depth >= _DEEPEST else f"the tag {found.tag} is not allowed"
         self.problems.add((place, what))
         return Node(place, None, {})
 
