@@ -42,9 +42,10 @@ def complete(shell: str, line: str) -> set[str]:
 @pytest.mark.parametrize("shell", SHELLS)
 @pytest.mark.parametrize(("line", "expected"), CASES)
 def test_words_are_completed_in_every_shell(shell: str, line: str, expected: set[str]) -> None:
-    assert expected <= complete(shell, line)
+    words = complete(shell, line)
+    assert expected <= words
     start = line.split()[-1]
-    assert all(word.startswith(start) for word in complete(shell, line))
+    assert all(word.startswith(start) for word in words)
 
 
 def test_ports_are_completed_for_every_verb_that_opens_one(tmp_path: Path) -> None:

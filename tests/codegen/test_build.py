@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+import in_process
+from cobotwire_codegen.cli import main
+from in_process import Ended
 
 LAMP = (Path(__file__).parent / "lamp.yaml").read_text()
 
@@ -19,9 +21,8 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "cobotwire_codegen", *words]
-    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+def run(folder: Path, *words: str) -> Ended:
+    return in_process.run(main, "cobotwire-gen", *words, folder=folder)
 
 
 def test_build_writes_package_reference_and_c_and_finds_them_fresh(folder: Path) -> None:

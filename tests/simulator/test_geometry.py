@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -11,10 +9,13 @@ from typing import Any
 
 import pytest
 
+import in_process
 from cobotwire import editions
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire.simulator.kinematics import geometry_of
+from cobotwire_codegen.cli import main
+from in_process import Ended
 
 SPEC = Path(__file__).parents[2] / "spec" / "editions"
 DELTA = """\
@@ -39,13 +40,10 @@ geometry:
 """
 
 
-def _built(folder: Path, name: str, own: str = "") -> subprocess.CompletedProcess[str]:
+def _built(folder: Path, name: str, own: str = "") -> Ended:
     (folder / f"{name}.yaml").write_text(DELTA.format(name=name, base=SPEC, own=own))
-    words = ["build", f"{name}.yaml", "--out", name]
-    program = [sys.executable, "-c", "from cobotwire_codegen.cli import main; main()"]
-    return subprocess.run(
-        [*program, *words], cwd=folder, capture_output=True, text=True, check=False
-    )
+    words = ("build", f"{name}.yaml", "--out", name)
+    return in_process.run(main, "cobotwire-gen", *words, folder=folder)
 
 
 @pytest.mark.parametrize(
