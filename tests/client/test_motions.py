@@ -15,7 +15,7 @@ from both_ways import Opener, openers
 from cobotwire import MotionTimeout, ReplyTimeout, UsageError
 from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280, TargetKind
 from cobotwire.session import Traffic
-from cobotwire.session.motion import Outcome, Pause, Query, until_reached
+from cobotwire.session.motion import Outcome, Pause, Query, goal_of, until_reached
 from cobotwire.simulator import PtyServer, SimulatedArm
 
 STOP = bytes.fromhex("FE FE 02 29 FA")
@@ -149,7 +149,7 @@ def test_firmware_without_acks_delays_no_setter_and_times_out_if_acks_are_requir
 
 
 def test_next_step_of_waiting_depends_on_times_and_results() -> None:
-    steps = until_reached(TABLE, THERE, 0, limit=1.0, started=100.0)
+    steps = until_reached(TABLE, goal_of(TABLE, THERE, 0), limit=1.0, started=100.0)
     is_in_position: Any = TABLE.request_type("is_in_position")
     assert next(steps) == Query(is_in_position(THERE, 0), 1.0)
     # A request without a reply is not an error.

@@ -10,13 +10,16 @@ from typing import Any
 from cobotwire.client.blocking import Client
 from cobotwire.client.opening import check_seconds
 from cobotwire.protocol.errors import ReplyTimeout
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.roles import ANGLES, COORDS, kinds_of, targets_request
 from cobotwire.session.motion import (
     MOTION_SECONDS,
+    Goal,
     Outcome,
     Pause,
     Step,
     Stop,
-    kind_of,
+    goal_of,
     until_reached,
 )
 
@@ -49,8 +52,8 @@ class MovingClient(Client):
             LinkError: the transport is gone.
             MotionTimeout: the arm is not there in time, or stands still short of the target.
         """
-        name = self.table.in_role("joint targets").name
-        self._move(name, (angles, speed), "ANGLES", wait, timeout)
+        command = self.table.in_role("joint targets")
+        self._move(targets_request(command, angles, speed), angles, ANGLES, wait, timeout)
 
     def move_coords(
         self,
@@ -75,18 +78,22 @@ class MovingClient(Client):
             LinkError: the transport is gone.
             MotionTimeout: the arm is not there in time, or stands still short of the target.
         """
-        name = self.table.in_role("coordinate targets").name
-        values = (coords, speed) if mode is None else (coords, speed, mode)
-        self._move(name, values, "COORDS", wait, timeout)
+        command = self.table.in_role("coordinate targets")
+        others = (speed,) if mode is None else (speed, mode)
+        self._move(targets_request(command, coords, *others), coords, COORDS, wait, timeout)
 
     def wait_until_reached(
         self, target: Sequence[float], kind: int = 0, *, timeout: float = MOTION_SECONDS
     ) -> None:
         """Wait until the arm is at a target to which it was sent.
 
+        The arm is asked whether it is there. If the edition has no query for that, the arm is there
+        once it is within 0.5 degrees and 5 millimetres of the target.
+
         Args:
             target: angles in degrees, or coordinates in millimetres and degrees.
-            kind: what the target is: a member of the edition's ``TargetKind``.
+            kind: what the target is: a member of the edition's ``TargetKind``; 0 for angles and 1
+                for coordinates if the edition does not number them.
             timeout: seconds to wait at most.
 
         Raises:
@@ -95,26 +102,35 @@ class MovingClient(Client):
             MotionTimeout: the arm is not there in time, or stands still short of the target.
         """
         check_seconds("timeout", timeout)
+        goal = goal_of(self.table, target, kind)
         try:
-            self._wait(target, kind, timeout)
+            self._wait(goal, timeout)
         except KeyboardInterrupt as error:
             self._stop_for(error)
             raise
 
     def _move(
-        self, name: str, values: tuple[Any, ...], label: str, wait: bool, timeout: float
+        self,
+        request: Request[Any],
+        target: Sequence[float],
+        label: str,
+        wait: bool,
+        timeout: float,
     ) -> None:
         check_seconds("timeout", timeout)
+        # A bad target is reported as such, before it is waited for.
+        encoded = self._encoder.encode_request(request)
+        goal = goal_of(self.table, target, kinds_of(self.table)[label]) if wait else None
         try:
-            self._connection.send(self._encoder.encode(name, values), None)
-            if wait:
-                self._wait(values[0], kind_of(self.table, label), timeout)
+            self._connection.send(encoded, None)
+            if goal is not None:
+                self._wait(goal, timeout)
         except KeyboardInterrupt as error:
             self._stop_for(error)
             raise
 
-    def _wait(self, target: Sequence[float], kind: int, timeout: float) -> None:
-        steps = until_reached(self.table, target, kind, timeout, self._connection.now())
+    def _wait(self, goal: Goal, timeout: float) -> None:
+        steps = until_reached(self.table, goal, timeout, self._connection.now())
         step = next(steps)
         with suppress(StopIteration):
             while True:

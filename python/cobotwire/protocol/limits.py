@@ -12,6 +12,7 @@ from fractions import Fraction
 from math import ceil, floor, isfinite
 
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.roles import picked, row_index
 from cobotwire.protocol.table import Case, Command, Field, Number, Role, Table, Variant
 
 Range = tuple[float, float]
@@ -63,7 +64,8 @@ class _Rule:
     def __init__(self, what: str, ranges: Ranges, row: Command, wider: bool) -> None:
         self._what = what
         self._wider = wider
-        self.names = [number.name for number in row.request[0].fields[0].cases[0].numbers]
+        numbers = row.request[0].fields[row_index(row.request[0])].cases[0].numbers
+        self.names = [number.name for number in numbers]
         allowed = f"{len(self.names)} ranges"
         if isinstance(ranges, str) or not isinstance(ranges, Sequence):
             raise UsageError(f"limits.{what}", ranges, allowed)
@@ -105,22 +107,29 @@ _ROWS: tuple[Role, ...] = ("joint targets", "coordinate targets")
 
 
 def _row(variant: Variant, rule: _Rule) -> Variant:
-    """Limit a variant in which the first field holds the targets of all parts."""
-    row, *rest = variant.fields
+    """Limit a variant in which one field holds the targets of all parts."""
+    at = row_index(variant)
+    row = variant.fields[at]
     numbers = (rule.number(part, number) for part, number in enumerate(row.cases[0].numbers))
-    return Variant((replace(row, cases=(Case((), tuple(numbers)),)), *rest))
+    return _with(variant, at, replace(row, cases=(Case((), tuple(numbers)),)))
 
 
 def _single(variant: Variant, rule: _Rule) -> Variant:
-    """Limit a variant in which the first field picks the part and the second is its target."""
-    picker, target, *rest = variant.fields
+    """Limit a variant in which one field picks the part and another one is its target."""
+    picker_at, at = picked(variant)
+    picker, target = variant.fields[picker_at], variant.fields[at]
     cases = []
     for part, name in enumerate(rule.names):
         value = _value_of(picker, name, part)
         case = target.case(value)
         assert case is not None, f"{name} has a case"
         cases.append(Case((value,), (rule.number(part, case.numbers[0]),)))
-    return Variant((picker, replace(target, cases=tuple(cases), selector=0), *rest))
+    return _with(variant, at, replace(target, cases=tuple(cases), selector=picker_at))
+
+
+def _with(variant: Variant, at: int, field: Field) -> Variant:
+    fields = variant.fields
+    return replace(variant, fields=(*fields[:at], field, *fields[at + 1 :]))
 
 
 def _value_of(picker: Field, name: str, part: int) -> int:

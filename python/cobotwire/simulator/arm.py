@@ -16,7 +16,9 @@ from cobotwire.protocol.table import Command, Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator.behaviour import Behaviour, Sized, own
+from cobotwire.simulator.behaviour.by_role import perform_role
 from cobotwire.simulator.behaviour.external import installed
+from cobotwire.simulator.behaviour.registry import Unanswerable
 from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.motion.hand import checked
 from cobotwire.simulator.peer import IDLE_SECONDS
@@ -78,7 +80,7 @@ class SimulatedArm:
             acks: whether the arm sends the acknowledgements that the edition allows.
             powered: whether the arm has power from the start; after a restart it has none.
             geometry: the lengths of the links; None: those that the edition states. If
-                it states none, the arm reports all coordinates as 0, rejects motions to
+                it states none, the arm does not reply to queries of coordinates, rejects motions to
                 coordinates, and its joints do not snap to encoder ticks.
             on_note: called with each new note; ``notes`` keeps the last 1000.
             behaviours: what the arm does for its commands, instead of the behaviour that comes with
@@ -207,18 +209,27 @@ class SimulatedArm:
         ``fields`` are those of the request, as the codec decodes them; ``address`` is that of the
         device, None if it has none.
         """
-        behaviour = self._behaviours.get(command.name) or own(command)
-        if behaviour is None:
-            self._states[address].remembered.store(self.table, command, fields)
-            return None
-        request, now = behaviour.request_type.from_fields(fields), self.clock()
-        state = self._states[address]
+        state, now = self._states[address], self.clock()
         state.record(now)
-        reply = behaviour.behave(state, now, request)
-        for text in state.remarks:
-            self.note(command, text)
-        state.remarks.clear()
-        return reply
+        behaviour = self._behaviours.get(command.name) or own(command)
+        try:
+            if behaviour is not None:
+                request = behaviour.request_type.from_fields(fields)
+                return behaviour.behave(state, now, request)
+            state.remembered.store(self.table, command, fields)
+            return self._perform_role(command, state, now, fields)
+        finally:
+            for text in state.remarks:
+                self.note(command, text)
+            state.remarks.clear()
+
+    def _perform_role(
+        self, command: Command, state: ArmState, now: float, fields: Mapping[str, Any]
+    ) -> Reply[Any] | None:
+        found = perform_role(self.table, state, now, command, fields)
+        if found is None or command.reply_type is None:
+            return None
+        return command.reply_type.from_fields(found)
 
     def recall(
         self, command: Command, given: Mapping[str, Any], address: int | None
@@ -317,7 +328,11 @@ class ArmConnection:
         command, given = received.message.command, received.message.fields
         # A command with a text after its frame is performed once the text is complete.
         performed = command.request_text is None
-        reply = self._arm.perform(command, given, address) if performed else None
+        try:
+            reply = self._arm.perform(command, given, address) if performed else None
+        except Unanswerable:
+            self._arm.note(command, "no reply: the geometry of this arm is not known")
+            return b""
         if not command.requires_reply and not (command.ack and self._arm.acks):
             return b""
         if isinstance(reply, Sized):

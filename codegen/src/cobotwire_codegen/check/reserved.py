@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 from collections.abc import Iterator
 
 from cobotwire_codegen.errors import Place, Problem
@@ -97,7 +98,7 @@ def addresses_apart(edition: Edition) -> Iterator[Problem]:
     seen = {command.name: command.place for command in edition.commands}
     for address in edition.frame.addresses:
         name = address.attribute
-        if name in RESERVED_COMMANDS:
+        if name in RESERVED_COMMANDS or keyword.iskeyword(name):
             yield _reserved(name, address.place)
         elif name in seen:
             message = f"clients already have {name}, for {seen[name]}; rename the address"

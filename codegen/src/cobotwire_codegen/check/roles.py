@@ -5,25 +5,47 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from cobotwire_codegen.errors import Problem
-from cobotwire_codegen.model import Command, Edition, Field, Variant
+from cobotwire_codegen.model import Command, Edition, Field, Quantity, Variant
 
 KINDS = {"ANGLES", "COORDS"}
-
-
-def _row(parts: int) -> Callable[[Command], bool]:
-    def has(command: Command) -> bool:
-        return all(variant and _parts(variant[0]) == parts for variant in command.requests)
-
-    return has
 
 
 def _parts(field: Field) -> int:
     return len(field.type.parts) if field.type.kind == "value" else 0
 
 
+def _row(parts: int) -> Callable[[Command], bool]:
+    """Return the rule that each request has one row of as many numbers, and something beside it."""
+
+    def has(command: Command) -> bool:
+        return bool(parts) and all(
+            [_parts(field) for field in variant if _parts(field)] == [parts] and len(variant) > 1
+            for variant in command.requests
+        )
+
+    return has
+
+
+def _is_picker(field: Field) -> bool:
+    """Return whether a field can select a part: it is a number without unit and scale."""
+    type = field.type
+    return not isinstance(type, Quantity) or (type.scale == 1 and not type.unit)
+
+
+def _is_target(field: Field) -> bool:
+    """Return whether a field can be a target: it has a selector, or a unit that is no speed."""
+    if field.selector:
+        return True
+    type = field.type
+    return isinstance(type, Quantity) and type.unit != "percent" and not _is_picker(field)
+
+
 def _picked(command: Command) -> bool:
+    """Return whether each request has a target, and an argument that selects the part."""
     return all(
-        len(variant) > 1 and not any(_parts(field) for field in variant[:2])
+        not any(_parts(field) for field in variant)
+        and any(_is_target(field) for field in variant)
+        and any(_is_picker(field) and not _is_target(field) for field in variant)
         for variant in command.requests
     )
 
@@ -54,32 +76,60 @@ def _error(command: Command) -> bool:
 
 def _reads_row(parts: int) -> Callable[[Command], bool]:
     def reads(command: Command) -> bool:
-        rows = all(len(variant) == 1 and _parts(variant[0]) == parts for variant in command.replies)
-        return command.requests == ((),) and bool(command.replies) and rows
+        rows = parts and all(
+            len(variant) == 1 and _parts(variant[0]) == parts for variant in command.replies
+        )
+        return command.requests == ((),) and bool(command.replies) and bool(rows)
 
     return reads
 
 
-def _reached(command: Command) -> bool:
-    if not _replies_with_flag(command.replies) or len(command.requests[0]) != 2:
-        return False
-    kind = command.requests[0][1].type
-    return {member.name for member in kind.members} >= KINDS
+def _reached(joints: int) -> Callable[[Command], bool]:
+    """Return the rule that a query takes a target, perhaps its kind, and replies with a flag."""
+
+    def reached(command: Command) -> bool:
+        variant = command.requests[0]
+        rows = [field for field in variant if _parts(field)]
+        others = [field for field in variant if field not in rows]
+        if not _replies_with_flag(command.replies) or len(rows) != 1 or len(others) > 1:
+            return False
+        if not others:
+            return _parts(rows[0]) == joints
+        return {member.name for member in others[0].type.members} >= KINDS
+
+    return reached
+
+
+def _coordinates(edition: Edition) -> int:
+    """Return the number of coordinates: of the row in a command that has such a role."""
+    for command in edition.commands:
+        messages = {"coordinate targets": command.requests, "coordinates": command.replies}
+        for variant in messages.get(command.role, ()):
+            for field in variant:
+                if _parts(field):
+                    return _parts(field)
+    return 0
 
 
 def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]:
-    picks = "its first argument must select the part and its second be the target"
+    picks = "an argument must select the part, and another with a unit or scale be the target"
+    coordinates = _coordinates(edition)
+    alike = "as many in every command with this role or the one for coordinates"
     return {
         "joint targets": (
-            "its first argument must have a number for each joint",
+            "it must take a row with a number for each joint, and a speed",
             _row(edition.joints),
         ),
-        "coordinate targets": ("its first argument must be six coordinates", _row(6)),
+        "coordinate targets": (
+            f"it must take a row of coordinates, {alike}, and a speed",
+            _row(coordinates),
+        ),
         "joint target": (picks, _picked),
         "coordinate target": (picks, _picked),
         "reached": (
-            "it must take a target and its kind, ANGLES or COORDS, and reply with a flag",
-            _reached,
+            "it must take a target and its kind, ANGLES or COORDS, or only a number for each "
+            "joint, and reply with a flag",
+            _reached(edition.joints),
         ),
         "moving": ("it must take no arguments and reply with a flag", _reads_flag),
         "powered": ("it must take no arguments and reply with a flag", _reads_flag),
@@ -93,7 +143,10 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             "it must take no arguments and reply with a number for each joint",
             _reads_row(edition.joints),
         ),
-        "coordinates": ("it must take no arguments and reply with six coordinates", _reads_row(6)),
+        "coordinates": (
+            f"it must take no arguments and reply with a row of coordinates, {alike}",
+            _reads_row(coordinates),
+        ),
         "stop": ("it must take no arguments", lambda command: command.requests == ((),)),
     }
 

@@ -20,10 +20,10 @@ REPLIES = {
     "none": "There are none: it is a broadcast.",
 }
 ROLES = {
-    "joint targets": "Moves all joints; the first argument is the row of targets.",
-    "joint target": "Moves one joint: the first argument selects it, the second is its target.",
-    "coordinate targets": "Moves the end to a pose; the first argument is the row of coordinates.",
-    "coordinate target": "Moves along one axis: the first argument selects it.",
+    "joint targets": "Moves all joints to a row of targets, at a speed.",
+    "joint target": "Moves one joint: one argument selects it, another is its target.",
+    "coordinate targets": "Moves the end to a row of coordinates, at a speed.",
+    "coordinate target": "Moves along one axis: one argument selects it, another is its target.",
     "reached": "Reports whether the arm is at a target.",
     "moving": "Reports whether the arm is in motion.",
     "stop": "Stops the arm.",

@@ -135,8 +135,8 @@ def typing_names(family: Family) -> list[str]:
 
 def moves(edition: Edition) -> bool:
     """Return whether the edition has every command that waiting for a motion's end needs."""
-    needed = {"joint targets", "coordinate targets", "reached", "moving", "stop"}
-    return needed <= {command.role for command in edition.commands}
+    roles = {command.role for command in edition.commands}
+    return "joint targets" in roles and bool(roles & {"reached", "joints"})
 
 
 def value_classes(edition: Edition) -> list[str]:

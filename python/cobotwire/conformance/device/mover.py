@@ -8,9 +8,9 @@ from typing import Any
 
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.device.response import ReceivedReply
 from cobotwire.protocol.messages import Request
+from cobotwire.protocol.roles import targets_request
 from cobotwire.protocol.table import Command, Role
 
 Pose = tuple[float, ...]
@@ -62,7 +62,7 @@ class Mover:
 
     def to(self, pose: Pose, speed: int | None = None) -> Request[Any]:
         """Return the request that sends the arm to a pose; by default at the run's speed."""
-        return request_of(self.targets, pose, speed or self.speed)
+        return targets_request(self.targets, pose, speed or self.speed)
 
     def wait(self) -> None:
         """Wait until the arm reports that it is at rest."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.editions.mycobot280.enums import MovementType, MoveMode, TargetKind
-from cobotwire.simulator.behaviour.registry import behaviour, query, row
+from cobotwire.simulator.behaviour.registry import Unanswerable, behaviour, known, query, row
 from cobotwire.simulator.kinematics import DEGREES_PER_TICK, Pose
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_angle, go_to_angles, go_to_coords
@@ -29,7 +29,7 @@ def send_angles(arm: ArmState, now: float, request: m.SendAngles) -> None:
 
 
 # In the frame and for the end type that are set.
-query(m.GetCoords, lambda arm, now, request: row(arm.reported_coords(arm.standing(now))))
+query(m.GetCoords, lambda arm, now, request: row(known(arm.reported_coords(arm.standing(now)))))
 
 
 @behaviour(m.SendCoord)
@@ -80,7 +80,7 @@ def is_in_position(arm: ArmState, now: float, request: m.IsInPosition) -> m.IsIn
         return m.IsInPositionReply(reached=all(near))
     end = arm.end(standing)
     if end is None:
-        return m.IsInPositionReply(reached=False)
+        raise Unanswerable
     way, turn = end.distance(Pose.of(request.target))
     # Each joint rests up to half a tick from the angle that the target requires.
     reached = way <= MILLIMETRES and turn <= DEGREES + arm.joints * DEGREES_PER_TICK / 2

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.motion import moves_straight
-from cobotwire.simulator.behaviour.registry import behaviour, query, row
+from cobotwire.simulator.behaviour.registry import Unanswerable, behaviour, known, query, row
 from cobotwire.simulator.kinematics import Pose
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_angles, go_to_coords, solve
@@ -23,7 +23,7 @@ query(m.GetAnglesPlan, lambda arm, now, request: row(arm.reported_angles(arm.ang
 # In the frame of the base.
 query(
     m.GetCoordsPlan,
-    lambda arm, now, request: row(arm.reported_coords(arm.angles.target(now), base=True)),
+    lambda arm, now, request: row(known(arm.reported_coords(arm.angles.target(now), base=True))),
 )
 
 
@@ -33,7 +33,7 @@ def get_angles_coords(
 ) -> m.GetAnglesCoordsReply:
     """Reply with the angles of the joints and the end's coordinates."""
     standing = arm.standing(now)
-    coords = arm.reported_coords(standing) or (0.0,) * 6
+    coords = known(arm.reported_coords(standing))
     return m.GetAnglesCoordsReply(angles=row(arm.reported_angles(standing)), coords=row(coords))
 
 
@@ -41,7 +41,7 @@ def get_angles_coords(
 # of get_angles equals that of get_coords.
 query(
     m.AnglesToCoords,
-    lambda arm, now, request: row(arm.reported_coords(arm.on_ticks(tuple(request.angles)))),
+    lambda arm, now, request: row(known(arm.reported_coords(arm.on_ticks(tuple(request.angles))))),
 )
 
 
@@ -54,8 +54,10 @@ def solve_inv_kinematics(
     No source defines the reply without a solution; this arm returns the given angles and sets an
     error.
     """
+    if arm.geometry is None:
+        raise Unanswerable
     near = tuple(request.angles)
-    found = solve(arm, Pose.of(request.coords), near) if arm.geometry else None
+    found = solve(arm, Pose.of(request.coords), near)
     return m.SolveInvKinematicsReply(angles=row(near if found is None else found))
 
 

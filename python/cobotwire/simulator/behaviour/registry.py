@@ -14,8 +14,12 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Reply, Request
-from cobotwire.protocol.table import Command
+from cobotwire.protocol.table import Command, Direction
 from cobotwire.simulator.state import ArmState
+
+
+class Unanswerable(Exception):
+    """The arm does not know what a reply reports, and sends none: its geometry is not stated."""
 
 
 class Sized(NamedTuple):
@@ -35,6 +39,21 @@ class Behaviour(NamedTuple):
 
     request_type: type[Request[Any]]
     behave: Behave
+
+    def fits(self, command: Command) -> bool:
+        """Return whether the types have every field of an edition's command."""
+        reply_type = self.request_type.reply_type
+        replied: tuple[str, ...] = () if reply_type is None else reply_type.__match_args__
+        known: tuple[str, ...] = self.request_type.__match_args__
+        return _names(command, "request") <= set(known) and (
+            not command.requires_reply or _names(command, "reply") <= {*known, *replied}
+        )
+
+
+def _names(command: Command, direction: Direction) -> set[str]:
+    """Return the names of a message's fields, except for constants."""
+    fields = (field for variant in command.variants(direction) for field in variant.fields)
+    return {field.name for field in fields if len(field.choices) != 1 or field.labels}
 
 
 Value = TypeVar("Value")
@@ -113,8 +132,18 @@ def own(command: Command) -> Behaviour | None:
     found = BEHAVIOURS.get(command.name)
     if found is None or command.package.startswith("cobotwire."):
         return found
-    given = {field.name for variant in command.request for field in variant.fields}
-    return found if given <= set(vars(found.request_type.from_fields({}))) else None
+    return found if found.fits(command) else None
+
+
+def known(values: Iterable[float] | None) -> Iterable[float]:
+    """Return the values that a reply reports.
+
+    Raises:
+        Unanswerable: there are none.
+    """
+    if values is None:
+        raise Unanswerable
+    return values
 
 
 def row(values: Iterable[float] | None) -> Any:

@@ -11,8 +11,8 @@ from cobotwire.conformance.device.read_back import Setting, settings_of
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.suite import Group, Selects, TestCase
 from cobotwire.protocol.messages import Request
+from cobotwire.protocol.roles import ANGLES, reached_query
 from cobotwire.protocol.table import Command, Role, Table
-from cobotwire.session.motion import kind_of
 
 ARRIVES = TestCase("arrives", "The arm goes where it was sent, and its other joints stay.")
 REACHED = TestCase("reached", "The arm reports that it is where it was sent, and nowhere else.")
@@ -133,11 +133,10 @@ def expect_moving(probe: Probe, mover: Mover, query: Command | None, moves: bool
 
 
 def _expect_reached(probe: Probe, pose: Pose, there: bool) -> None:
-    query = probe.device.command("reached")
-    if query is not None:
-        kind = kind_of(probe.device.table, "ANGLES")
-        reported = probe.device.is_set(request_of(query, pose, kind))
-        reason = f"{query.name}{pose}: expected {there}; came {_came(reported)}"
+    query = reached_query(probe.device.table)
+    if query is not None and ANGLES in query.kinds:
+        reported = probe.device.is_set(query.request(pose, ANGLES))
+        reason = f"{query.command.name}{pose}: expected {there}; came {_came(reported)}"
         probe.expect(REACHED, reported is there, reason)
 
 

@@ -1,0 +1,122 @@
+"""Find the arguments of commands by their roles, however many joints an edition has.
+
+An edition may order the arguments as it likes: a row of targets is the argument with several
+numbers; a single target is selected by another argument, or has a unit or scale; a speed is in
+percent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.fields import Field, Variant
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Command, Role, Table
+
+# Kinds of target, as the edition's query for a reached target names them.
+ANGLES, COORDS = "ANGLES", "COORDS"
+KINDS = {ANGLES: 0, COORDS: 1}
+
+
+class Picked(NamedTuple):
+    """Where the arguments of a command that moves one part are: which part, and its target."""
+
+    picker: int
+    target: int
+
+
+def row_index(variant: Variant) -> int:
+    """Return the index of the field that holds a row of numbers; -1 if there is none."""
+    return next((index for index, field in enumerate(variant.fields) if field.many), -1)
+
+
+def picked(variant: Variant) -> Picked:
+    """Return the places of the arguments of a command that moves one part.
+
+    Raises:
+        ValueError: it has no such arguments; the generator checks that.
+    """
+    fields = variant.fields
+    for index, field in enumerate(fields):
+        if field.selector >= 0:
+            return Picked(field.selector, index)
+    target = next(index for index, field in enumerate(fields) if _is_target(field))
+    return Picked(next(i for i, field in enumerate(fields) if _is_picker(field)), target)
+
+
+def _is_target(field: Field) -> bool:
+    number = field.cases[0].numbers[0]
+    # A number in percent is the speed.
+    return number.unit != "percent" and not _is_picker(field)
+
+
+def _is_picker(field: Field) -> bool:
+    number = field.cases[0].numbers[0]
+    return not number.scaled and not number.unit
+
+
+def targets_request(command: Command, target: Sequence[float], *others: Any) -> Request[Any]:
+    """Return the request that moves to a row of targets; ``others`` follow in the method's order.
+
+    Raises:
+        UsageError: the command needs another argument, or has fewer.
+    """
+    names: tuple[str, ...] = command.request_type.__match_args__
+    row = command.request[0].fields[row_index(command.request[0])].name
+    rest = [name for name in names if name != row]
+    given = dict(zip(rest, others))
+    if len(others) > len(rest):
+        message = f"{command.name}() has no argument for {others[len(rest)]!r}"
+        raise UsageError("arguments", others[len(rest)], message=message)
+    for name in rest:
+        if name not in given and name not in command.request_type.__dict__:
+            raise UsageError(name, message=f"{command.name}() needs its argument {name}")
+    return command.request_type(**{row: target}, **given)
+
+
+class ReachedQuery(NamedTuple):
+    """The query that reports whether a target is reached.
+
+    Attributes:
+        command: the query.
+        row: the argument that holds the target.
+        kind: the argument that holds the kind of target; empty if it takes only angles.
+        kinds: the raw value of each kind that it takes.
+    """
+
+    command: Command
+    row: str
+    kind: str
+    kinds: dict[str, int]
+
+    def request(self, target: Sequence[float], label: str) -> Request[Any]:
+        """Return the request for a target of a kind that it takes."""
+        kind = {self.kind: self.kinds[label]} if self.kind else {}
+        return self.command.request_type(**{self.row: target}, **kind)
+
+
+def reached_query(table: Table) -> ReachedQuery | None:
+    """Return the query in the role ``reached``; None if the edition has none."""
+    command = table.find_role("reached")
+    if command is None:
+        return None
+    variant = command.request[0]
+    row = variant.fields[row_index(variant)].name
+    for field in variant.fields:
+        if not field.many and field.labels:
+            raws = dict(zip(field.labels, field.choices))
+            return ReachedQuery(command, row, field.name, {k: raws[k] for k in KINDS if k in raws})
+    return ReachedQuery(command, row, "", {ANGLES: KINDS[ANGLES]})
+
+
+def kinds_of(table: Table) -> dict[str, int]:
+    """Return the number of each kind of target: the edition's own, or else KINDS."""
+    query = reached_query(table)
+    return KINDS | ({} if query is None else query.kinds)
+
+
+def place_role(label: str) -> Role:
+    """Return the role of the query that reports where the arm is, in targets of a kind."""
+    return "joints" if label == ANGLES else "coordinates"

@@ -1,0 +1,127 @@
+"""What the arm does for commands that it knows only by their roles, in any edition.
+
+They serve editions that name commands or arguments in their own way, and arms with any number of
+joints. Where the registry has a behaviour for the command's name and fields, that one is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from cobotwire.protocol.fields import Field
+from cobotwire.protocol.roles import ANGLES, picked, reached_query, row_index
+from cobotwire.protocol.table import Command, Role, Table
+from cobotwire.simulator.behaviour.registry import Unanswerable
+from cobotwire.simulator.kinematics import Pose
+from cobotwire.simulator.state import ArmState
+from cobotwire.simulator.targets import go_to_angle, go_to_angles, go_to_coords
+
+# How near to a target counts as reached, in degrees and in millimetres.
+DEGREES, MILLIMETRES = 0.1, 5.0
+# The speed of a motion whose command has no speed, in percent.
+USUAL_SPEED = 50
+SIX = ("x", "y", "z", "rx", "ry", "rz")
+
+Fields = Mapping[str, Any]
+Perform = Callable[[Table, ArmState, float, Command, Fields], Any]
+
+
+def perform_role(
+    table: Table, arm: ArmState, now: float, command: Command, fields: Fields
+) -> dict[str, Any] | None:
+    """Perform a command by its role; return the fields of its reply, None if it has none.
+
+    Raises:
+        Unanswerable: the arm does not know what the reply reports.
+    """
+    perform = _ROLES.get(command.role)
+    if perform is None:
+        return None
+    value = perform(table, arm, now, command, fields)
+    if not command.requires_reply:
+        return None
+    return {command.reply[0].fields[-1].name: value}
+
+
+def _move_joints(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> None:
+    go_to_angles(arm, tuple(fields[_row(command).name]), _speed(command, fields), now)
+
+
+def _move_joint(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> None:
+    picker, target = picked(command.request[0])
+    names = [field.name for field in command.request[0].fields]
+    go_to_angle(arm, fields[names[picker]], fields[names[target]], _speed(command, fields), now)
+
+
+def _move_end(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> None:
+    row = _row(command)
+    if tuple(number.name for number in row.cases[0].numbers) != SIX:
+        arm.remarks.append("rejected: the arm has no inverse kinematics for these coordinates")
+        return
+    go_to_coords(arm, fields[row.name], _speed(command, fields), now)
+
+
+def _joints(
+    table: Table, arm: ArmState, now: float, command: Command, fields: Fields
+) -> tuple[float, ...]:
+    return arm.reported_angles(arm.angles.position(now))
+
+
+def _coordinates(
+    table: Table, arm: ArmState, now: float, command: Command, fields: Fields
+) -> tuple[float, ...]:
+    coords = arm.reported_coords(arm.standing(now))
+    numbers = command.reply[0].fields[-1].cases[0].numbers
+    if coords is None or not {number.name for number in numbers} <= set(SIX):
+        raise Unanswerable
+    return tuple(coords[SIX.index(number.name)] for number in numbers)
+
+
+def _reached(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> bool:
+    query = reached_query(table)
+    assert query is not None, "this command has the role"
+    target, standing = fields[query.row], arm.standing(now)
+    if not query.kind or fields[query.kind] == query.kinds[ANGLES]:
+        return all(abs(have - wish) <= DEGREES for have, wish in zip(standing, target))
+    end = arm.end(standing)
+    if end is None or len(target) != len(SIX):
+        raise Unanswerable
+    way, turn = end.distance(Pose.of(target))
+    return way <= MILLIMETRES and turn <= DEGREES
+
+
+def _moving(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> bool:
+    return arm.angles.moving(now) and not arm.released
+
+
+def _stop(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> None:
+    arm.angles.brake(now)
+    arm.resume(now)
+
+
+def _row(command: Command) -> Field:
+    return command.request[0].fields[row_index(command.request[0])]
+
+
+def _speed(command: Command, fields: Fields) -> int:
+    """Return the speed of a request in percent: the argument with that unit."""
+    for field in command.request[0].fields:
+        if not field.many and field.cases[0].numbers[0].unit == "percent":
+            return round(float(fields.get(field.name, USUAL_SPEED)))
+    return USUAL_SPEED
+
+
+_ROLES: dict[Role, Perform] = {
+    "joint targets": _move_joints,
+    "joint target": _move_joint,
+    "coordinate targets": _move_end,
+    "joints": _joints,
+    "coordinates": _coordinates,
+    "reached": _reached,
+    "moving": _moving,
+    "stop": _stop,
+    "powered": lambda table, arm, now, command, fields: arm.powered,
+    "paused": lambda table, arm, now, command, fields: arm.paused,
+    "error": lambda table, arm, now, command, fields: arm.error,
+}
