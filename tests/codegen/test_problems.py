@@ -13,8 +13,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from cobotwire_codegen.author.codes import CODES
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check
+from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.load import MOST_BYTES
 
@@ -29,7 +28,7 @@ def _name(case: dict[str, Any]) -> str:
 
 def _problems(path: Path) -> list[str]:
     try:
-        check(build_edition(path, path.parent))
+        checked_edition(path, path.parent)
     except SpecError as error:
         return [str(problem) for problem in error.problems]
     return []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
+from typing import Any
 
 from cobotwire_codegen.legal import visible
 
@@ -40,9 +41,13 @@ class Problem:
 
 
 class SpecError(Exception):
-    """A spec that cannot be used; carries every problem, in the order of the files."""
+    """A spec that cannot be used; carries every problem, in the order of the files.
 
-    def __init__(self, problems: Iterable[Problem]) -> None:
+    ``partial`` is the edition with stand-ins for what could not be read; None if there is none.
+    """
+
+    def __init__(self, problems: Iterable[Problem], partial: Any = None) -> None:
+        self.partial = partial
         self.problems = tuple(sorted(set(problems)))
         super().__init__("\n".join(str(problem) for problem in self.problems))
 

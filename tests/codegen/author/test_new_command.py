@@ -148,3 +148,17 @@ def test_new_command_of_a_delta_is_added_to_the_deltas_files(tmp_path: Path) -> 
     code, output = _new(tmp_path, edition, *SETTING, "--id", "0xEE", "--family", "gripper")
     assert code == 0, output
     assert samples.run(tmp_path, "check", edition).returncode == 0
+
+
+def test_new_command_begins_the_commands_of_a_delta_that_has_none(tmp_path: Path) -> None:
+    folder = samples.copied(tmp_path)
+    delta = folder / "lantern.yaml"
+    delta.write_text(
+        "edition: lantern\nclass: Lantern\ntitle: A lantern\ndoc: A lamp.\nbase: lamp.yaml\n"
+    )
+    assert samples.problems(delta) == []
+    code, output = _new(folder, "lantern.yaml", *SETTING, "--request", "joint:joint")
+    assert code == 0, output
+    assert samples.problems(delta) == []
+    assert "\ncommands:\n  dim:\n" in delta.read_text()
+    assert "\nvectors:\n" in delta.read_text()

@@ -10,7 +10,8 @@ from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 def families(edition: Path) -> dict[str, Path]:
     """Return the commands files by family; the only family of a one-file protocol has no name."""
     commands = _under(edition, "commands")
-    if isinstance(commands, Mapping):
+    # A delta may have no commands of its own yet: they begin in its own file.
+    if commands is None or isinstance(commands, Mapping):
         return {"": edition}
     found = {}
     for path in _files(edition, commands):

@@ -11,6 +11,7 @@ from cobotwire_codegen.build.types import Types, disputes
 from cobotwire_codegen.errors import Place, Problem
 from cobotwire_codegen.load import Node
 from cobotwire_codegen.model import Command, Family, Variant
+from cobotwire_codegen.model.commands import NoId
 from cobotwire_codegen.reader import Reader
 
 
@@ -52,6 +53,14 @@ class _Acks:
         return () if name in self._except else self.variants
 
 
+def _id(reader: Reader) -> int:
+    """Return the id; a stand-in if it is missing or wrong."""
+    before = len(reader.problems)
+    id = reader.get(language.Command.id)
+    wrong = reader.node(language.Command.id) is None or len(reader.problems) > before
+    return NoId() if wrong else id
+
+
 def _command(
     name: str,
     place: Place,
@@ -72,7 +81,7 @@ def _command(
         ack = bool(replies)
     return Command(
         place=place,
-        id=reader.get(spec.id),
+        id=_id(reader),
         name=name,
         title=reader.get(spec.title),
         doc=reader.get(spec.doc),

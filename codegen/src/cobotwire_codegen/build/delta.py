@@ -53,6 +53,7 @@ def _remove(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
         holder = _holder(parts, reader, name)
         if holder is not None:
             del holder[name]
+            parts.gone[name] = f"; this edition removes it at {reader.place}"
             parts.inherited = [each for each in parts.inherited if each.command != name]
     return f"Removed {', '.join(names)}."
 
@@ -62,6 +63,7 @@ def _rename(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     for name in names:
         holder = _holder(parts, reader, name)
         if holder is not None:
+            parts.gone[name] = f"; this edition renames it to {new} at {reader.place}"
             # Keep the place of the command, so that the order of the family stays the same.
             entries = [(new if key == name else key, value) for key, value in holder.items()]
             holder.clear()
@@ -122,6 +124,9 @@ OPERATIONS: dict[str, Operation] = {
 
 
 def _holder(parts: Parts, reader: Reader, name: str) -> Named | None:
+    if name in parts.gone and parts.family_of(name) is None:
+        reader.problem("unknown-command", f"there is no command {name}{parts.gone[name]}")
+        return None
     if not find(parts.commands(), name, "command", reader.place, reader.problems):
         return None
     family = parts.family_of(name)

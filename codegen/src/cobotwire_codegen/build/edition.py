@@ -35,7 +35,7 @@ def build_edition(path: Path, root: Path, unsaved: Mapping[Path, str] | None = N
     reader, parts = _collect(path, texts, problems, ())
     edition = _build(reader, parts, problems)
     if problems:
-        raise SpecError(problems)
+        raise SpecError(problems, edition)
     return edition
 
 
@@ -59,7 +59,7 @@ def _collect(
         parts.vectors = []
         parts.inherited = [Inherited(each, each.command) for each in parts.base.vectors]
         # The base's errata are about the base's document, its changes about its own base.
-        parts.errata, parts.changes, parts.general_changes = [], {}, []
+        parts.errata, parts.changes, parts.general_changes, parts.gone = [], {}, [], {}
         for node in files.listed(reader, language.DeltaEdition.changes):
             apply_changes(parts, node, problems)
     add_own(parts, reader, files)
@@ -96,6 +96,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
             *(build_vector(node, problems) for node in parts.vectors),
         ),
         changes=tuple(parts.general_changes),
+        gone=tuple(parts.gone.items()),
     )
 
 

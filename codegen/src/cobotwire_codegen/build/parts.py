@@ -61,6 +61,8 @@ class Parts:
     errata: list[Node] = field(default_factory=list)
     base: Edition | None = None
     changes: dict[str, list[Change]] = field(default_factory=dict)
+    # Commands of the base that the delta takes away, each with a hint for who still names it.
+    gone: dict[str, str] = field(default_factory=dict)
     general_changes: list[Change] = field(default_factory=list)
 
     def family_of(self, command: str) -> FamilyParts | None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 
+from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import (
     arguments,
     commands,
@@ -31,6 +33,33 @@ RULES: tuple[Rule, ...] = (
     *roles.RULES,
     *evidence.RULES,
 )
+
+
+# Rules that read only names, ids and places, so that mistakes elsewhere cannot mislead them.
+INDEPENDENT: tuple[Rule, ...] = (
+    *names.RULES,
+    *reserved.RULES,
+    commands.ids_apart,
+    evidence.vectors_apart,
+)
+
+
+def checked_edition(path: Path, root: Path, unsaved: Mapping[Path, str] | None = None) -> Edition:
+    """Return an edition, built and checked; the arguments are those of ``build_edition``.
+
+    Raises:
+        SpecError: the spec has problems. If it cannot be read completely, these are the problems
+            of reading and those that do not follow from them.
+    """
+    try:
+        edition = build_edition(path, root, unsaved)
+    except SpecError as error:
+        if error.partial is None:
+            raise
+        more = [problem for rule in INDEPENDENT for problem in rule(error.partial)]
+        raise SpecError([*error.problems, *more]) from None
+    check(edition)
+    return edition
 
 
 def check(edition: Edition) -> None:

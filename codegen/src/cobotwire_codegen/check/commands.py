@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import Literal
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.errors import Problem, nearest
+from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.model import Command, Edition, Field
+from cobotwire_codegen.model.commands import NoId
 
 _DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
 
@@ -39,6 +40,8 @@ def ids_apart(edition: Edition) -> Iterator[Problem]:
     """Report ids that several commands use without `shares_id` or `alias`."""
     seen: dict[int, Command] = {}
     for command in edition.commands:
+        if isinstance(command.id, NoId):
+            continue
         first = seen.setdefault(command.id, command)
         declared = {first.alias, command.alias, *first.shares_id, *command.shares_id}
         if first is not command and not declared & {first.name, command.name}:
@@ -56,7 +59,7 @@ def shared_ids_exist(edition: Edition) -> Iterator[Problem]:
         for name in command.shares_id:
             other = commands.get(name)
             if other is None:
-                message = f"there is no command {name}{nearest(name, commands)}"
+                message = edition.no_command(name)
                 yield Problem(command.place, "unknown-command", message)
             elif other.id != command.id:
                 message = f"{name} and {command.name} have different ids; remove shares_id"
@@ -71,7 +74,7 @@ def aliases_match(edition: Edition) -> Iterator[Problem]:
             continue
         other = commands.get(command.alias)
         if other is None:
-            message = f"there is no command {command.alias}{nearest(command.alias, commands)}"
+            message = edition.no_command(command.alias)
             yield Problem(command.place, "unknown-command", message)
         elif _wire(command) != _wire(other):
             message = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from cobotwire_codegen.errors import Problem, nearest
+from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.model import Command, Edition, Variant, Vector
 from cobotwire_codegen.wire import build_frame
 
@@ -18,7 +18,7 @@ def vectors_hold(edition: Edition) -> Iterator[Problem]:
     for vector in edition.vectors:
         command = commands.get(vector.command)
         if command is None:
-            message = f"there is no command {vector.command}{nearest(vector.command, commands)}"
+            message = edition.no_command(vector.command)
             yield Problem(vector.place, "unknown-command", message)
         elif vector.frame is not None:
             try:
@@ -114,7 +114,7 @@ def errata_name_commands(edition: Edition) -> Iterator[Problem]:
     for erratum in edition.errata:
         for name in erratum.commands:
             if name not in known:
-                message = f"there is no command {name}{nearest(name, known)}"
+                message = edition.no_command(name)
                 yield Problem(erratum.place, "unknown-command", message)
 
 

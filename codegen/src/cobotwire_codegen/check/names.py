@@ -19,7 +19,7 @@ def commands_apart(edition: Edition) -> Iterator[Problem]:
         for variant in (*command.requests, *command.replies):
             names = [field.name for field in variant]
             for index, field in enumerate(variant):
-                if field.name in names[:index]:
+                if field.name and field.name in names[:index]:
                     yield Problem(field.place, "duplicate-field", f"{field.name} is given twice")
 
 

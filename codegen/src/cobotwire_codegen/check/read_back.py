@@ -17,7 +17,9 @@ def read_back_fits(edition: Edition) -> Iterator[Problem]:
             continue
         query = known.get(back.query)
         if query is None or query.safety != "query":
-            hint = nearest(back.query, (c.name for c in edition.commands if c.safety == "query"))
+            hint = dict(edition.gone).get(back.query) or nearest(
+                back.query, (c.name for c in edition.commands if c.safety == "query")
+            )
             message = f"read_by of {command.name} names {back.query}, which is not a query{hint}"
             yield Problem(back.place, "bad-read-back", message)
         else:

@@ -130,6 +130,8 @@ def classes_apart(edition: Edition) -> Iterator[Problem]:
     """Report classes of the generated package that have the same name."""
     seen: dict[str, Place] = {}
     for name, place in (*_classes(edition), *_asyncio_classes(edition)):
+        if not name:
+            continue
         if name in RESERVED_CLASSES:
             yield _reserved(name, place)
         elif name in seen:

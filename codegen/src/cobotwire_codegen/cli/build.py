@@ -9,8 +9,7 @@ from pathlib import Path
 
 import click
 
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check as check_edition
+from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.cli.generate import show_stale, write_all
 from cobotwire_codegen.cli.shared import (
     check_names,
@@ -77,8 +76,7 @@ def build(
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
     with report_problems(variant):
-        edition = build_edition(path, Path.cwd())
-        check_edition(edition)
+        edition = checked_edition(path, Path.cwd())
     own = Path(templates) if templates else None
     check_names(own)
     with report_problems(variant), report_template_errors(own):

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check as check_edition
+from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.cli.shared import edition_path, format_option, report_problems, root_option
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.project import edition_files
@@ -28,7 +27,7 @@ def check(files: tuple[str, ...], root: str, variant: str) -> None:
         paths = [edition_path(file) for file in files] or edition_files(Path(root))
         for path in paths:
             try:
-                check_edition(build_edition(path, Path(root)))
+                checked_edition(path, Path(root))
             except SpecError as error:
                 problems.extend(error.problems)
         if problems:

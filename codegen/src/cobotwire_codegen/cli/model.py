@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check as check_edition
+from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.cli.shared import (
     edition_path,
     format_option,
@@ -29,8 +28,7 @@ def model(file: str, out: str | None, variant: str) -> None:
     References are resolved, defaults filled in and deltas applied.
     """
     with report_problems(variant):
-        edition = build_edition(edition_path(file), Path.cwd())
-        check_edition(edition)
+        edition = checked_edition(edition_path(file), Path.cwd())
     text = edition_json(edition, complete=True)
     if out is None:
         click.echo(text, nl=False)

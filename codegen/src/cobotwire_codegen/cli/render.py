@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check as check_edition
+from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.cli.shared import (
     edition_path,
     format_option,
@@ -33,8 +32,7 @@ def render(template: str, file: str, out: str | None, variant: str) -> None:
     """
     path = Path(template)
     with report_problems(variant):
-        edition = build_edition(edition_path(file), Path.cwd())
-        check_edition(edition)
+        edition = checked_edition(edition_path(file), Path.cwd())
     with report_template_errors(path.parent):
         text = environment(path.parent).get_template(path.name).render(edition=edition)
     if out is None:

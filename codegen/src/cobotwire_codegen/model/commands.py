@@ -10,6 +10,10 @@ from cobotwire_codegen.model.facts import Change, Dispute, Lines
 from cobotwire_codegen.model.types import Member, Type, Value
 
 
+class NoId(int):
+    """The id of a command whose spec states none: a stand-in, 0, that is no duplicate."""
+
+
 @dataclass(frozen=True, slots=True)
 class Field:
     """An argument of a request, or a part of a reply.

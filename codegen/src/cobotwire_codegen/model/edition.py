@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-from cobotwire_codegen.errors import Place
+from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.model.commands import Command, Family
 from cobotwire_codegen.model.facts import Change, Lines
 from cobotwire_codegen.model.types import Type, Wire
@@ -134,6 +134,13 @@ class Edition:
     errata: tuple[Erratum, ...]
     vectors: tuple[Vector, ...]
     changes: tuple[Change, ...]
+    gone: tuple[tuple[str, str], ...] = ()
+    """Commands of the base that this edition takes away, each with a hint that says where."""
+
+    def no_command(self, name: str) -> str:
+        """Return the message that an unknown command has."""
+        hint = dict(self.gone).get(name) or nearest(name, (c.name for c in self.commands))
+        return f"there is no command {name}{hint}"
 
     @property
     def commands(self) -> tuple[Command, ...]:
