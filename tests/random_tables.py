@@ -6,6 +6,7 @@ under selectors, and the frames on the line hold any raw values, allowed or not.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal
 
 from hypothesis import strategies as st
@@ -70,6 +71,8 @@ def floats(draw: st.DrawFn, width: int) -> Number:
 @st.composite
 def fields(draw: st.DrawFn, name: str, selector: int = -1) -> Field:
     """Draw a field of one number or a row of them, under a selector if it is given."""
+    if draw(st.integers(0, 3)) == 0:
+        return draw(shaped_fields(name))
     many = draw(st.booleans())
     widths = [
         draw(st.sampled_from([1, 2, 4, 8])) for _ in range(draw(st.integers(1, 4)) if many else 1)
@@ -81,6 +84,55 @@ def fields(draw: st.DrawFn, name: str, selector: int = -1) -> Field:
         legal = st.integers(cases[0].numbers[0].minimum, cases[0].numbers[0].maximum)
         choices = tuple(draw(st.lists(legal, min_size=1, max_size=3, unique=True)))
     return Field(name, "number", cases, "", many, choices, (), selector)
+
+
+@st.composite
+def shaped_fields(draw: st.DrawFn, name: str) -> Field:
+    """Draw bits, bytes, a text, a list of texts, or a list of rows."""
+    kind = draw(st.sampled_from(["bits", "bytes", "text", "texts", "rows"]))
+    sizes = draw(st.sampled_from([None, (0, 5)]))
+    count, each = draw(st.integers(0, 3)), draw(st.integers(1, 4))
+    if kind == "bits":
+        return Field(name, "number", (Case((), draw(bits())),), "", True)
+    if kind == "rows":
+        group = tuple([draw(numbers(1)) for _ in range(each - 1)])
+        group += draw(bits()) if draw(st.booleans()) else (draw(numbers(2)),)
+        case = Case((), group * count)
+        return Field(name, "number", (case,), "", True, each=len(group), sizes=sizes)
+    byte = Number("", 1, "big", 255, 1, 1, 0, 255, "")
+    encoding = draw(st.sampled_from(["ascii", "utf-8", "latin-1"])) if kind != "bytes" else ""
+    if encoding == "ascii":
+        byte = replace(byte, maximum=127)
+    padding = draw(st.sampled_from([-1, 0, 32])) if kind != "bytes" else -1
+    case = Case((), (byte,) * (count * each))
+    shape: Literal["bytes", "text"] = "bytes" if kind == "bytes" else "text"
+    of = each if kind == "texts" else 0
+    texts: dict[str, Any] = {"each": of, "encoding": encoding, "padding": padding, "sizes": sizes}
+    return Field(name, shape, (case,), "", True, **texts)
+
+
+@st.composite
+def bits(draw: st.DrawFn) -> tuple[Number, ...]:
+    """Draw the numbers of a word, some of them flags or with a list of choices."""
+    width = draw(st.sampled_from([1, 2, 4]))
+    order: Literal["big", "little"] = draw(st.sampled_from(["big", "little"]))
+    found: list[Number] = []
+    shift = 0
+    while shift < 8 * width and len(found) < 4:
+        count = draw(st.integers(1, 8 * width - shift))
+        top = 2**count - 1
+        signed_at = draw(st.sampled_from([top, top // 2]))
+        low = 0 if signed_at == top else signed_at - top
+        kind = draw(st.sampled_from(["number", "flag", "enum"]))
+        choices = {"number": (), "flag": (0, 1), "enum": (low, signed_at)}[kind]
+        number = Number("b", width, order, signed_at, 1, 1, low, signed_at, "")
+        flag: Literal["number", "flag"] = "flag" if kind == "flag" else "number"
+        if kind == "flag":
+            number = replace(number, signed_at=top, minimum=0, maximum=1)
+        number = replace(number, kind=flag, choices=choices, shift=shift, bits=count, more=True)
+        found.append(number)
+        shift += count
+    return (*found[:-1], replace(found[-1], more=False))
 
 
 @st.composite
@@ -150,9 +202,29 @@ def values(variant: Variant) -> st.SearchStrategy[tuple[Any, ...]]:
 
 def _value(field: Field) -> st.SearchStrategy[Any]:
     case = field.cases[0]
+    if field.each or field.kind in ("bytes", "text"):
+        return _shaped_value(field) | strategies.odd_values()
     parts = [_near(number) for number in case.numbers]
     near: st.SearchStrategy[Any] = st.tuples(*parts) if field.many else parts[0]
     return st.one_of(near, near, near, strategies.odd_values())
+
+
+def _shaped_value(field: Field) -> st.SearchStrategy[Any]:
+    """Draw a value of bytes, text or a list, mostly of the right size."""
+    total = len(field.cases[0].numbers)
+    if field.kind == "bytes":
+        data = st.binary(min_size=total, max_size=total)
+        others: list[Any] = [bytearray, memoryview, list]
+        return st.one_of(data, *[data.map(other) for other in others])
+    letters = st.text(st.sampled_from("aé€ \0"), max_size=total)
+    if field.kind == "text":
+        count = total // field.each if field.each else 0
+        texts = st.lists(letters, min_size=count, max_size=count)
+        return texts if field.each else letters
+    group = st.tuples(*[_near(number) for number in field.cases[0].numbers[: field.each]])
+    groups = st.lists(group | strategies.odd_values(), max_size=total // field.each)
+    right = st.lists(group, min_size=total // field.each, max_size=total // field.each)
+    return right | right | groups
 
 
 def _near(number: Number) -> st.SearchStrategy[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -13,7 +14,7 @@ import random_tables
 import small_tables
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Columns, Frame, Listening
-from cobotwire.protocol.errors import CobotwireError, ProtocolError
+from cobotwire.protocol.errors import CobotwireError, ProtocolError, UsageError
 from cobotwire.protocol.table import Table, Variant
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
@@ -169,3 +170,29 @@ def test_frame_with_an_unknown_id_is_missed_in_the_direction_that_was_meant(
         for action in actions:
             with pytest.raises(ProtocolError, match=f"small has no {meant} with id 77"):
                 action()
+
+
+def test_counted_list_takes_the_variant_of_its_size_and_names_the_element_at_fault() -> None:
+    joint = (
+        replace(small_tables.number(2, -300, 300), name="angle"),
+        replace(small_tables.number(1, 0, 90), name="temperature"),
+    )
+    variants = []
+    for size in range(4):
+        count = replace(small_tables.field("n", small_tables.number(), choices=(size,)), const=size)
+        counted = replace(count, counts="joints", sizes=(0, 3))
+        listed = small_tables.field("joints", *(joint * size), many=True)
+        variants.append(Variant((counted, replace(listed, each=2, sizes=(0, 3)))))
+    table = small_tables.table(small_tables.command(1, "set_joints", tuple(variants)))
+    for codec in both(table):
+        frame = codec.encode("set_joints", "request", (..., [(-3, 20), (300, 90)]))
+        assert frame.hex(" ") == "fe fe 09 01 02 ff fd 14 01 2c 5a fa"
+        assert codec.decode("request", frame).values == (2, ((-3, 20), (300, 90)))
+        wrong: list[tuple[list[Any], str]] = [
+            ([(0, 0), (0, 91)], r"joints\[1\].temperature is 91; allowed: a whole number 0..90"),
+            ([(0, 0), 5], r"joints\[1\] is 5; allowed: a sequence of 2 numbers \(angle, temp"),
+            ([(0, 0)] * 4, r"len\(joints\) is 4; allowed: 0..3"),
+        ]
+        for joints, message in wrong:
+            with pytest.raises(UsageError, match=message):
+                codec.encode("set_joints", "request", (..., joints))

@@ -43,7 +43,7 @@ def places(variant: Variant, picked: Mapping[int, int] | None = None) -> Iterato
         numbers = field.cases[0].numbers if picked is None else numbers_of(field, picked)
         for element, number in enumerate(numbers):
             yield Place(field, number, index, element, start)
-            start += number.width
+            start += number.step
 
 
 def picks(variant: Variant) -> Iterator[dict[int, int]]:

@@ -82,28 +82,42 @@ def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[
     yield Part(start + 1, data[start + 1 : start + 2], "CMD", f"{command.name}: {command.title}")
     offset = frame.overhead + 1
     for field, value in zip(message.variant.fields, message.values):
+        if field.kind in ("bytes", "text"):
+            size = field.size
+            yield Part(offset, data[offset : offset + size], field.name, format_bytes(value))
+            offset += size
+            continue
         for number, single in _numbers(message, field, value):
             name = f"{field.name} {number.name}".strip()
             chunk = data[offset : offset + number.width]
             yield Part(offset, chunk, name, format_value(field, number, single))
-            offset += number.width
+            offset += number.step
     end = "footer" if frame.check == "footer" else "check"
     yield Part(offset, data[offset:], end, "the frame ends here")
 
 
 def _numbers(message: DecodedMessage, field: Field, value: Any) -> Iterator[tuple[Number, Any]]:
     case = message.variant.case(field, message.values)
-    yield from zip(case.numbers, value if field.many else (value,))
+    yield from zip(case.numbers, field.flatten(value, len(case.numbers)))
 
 
 def format_value(field: Field, number: Number, value: Any) -> str:
     """Return one value with its unit or label."""
-    if field.kind == "flag":
+    if "flag" in (field.kind, number.kind):
         return "yes" if value else "no"
     if field.labels:
         return f"{field.labels[field.choices.index(value)]} ({value})"
+    if number.labels:
+        return f"{number.labels[number.choices.index(value)]} ({value})"
     unit = f" {number.units}" if number.unit else ""
     return f"{value:g}{unit}" if isinstance(value, float) else f"{value}{unit}"
+
+
+def format_bytes(value: Any) -> str:
+    """Return bytes as hex digits, and texts in quotes."""
+    if isinstance(value, bytes):
+        return value.hex(" ").upper() or "no bytes"
+    return repr(list(value) if isinstance(value, tuple) else value)
 
 
 def format_message(message: DecodedMessage) -> str:
@@ -111,7 +125,10 @@ def format_message(message: DecodedMessage) -> str:
     values = []
     for field, value in zip(message.variant.fields, message.values):
         numbers = _numbers(message, field, value)
-        text = _format_tuple(numbers) if field.many else format_value(field, *next(numbers))
+        if field.kind in ("bytes", "text"):
+            text = format_bytes(value)
+        else:
+            text = _format_tuple(numbers) if field.many else format_value(field, *next(numbers))
         values.append(f"{field.name}={text}")
     arrow = "" if message.direction == "request" else "-> "
     way = "to" if message.direction == "request" else "from"

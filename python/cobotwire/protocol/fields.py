@@ -14,7 +14,7 @@ from cobotwire.protocol.arguments import Row
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.numbers import Number
 
-FieldKind = Literal["number", "flag", "enum"]
+FieldKind = Literal["number", "flag", "enum", "bytes", "text"]
 # The raw values of a message, by field and element.
 RawRows = Sequence[Sequence[int]]
 
@@ -38,6 +38,13 @@ class Field:
 
     ``const`` is the only raw value of a constant, which is no argument and no result. ``default``
     are the raw values of an argument that the caller leaves out.
+
+    A field of ``bytes`` or ``text`` has a number for each byte. ``encoding`` is that of a text, and
+    ``padding`` the byte after a text that is shorter than its field (-1: none). If ``each`` is not
+    0, the value is a tuple of elements of that many numbers: tuples, or texts.
+    ``sizes`` are the least and the most elements of a list whose number varies; a variant has one
+    of these numbers, and other variants have the others. A field that ``counts`` the elements of
+    another one has the same ``sizes``; callers pass ``...`` for it.
     """
 
     name: str
@@ -51,11 +58,16 @@ class Field:
     echo: bool = False
     const: int | None = None
     default: tuple[int, ...] | None = None
+    each: int = 0
+    encoding: str = ""
+    padding: int = -1
+    sizes: tuple[int, int] | None = None
+    counts: str = ""
 
     @property
     def size(self) -> int:
         """The number of bytes on the wire."""
-        return sum([number.width for number in self.cases[0].numbers])
+        return packed_size(self.cases[0].numbers)
 
     @property
     def numbers(self) -> tuple[Number, ...]:
@@ -67,8 +79,8 @@ class Field:
         """The lowest and the highest raw value that the field allows in any case."""
         numbers = self.numbers
         return (
-            min(self.choices or [number.minimum for number in numbers]),
-            max(self.choices or [number.maximum for number in numbers]),
+            min(self.choices or [number.minimum for number in numbers], default=0),
+            max(self.choices or [number.maximum for number in numbers], default=0),
         )
 
     def case(self, selected: int | None) -> Case | None:
@@ -88,13 +100,51 @@ class Field:
         """Return whether one of the field's numbers may hold a raw value."""
         if self.choices:
             return raw in self.choices
-        return number.minimum <= raw <= number.maximum
+        return number.allows(raw)
+
+    def present(self, values: Sequence[Any]) -> Any:
+        """Return the value of the field from those of its numbers, which are legal."""
+        if not self.many:
+            return values[0]
+        if self.kind == "bytes":
+            return bytes(values)
+        groups = [values[at : at + self.each] for at in range(0, len(values), self.each or 1)]
+        if self.kind == "text":
+            return tuple(map(self._text, groups)) if self.each else self._text(values)
+        return tuple(map(tuple, groups)) if self.each else tuple(values)
+
+    def _text(self, values: Sequence[int]) -> str:
+        data = bytes(values)
+        if self.padding >= 0:
+            data = data.rstrip(bytes([self.padding]))
+        return data.decode(self.encoding)
+
+    def bad_text_at(self, values: Sequence[Any]) -> int | None:
+        """Return the index of the first byte that is not text; None if there is none."""
+        if self.kind != "text" or self.encoding != "utf-8":
+            return None
+        for at in range(0, len(values), self.each or len(values) or 1):
+            try:
+                bytes(values[at : at + (self.each or len(values))]).decode()
+            except UnicodeDecodeError as error:
+                return at + error.start
+        return None
+
+    def flatten(self, value: Any, size: int) -> list[Any]:
+        """Return the values of the ``size`` numbers that make up a legal value of the field."""
+        if not self.many:
+            return [value]
+        if self.kind != "text":
+            return [part for group in value for part in group] if self.each else list(value)
+        texts, each = (value, self.each) if self.each else ((value,), size)
+        pad = bytes([max(self.padding, 0)])
+        return [byte for text in texts for byte in text.encode(self.encoding).ljust(each, pad)]
 
     def physical(self, raw: Sequence[int]) -> Any:
         """Return the value of a field without a selector that holds these raw values."""
         values = [n.physical(each) for n, each in zip(self.cases[0].numbers, raw)]
         if self.many:
-            return tuple(values)
+            return self.present(values)
         return bool(values[0]) if self.kind == "flag" and self.const is None else values[0]
 
     def meets(self, number: Number, other: Field, other_number: Number) -> bool:
@@ -122,7 +172,9 @@ class Variant:
         """The variant as :mod:`cobotwire.protocol.arguments` describes it."""
         return tuple(
             [
-                field.physical([field.const])
+                ...
+                if field.counts
+                else field.physical([field.const])
                 if field.const is not None
                 else field.name
                 if field.default is None
@@ -172,7 +224,7 @@ class Variant:
             at = self.start(index)
             for number in field.cases[0].numbers if field.selector < 0 else ():
                 found[at] = field, number
-                at += number.width
+                at += number.step
         return found
 
     def start(self, index: int) -> int:
@@ -190,7 +242,7 @@ class Variant:
             at, row = self.start(index), []
             for number in self._case_in(field, data).numbers:
                 row.append(number.unpack(data, at))
-                at += number.width
+                at += number.step
             rows.append(tuple(row))
         return rows
 
@@ -201,9 +253,8 @@ class Variant:
         """
         return b"".join(
             [
-                number.pack(raw)
+                pack_numbers((self.raw_case(field, rows) or field.cases[0]).numbers, row)
                 for field, row in zip(self.fields, rows)
-                for number, raw in zip((self.raw_case(field, rows) or field.cases[0]).numbers, row)
             ]
         )
 
@@ -230,3 +281,22 @@ def named_fields(variants: tuple[Variant, ...]) -> dict[str, list[Field]]:
             if field.const is None:
                 found.setdefault(field.name, []).append(field)
     return found
+
+
+def packed_size(numbers: Sequence[Number]) -> int:
+    """Return the number of bytes of consecutive numbers."""
+    return sum([number.step for number in numbers])
+
+
+def pack_numbers(numbers: Sequence[Number], row: Sequence[int]) -> bytes:
+    """Return the bytes of the raw values of consecutive numbers; unnamed bits are 0."""
+    packed, shared = [], 0
+    for number, raw in zip(numbers, row):
+        data = number.pack(raw)
+        if number.more or shared:
+            shared |= int.from_bytes(data, number.order)
+            data = shared.to_bytes(number.width, number.order)
+        if not number.more:
+            packed.append(data)
+            shared = 0
+    return b"".join(packed)

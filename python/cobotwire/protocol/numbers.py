@@ -28,6 +28,10 @@ class Number:
     a sign rule. The raw value is the integer of its bits, but the bits after the sign are inverted
     where the sign is set: so the raw values have the order of the floats, with -0.0 (-1) before 0.0
     (0), and bounds apply to them as to those of an integer.
+
+    If ``bits`` is not 0, the number is that many bits of the bytes, ``shift`` bits above the lowest
+    one; ``more`` means that the next number is in the same bytes. ``kind``, ``choices`` and
+    ``labels`` are those of a number that differs from its neighbours in the field.
     """
 
     name: str
@@ -40,11 +44,29 @@ class Number:
     maximum: int
     unit: str
     encoding: Encoding = "integer"
+    kind: Literal["number", "flag", "enum"] = "number"
+    choices: tuple[int, ...] = ()
+    labels: tuple[str, ...] = ()
+    shift: int = 0
+    bits: int = 0
+    more: bool = False
 
     def alike(self, other: Number) -> bool:
         """Return whether the same bytes hold the same raw value in both numbers."""
-        mine = self.width, self.order, self.signed_at, self.encoding
-        return mine == (other.width, other.order, other.signed_at, other.encoding)
+        return self._place == other._place
+
+    @property
+    def _place(self) -> tuple[object, ...]:
+        return self.width, self.order, self.signed_at, self.encoding, self.shift, self.bits
+
+    @property
+    def step(self) -> int:
+        """The number of bytes from here to the next number of the field."""
+        return 0 if self.more else self.width
+
+    def allows(self, raw: int) -> bool:
+        """Return whether the number may hold a raw value."""
+        return raw in self.choices if self.choices else self.minimum <= raw <= self.maximum
 
     @property
     def units(self) -> str:
@@ -67,7 +89,7 @@ class Number:
         if self.encoding == "float":
             beyond = raw_of_float(inf, self.width)
             return -beyond, beyond - 1
-        top = 256**self.width - 1
+        top = (1 << (self.bits or 8 * self.width)) - 1
         return (0 if self.signed_at >= top else self.signed_at - top), min(self.signed_at, top)
 
     @property
@@ -80,11 +102,16 @@ class Number:
         unsigned = int.from_bytes(data[offset : offset + self.width], self.order)
         if self.encoding == "float":
             return _ordered(unsigned, self.width)
+        if self.bits:
+            unsigned = (unsigned >> self.shift) & ((1 << self.bits) - 1)
+            return unsigned - (1 << self.bits) if unsigned > self.signed_at else unsigned
         return unsigned - 256**self.width if unsigned > self.signed_at else unsigned
 
     def pack(self, raw: int) -> bytes:
         """Return the bytes of a raw value: its lowest ``width`` bytes if it does not fit."""
-        if self.encoding == "float" and raw < 0:
+        if self.bits:
+            raw = raw % (1 << self.bits) << self.shift
+        elif self.encoding == "float" and raw < 0:
             raw ^= 256**self.width // 2 - 1
         return (raw % (1 << 8 * self.width)).to_bytes(self.width, self.order)
 

@@ -15,7 +15,9 @@ from cobotwire.protocol.frame_format import FrameFormat
 from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.table import Command, Direction, Table
 
-ValueFault = Literal["type", "not-finite", "range", "choice", "count"]
+ValueFault = Literal[
+    "type", "not-finite", "range", "choice", "count", "element-type", "element-count", "text"
+]
 FrameFault = Literal[
     "no-header", "bad-address", "bad-length", "unknown-id", "bad-check", "truncated", "trailing"
 ]
@@ -58,8 +60,32 @@ def reject_value(
 ) -> UsageError:
     """Return the error for a value that the field does not allow.
 
-    ``element`` is the index in a row of numbers; -1 is the field as a whole.
+    ``element`` is the index in a row of numbers; -1 is the field as a whole. The fault of an
+    element of a list has the index of its first number.
     """
+    if field.kind == "text":
+        each = field.each or len(case.numbers)
+        name = field.name if element < 0 else f"{field.name}[{element // each}]"
+        if element < 0 and field.each and fault == "count":
+            return UsageError(f"len({field.name})", len(value), _sizes(field, case))
+        if fault == "count" and field.sizes and not field.each:
+            return UsageError(
+                f"len({field.name})", len(value.encode(field.encoding)), _sizes(field, case)
+            )
+        listed = element < 0 and field.each
+        return UsageError(name, value, "a sequence of texts" if listed else _text(field, each))
+    if field.counts and fault == "choice":
+        return UsageError(f"len({field.counts})", value, _sizes(field, case))
+    if fault == "count" and (field.sizes or field.each or field.kind == "bytes"):
+        return UsageError(f"len({field.name})", len(value), _sizes(field, case))
+    if fault in ("element-type", "element-count"):
+        group = Case((), case.numbers[: field.each])
+        name = f"{field.name}[{element // field.each}]"
+        return UsageError(name, value, _elements(group))
+    if element < 0 and field.kind == "bytes":
+        return UsageError(field.name, value, "bytes, or a sequence of numbers")
+    if element < 0 and field.each:
+        return UsageError(field.name, value, f"a sequence of {_sizes(field, case)} elements")
     if element < 0:
         if fault == "count":
             # The elements may all be legal; only their number is wrong.
@@ -95,7 +121,13 @@ def reject_raw(
     """Return the error for a raw value on the wire that the edition does not allow."""
     number = case.numbers[element]
     value, allowed = number.physical(raw), _allowed(field, number)
-    detail = f"{command.name}: {field.name} is {value}; allowed: {allowed}"
+    if field.kind == "text":
+        detail = (
+            f"{command.name}: byte {element} of {field.name} is {raw:02X}, not {field.encoding}"
+        )
+        return ProtocolError("bad-value", offset, data, detail)
+    name = _element(field, number, element) if field.each or number.bits else field.name
+    detail = f"{command.name}: {name} is {value}; allowed: {allowed}"
     return ProtocolError("bad-value", offset, data, detail)
 
 
@@ -156,7 +188,29 @@ def _element(field: Field, number: Number, at: int) -> str:
     """Return the name of a number of a field in a text."""
     if not field.many:
         return field.name
+    if field.each:
+        return f"{field.name}[{at // field.each}].{number.name}"
     return f"{field.name}.{number.name}" if number.name else f"{field.name}[{at}]"
+
+
+def _sizes(field: Field, case: Case) -> str:
+    """Return how many elements a list may have."""
+    if field.sizes is None:
+        return str(len(case.numbers) // (field.each or 1))
+    least, most = field.sizes
+    return f"{least}..{most}" if least < most else str(most)
+
+
+def _text(field: Field, size: int) -> str:
+    """Return what a text may be."""
+    name = {"ascii": "ASCII", "utf-8": "UTF-8", "latin-1": "Latin-1"}[field.encoding]
+    if field.sizes and not field.each:
+        return f"{name} text of {field.sizes[0]}..{field.sizes[1]} bytes"
+    if field.padding < 0:
+        return f"{name} text of {size} bytes"
+    return (
+        f"{name} text of at most {size} bytes that does not end with the byte {field.padding:02X}"
+    )
 
 
 def _elements(case: Case) -> str:
@@ -166,8 +220,11 @@ def _elements(case: Case) -> str:
 
 
 def _allowed(field: Field, number: Number) -> str:
-    if field.kind == "flag":
+    if "flag" in (field.kind, number.kind):
         return "True or False"
+    if number.choices:
+        pairs = zip(number.labels, number.choices)
+        return ", ".join([f"{label} ({raw})" for label, raw in pairs])
     if field.labels:
         return ", ".join([f"{label} ({raw})" for label, raw in zip(field.labels, field.choices)])
     if field.choices:

@@ -1,9 +1,9 @@
 //! Encodes values: chooses the variant that allows the values, and builds the frame around them.
 
 use crate::frame::FrameFormat;
-use crate::given::{Given, Row};
+use crate::given::{Given, Row, ValueFault};
 use crate::message::{Command, Direction, Variant};
-use crate::write::{EncodeError, Writer};
+use crate::write::{BadValue, EncodeError, Writer};
 
 /// The options of a caller besides the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub fn encode<V: Given>(
         return Err(EncodeError::Address);
     }
     let count = values.count();
-    let mut rejection = None;
+    let (mut rejection, mut other_size) = (None, None);
     for (index, variant) in command.variants(direction).iter().enumerate() {
         if variant.fields().len() != count || choice.variant.is_some_and(|variant| variant != index)
         {
@@ -43,17 +43,33 @@ pub fn encode<V: Given>(
             variant,
             values,
             bytes: &mut bytes,
+            shared: false,
         };
         match writer.fields() {
             Ok(()) => {
                 frame.check.end(&mut bytes, frame.overhead());
                 return Ok(bytes);
             }
+            // A mistake in the variant of the right size says more.
+            Err(EncodeError::Value(bad)) if of_other_size(variant, &bad) => {
+                other_size = other_size.or(Some(bad));
+            }
             Err(EncodeError::Value(bad)) => rejection = rejection.or(Some(bad)),
             Err(error) => return Err(error),
         }
     }
-    Err(rejection.map_or(EncodeError::VariantId, EncodeError::Value))
+    Err(rejection
+        .or(other_size)
+        .map_or(EncodeError::VariantId, EncodeError::Value))
+}
+
+/// Return whether a list has a number of elements that another variant may have.
+fn of_other_size<V>(variant: &Variant, bad: &BadValue<V>) -> bool {
+    let varies = variant
+        .fields()
+        .get(bad.field)
+        .is_some_and(|field| field.varies);
+    varies && bad.element.is_none() && matches!(bad.fault, ValueFault::Count | ValueFault::Choice)
 }
 
 /// Return the start of a frame, up to its id.

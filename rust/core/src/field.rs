@@ -1,6 +1,6 @@
 //! Fields: the numbers of a part of a message, and the raw values that they may hold.
 
-use crate::number::{Misfit, Number};
+use crate::number::{Encoding, Misfit, Number};
 
 /// The numbers of a field whose selector holds one of `when`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,9 +13,21 @@ pub struct Case {
 impl Case {
     fn size(&self) -> usize {
         // Saturating, because this also measures tables that are about to be rejected.
-        let widths = self.numbers.iter().map(|number| number.width);
+        let widths = self.numbers.iter().map(Number::step);
         widths.fold(0, usize::saturating_add)
     }
+}
+
+/// What the value of a field with several numbers is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shape {
+    /// A row of numbers.
+    #[default]
+    Numbers,
+    /// Bytes.
+    Bytes,
+    /// Text, with the byte that fills its field.
+    Text(Encoding, Option<u8>),
 }
 
 /// One argument of a request or one part of a reply.
@@ -31,6 +43,12 @@ pub struct Field {
     pub selector: Option<usize>,
     /// Its cases; without a selector only the first one counts.
     pub cases: Vec<Case>,
+    /// What its value is.
+    pub shape: Shape,
+    /// The numbers of each element of a list of rows or texts; 0: it is no such list.
+    pub each: usize,
+    /// Whether other variants have other numbers of elements, or it counts those of another field.
+    pub varies: bool,
 }
 
 impl Field {
@@ -53,7 +71,7 @@ impl Field {
     /// Return whether one of its numbers may hold that raw value.
     pub(crate) fn allows(&self, number: &Number, raw: i64) -> bool {
         if self.choices.is_empty() {
-            (number.minimum..=number.maximum).contains(&raw)
+            number.allows(raw)
         } else {
             self.choices.contains(&raw)
         }
@@ -74,6 +92,25 @@ impl Field {
             )
         };
         (all.0.unwrap_or_default(), all.1.unwrap_or_default())
+    }
+
+    /// Return the index of the first byte of the numbers that is not text, if there is one.
+    pub(crate) fn bad_text_at(&self, bytes: &[u8]) -> Option<usize> {
+        let Shape::Text(Encoding::Utf8, _) = self.shape else {
+            return None;
+        };
+        let each = if self.each == 0 {
+            bytes.len()
+        } else {
+            self.each
+        };
+        bytes
+            .chunks(each.max(1))
+            .enumerate()
+            .find_map(|(index, text)| {
+                let error = std::str::from_utf8(text).err()?;
+                Some(index * each + error.valid_up_to())
+            })
     }
 
     pub(crate) fn check(&self, fields: &[Self]) -> Result<(), Misfit> {

@@ -1,5 +1,7 @@
 //! The values that a caller wants to encode, as the encoder sees them.
 
+use crate::number::Encoding;
+
 /// What is wrong with a value that was to be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueFault {
@@ -13,6 +15,12 @@ pub enum ValueFault {
     Choice,
     /// The row has too few or too many elements.
     Count,
+    /// An element of a list is not a row.
+    ElementType,
+    /// An element of a list has too few or too many numbers.
+    ElementCount,
+    /// It is a text that its encoding or padding cannot express.
+    Text,
 }
 
 impl ValueFault {
@@ -25,6 +33,9 @@ impl ValueFault {
             Self::Range => "range",
             Self::Choice => "choice",
             Self::Count => "count",
+            Self::ElementType => "element-type",
+            Self::ElementCount => "element-count",
+            Self::Text => "text",
         }
     }
 }
@@ -65,6 +76,21 @@ pub trait Given: Sized {
     /// # Errors
     /// It is not a row.
     fn row(&self) -> Result<Self::Row, Unread<Self::Error>>;
+
+    /// Return whether the caller leaves the number to the encoder, which counts.
+    fn counted(&self) -> bool;
+
+    /// Return the bytes of a bytes-like object; `None`: it is something else.
+    ///
+    /// # Errors
+    /// Reading it raised an error.
+    fn bytes(&self) -> Result<Option<Vec<u8>>, Unread<Self::Error>>;
+
+    /// Return the bytes of a text.
+    ///
+    /// # Errors
+    /// It is not text, or not of that encoding.
+    fn text(&self, encoding: Encoding) -> Result<Vec<u8>, Unread<Self::Error>>;
 }
 
 /// A row of values.

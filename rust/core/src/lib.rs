@@ -31,13 +31,13 @@ pub use bulk::{
 pub use check::{Check, crc16_modbus};
 pub use decode::{DecodeError, Decoded, decode, read};
 pub use encode::{Choice, encode};
-pub use field::{Case, Field};
+pub use field::{Case, Field, Shape};
 pub use frame::{Frame, FrameFormat, OwnedFrame};
 pub use framer::{Event, Framer};
 pub use given::{Given, Row, Unread, ValueFault};
 pub use judge::{Rules, Verdict};
 pub use message::{Command, Direction, Listening, Variant, VariantId};
-pub use number::{Misfit, Number, Order, Value};
+pub use number::{Bits, Encoding, Misfit, Number, Order, Value};
 pub use read::BadRaw;
 pub use reason::Reason;
 pub use table::{Table, TableError};

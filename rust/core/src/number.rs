@@ -12,6 +12,17 @@ pub enum Order {
     Little,
 }
 
+/// The bits of a word that a number uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bits {
+    /// How many bits are below them.
+    pub shift: u32,
+    /// How many there are.
+    pub count: u32,
+    /// Whether the next number uses other bits of the same bytes.
+    pub more: bool,
+}
+
 /// One number on the wire.
 ///
 /// The bytes are an unsigned integer `u`. The raw value is `u - 256^width` if `u > signed_at`, else
@@ -31,6 +42,12 @@ pub struct Number {
     pub minimum: i64,
     pub maximum: i64,
     pub float: bool,
+    /// The legal raw values, where they differ from those of the field's other numbers.
+    pub choices: Vec<i64>,
+    /// Whether it is a flag beside other numbers.
+    pub flag: bool,
+    /// Which bits of its bytes it uses; `None`: all.
+    pub bits: Option<Bits>,
 }
 
 /// A decoded value. A row is followed by its elements, so that a message is one flat buffer.
@@ -42,6 +59,23 @@ pub enum Value {
     Real(f64),
     /// That many of the values that follow are the elements of one field.
     Row(usize),
+    /// The following rows, that many, are the elements of one field.
+    Rows(usize),
+    /// That many of the values that follow are bytes.
+    Bytes(usize),
+    /// That many of the values that follow are the bytes of a text in this encoding.
+    Text(usize, Encoding),
+}
+
+/// How a text is encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// Bytes below 128.
+    Ascii,
+    /// UTF-8.
+    Utf8,
+    /// Each byte is the Unicode character of that number.
+    Latin1,
 }
 
 /// A part of a table that cannot be interpreted.
@@ -73,6 +107,24 @@ impl Number {
         self.float || self.scaled()
     }
 
+    /// Return the number of bytes from here to the next number of the field.
+    #[inline]
+    pub(crate) fn step(&self) -> usize {
+        match self.bits {
+            Some(Bits { more: true, .. }) => 0,
+            _ => self.width,
+        }
+    }
+
+    /// Return whether the number may hold a raw value.
+    pub(crate) fn allows(&self, raw: i64) -> bool {
+        if self.choices.is_empty() {
+            (self.minimum..=self.maximum).contains(&raw)
+        } else {
+            self.choices.contains(&raw)
+        }
+    }
+
     /// Return whether the bounds allow a float that is infinite or not a number.
     pub(crate) fn takes_not_finite(&self) -> bool {
         self.float && self.maximum >= raw_of_float(f64::INFINITY, self.width)
@@ -89,6 +141,14 @@ impl Number {
             (_, Order::Big) => bytes.iter().fold(0, join),
             (_, Order::Little) => bytes.iter().rev().fold(0, join),
         };
+        if let Some(bits) = self.bits {
+            let part = (unsigned >> bits.shift) & ((1 << bits.count) - 1);
+            return if part > self.signed_at {
+                part - (1 << bits.count)
+            } else {
+                part
+            };
+        }
         if unsigned > self.signed_at {
             unsigned - (1 << (8 * self.width))
         } else {
@@ -106,10 +166,10 @@ impl Number {
 
     /// Append the lowest bytes of a raw value; a negative one is its two's complement.
     pub(crate) fn pack(&self, raw: i64, bytes: &mut Vec<u8>) {
-        let raw = if self.float && raw < 0 {
-            raw ^ magnitude(self.width)
-        } else {
-            raw
+        let raw = match self.bits {
+            Some(bits) => (raw & ((1 << bits.count) - 1)) << bits.shift,
+            None if self.float && raw < 0 => raw ^ magnitude(self.width),
+            None => raw,
         };
         let ordered = match self.order {
             Order::Big => (raw << (64 - 8 * self.width)).to_be_bytes(),
@@ -152,8 +212,8 @@ impl Number {
 
     /// Return whether the bounds allow every raw value that the bytes can encode.
     pub(crate) fn takes_all_bytes(&self) -> bool {
-        if self.float {
-            return false; // at least its bytes need no table
+        if self.float || self.bits.is_some() || !self.choices.is_empty() {
+            return false; // then each value is compared
         }
         let values = 1 << (8 * self.width);
         let signed_at = self.signed_at.clamp(-1, values - 1);
@@ -174,6 +234,11 @@ impl Number {
             };
         }
         if !(1..=4).contains(&self.width) {
+            return Err(Misfit::Width);
+        }
+        if let Some(bits) = self.bits
+            && (bits.count == 0 || bits.shift.saturating_add(bits.count) as usize > 8 * self.width)
+        {
             return Err(Misfit::Width);
         }
         // Within these limits raw * multiply and divide are exact, and only the division rounds.

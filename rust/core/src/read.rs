@@ -1,6 +1,6 @@
 //! Reads the values of a frame as one variant.
 
-use crate::field::Field;
+use crate::field::{Field, Shape};
 use crate::message::{Variant, VariantId};
 use crate::number::{Number, Value};
 
@@ -37,6 +37,10 @@ impl Reader<'_> {
         let mut values = Vec::with_capacity(self.variant.values());
         for (index, field) in self.variant.fields().iter().enumerate() {
             let case = self.case(field)?;
+            if field.each > 0 || field.shape != Shape::Numbers {
+                self.shaped(index, field, case, &mut values)?;
+                continue;
+            }
             if field.many {
                 values.push(Value::Row(field.numbers(case).len()));
             }
@@ -45,6 +49,51 @@ impl Reader<'_> {
             })?;
         }
         Ok(values)
+    }
+
+    /// Append the values of bytes, texts or a list of rows.
+    fn shaped(
+        &self,
+        index: usize,
+        field: &Field,
+        case: usize,
+        values: &mut Vec<Value>,
+    ) -> Result<(), BadRaw> {
+        let mut own = Vec::with_capacity(field.numbers(case).len());
+        self.field(index, field, case, |number, raw| {
+            own.push(number.physical(raw));
+        })?;
+        let all = own.len();
+        let each = if field.each == 0 { all } else { field.each };
+        match field.shape {
+            Shape::Bytes => values.push(Value::Bytes(all)),
+            _ if field.each > 0 => values.push(Value::Rows(all / each)),
+            _ => {}
+        }
+        match field.shape {
+            Shape::Bytes => values.extend(own),
+            Shape::Numbers => {
+                for row in own.chunks(each.max(1)) {
+                    values.push(Value::Row(row.len()));
+                    values.extend(row);
+                }
+            }
+            Shape::Text(encoding, padding) => {
+                if all == 0 && field.each == 0 {
+                    values.push(Value::Text(0, encoding));
+                }
+                for text in own.chunks(each.max(1)) {
+                    let pad = |value: &Value| {
+                        padding.is_some_and(|pad| *value == Value::Integer(i64::from(pad)))
+                    };
+                    let kept = text.iter().rposition(|value| !pad(value));
+                    let text = text.get(..kept.map_or(0, |at| at + 1)).unwrap_or_default();
+                    values.push(Value::Text(text.len(), encoding));
+                    values.extend(text);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Return each number with the index of its field, raw and physical; or the first not allowed.
@@ -72,9 +121,26 @@ impl Reader<'_> {
                 return Err(self.reject((index, case, element), raw, start));
             }
             take(number, raw);
-            start += number.width;
+            start += number.step();
         }
-        Ok(())
+        self.text(index, field, case)
+    }
+
+    /// Return the first byte of a text that is not of its encoding as an error.
+    fn text(&self, index: usize, field: &Field, case: usize) -> Result<(), BadRaw> {
+        if !matches!(field.shape, Shape::Text(..)) {
+            return Ok(());
+        }
+        let start = self.variant.start(index);
+        let bytes = self.data.get(start..).unwrap_or_default();
+        let bytes = bytes.get(..field.numbers(case).len()).unwrap_or_default();
+        match field.bad_text_at(bytes) {
+            None => Ok(()),
+            Some(at) => {
+                let raw = bytes.get(at).copied().unwrap_or_default();
+                Err(self.reject((index, case, at), i64::from(raw), start + at))
+            }
+        }
     }
 
     /// Return the index of the case that the field's selector picks.

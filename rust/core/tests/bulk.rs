@@ -53,7 +53,7 @@ fn read(table: &Table, listening: Listening, frame: &[u8]) -> Option<(VariantId,
     let number = |value: &Value| match value {
         Value::Integer(integer) => Some(*integer as f64),
         Value::Real(real) => Some(*real),
-        Value::Row(_) => None,
+        _ => None,
     };
     Some((
         decoded.variant,

@@ -1,6 +1,6 @@
 //! Makes tables from fuzz bytes: most are nearly valid, some are nonsense.
 
-use cobotwire_core::{Case, Check, Command, Field, FrameFormat, Number, Order, Variant};
+use cobotwire_core::{Case, Check, Command, Field, FrameFormat, Number, Order, Shape, Variant};
 
 use crate::bytes::Bytes;
 
@@ -70,6 +70,9 @@ fn field(bytes: &mut Bytes<'_>) -> Field {
         choices: many(bytes, choices, |bytes| integer(bytes, 4)),
         selector: selected.then(|| bytes.pick(4)),
         cases: many(bytes, cases, |bytes| case(bytes, many_numbers)),
+        shape: Shape::Numbers,
+        each: 0,
+        varies: false,
     }
 }
 
@@ -117,6 +120,9 @@ fn number(bytes: &mut Bytes<'_>) -> Number {
         minimum: integer(bytes, -100),
         maximum: integer(bytes, 100),
         float,
+        choices: vec![],
+        flag: false,
+        bits: None,
     }
 }
 

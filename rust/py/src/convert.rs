@@ -1,7 +1,8 @@
 //! Converts a Python `Table`, attribute by attribute, to the core's.
 
 use cobotwire_core::{
-    Case, Check, Command, Field, FrameFormat, Misfit, Number, Order, Table, Variant,
+    Bits, Case, Check, Command, Encoding, Field, FrameFormat, Misfit, Number, Order, Shape, Table,
+    Variant,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -16,6 +17,11 @@ struct NumberRecord {
     minimum: i64,
     maximum: i64,
     encoding: String,
+    kind: String,
+    choices: Vec<i64>,
+    shift: u32,
+    bits: u32,
+    more: bool,
 }
 
 #[derive(FromPyObject)]
@@ -31,6 +37,10 @@ struct FieldRecord {
     choices: Vec<i64>,
     selector: i64,
     cases: Vec<CaseRecord>,
+    each: usize,
+    encoding: String,
+    padding: i64,
+    sizes: Option<(i64, i64)>,
 }
 
 #[derive(FromPyObject)]
@@ -112,6 +122,22 @@ fn field(record: FieldRecord) -> Field {
         choices: record.choices,
         selector: usize::try_from(record.selector).ok(),
         cases: record.cases.into_iter().map(case).collect(),
+        shape: shape(&record.kind, &record.encoding, record.padding),
+        each: record.each,
+        varies: record.sizes.is_some(),
+    }
+}
+
+fn shape(kind: &str, encoding: &str, padding: i64) -> Shape {
+    let encoding = match encoding {
+        "ascii" => Encoding::Ascii,
+        "latin-1" => Encoding::Latin1,
+        _ => Encoding::Utf8,
+    };
+    match kind {
+        "bytes" => Shape::Bytes,
+        "text" => Shape::Text(encoding, u8::try_from(padding).ok()),
+        _ => Shape::Numbers,
     }
 }
 
@@ -136,6 +162,13 @@ fn number(record: NumberRecord) -> Number {
         minimum: record.minimum,
         maximum: record.maximum,
         float: record.encoding == "float",
+        choices: record.choices,
+        flag: record.kind == "flag",
+        bits: (record.bits > 0).then_some(Bits {
+            shift: record.shift,
+            count: record.bits,
+            more: record.more,
+        }),
     }
 }
 

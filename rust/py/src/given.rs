@@ -3,10 +3,10 @@
 //! Common types are converted directly. All other types go through the functions that the reference
 //! uses, so that an object has the same effect in both codecs.
 
-use cobotwire_core::{Given, Row, Unread, ValueFault};
-use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
+use cobotwire_core::{Encoding, Given, Row, Unread, ValueFault};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyUnicodeEncodeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
+use pyo3::types::{PyByteArray, PyBytes, PyFloat, PyInt, PyList, PyMemoryView, PyString, PyTuple};
 
 use crate::names::Names;
 
@@ -69,6 +69,47 @@ impl<'py> Given for Object<'py> {
             Ok(tuple) => Ok(Objects(tuple)),
             Err(error) => Err(self.sorted(error, None)),
         }
+    }
+
+    fn counted(&self) -> bool {
+        self.0.is(self.0.py().Ellipsis())
+    }
+
+    fn bytes(&self) -> Result<Option<Vec<u8>>, Unread<PyErr>> {
+        let object = &self.0;
+        let like = object.is_instance_of::<PyBytes>()
+            || object.is_instance_of::<PyByteArray>()
+            || object.is_instance_of::<PyMemoryView>();
+        if !like {
+            return Ok(None);
+        }
+        // As the reference does, whatever the items of a memoryview are.
+        let class = object.py().get_type::<PyBytes>();
+        let bytes = class.call1((object,)).map_err(Unread::Foreign)?;
+        bytes.extract().map(Some).map_err(Unread::Foreign)
+    }
+
+    fn text(&self, encoding: Encoding) -> Result<Vec<u8>, Unread<PyErr>> {
+        if !self.0.is_instance_of::<PyString>() {
+            return Err(Unread::Fault(ValueFault::Type));
+        }
+        let bytes = self.0.call_method1("encode", (codec(encoding),));
+        match bytes.and_then(|bytes| bytes.extract()) {
+            Ok(bytes) => Ok(bytes),
+            Err(error) if error.is_instance_of::<PyUnicodeEncodeError>(self.0.py()) => {
+                Err(Unread::Fault(ValueFault::Text))
+            }
+            Err(error) => Err(Unread::Foreign(error)),
+        }
+    }
+}
+
+/// Return Python's name of an encoding.
+pub fn codec(encoding: Encoding) -> &'static str {
+    match encoding {
+        Encoding::Ascii => "ascii",
+        Encoding::Utf8 => "utf-8",
+        Encoding::Latin1 => "latin-1",
     }
 }
 

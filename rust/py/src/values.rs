@@ -2,9 +2,9 @@
 
 use cobotwire_core::Value;
 use pyo3::prelude::*;
-use pyo3::types::{PyList, PyTuple};
+use pyo3::types::{PyBytes, PyList, PyTuple};
 
-use crate::given::{Objects, tuple};
+use crate::given::{Objects, codec, tuple};
 use crate::memory::untrack;
 use crate::names::Names;
 
@@ -28,9 +28,14 @@ pub fn objects<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, Py
             untrack(&all);
             Ok(all)
         }
-        _ if values.iter().any(|value| matches!(value, Value::Row(_))) => mixed(py, values),
+        _ if values.iter().any(compound) => mixed(py, values),
         _ => numbers(py, values),
     }
+}
+
+/// Return whether a value is more than a number.
+fn compound(value: &Value) -> bool {
+    !matches!(value, Value::Integer(_) | Value::Real(_))
 }
 
 /// Return a tuple of numbers; the values contain no row.
@@ -46,16 +51,47 @@ fn mixed<'py>(py: Python<'py>, mut values: &[Value]) -> PyResult<Bound<'py, PyTu
     let mut all = Vec::with_capacity(values.len());
     while let Some((value, rest)) = values.split_first() {
         values = rest;
-        all.push(match *value {
-            Value::Row(count) => {
-                let (row, rest) = values.split_at_checked(count).unwrap_or_default();
-                values = rest;
-                numbers(py, row)?.into_any()
-            }
-            number => Number(number).into_pyobject(py)?,
-        });
+        all.push(one(py, *value, &mut values)?);
     }
     PyTuple::new(py, all)
+}
+
+/// Return one value; what it consists of is taken from `rest`.
+fn one<'py>(py: Python<'py>, value: Value, rest: &mut &[Value]) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::Row(count) => numbers(py, take(rest, count))?.into_any(),
+        Value::Rows(count) => {
+            let mut all = Vec::with_capacity(count);
+            for _ in 0..count {
+                let Some((value, more)) = rest.split_first() else {
+                    break;
+                };
+                *rest = more;
+                all.push(one(py, *value, rest)?);
+            }
+            PyTuple::new(py, all)?.into_any()
+        }
+        Value::Bytes(count) => PyBytes::new(py, &bytes(take(rest, count))).into_any(),
+        Value::Text(count, encoding) => {
+            let data = PyBytes::new(py, &bytes(take(rest, count)));
+            data.call_method1("decode", (codec(encoding),))?
+        }
+        number => Number(number).into_pyobject(py)?,
+    })
+}
+
+fn take<'a>(rest: &mut &'a [Value], count: usize) -> &'a [Value] {
+    let (taken, left) = rest.split_at_checked(count).unwrap_or_default();
+    *rest = left;
+    taken
+}
+
+fn bytes(values: &[Value]) -> Vec<u8> {
+    let byte = |value: &Value| match value {
+        Value::Integer(raw) => u8::try_from(*raw).unwrap_or_default(),
+        _ => 0,
+    };
+    values.iter().map(byte).collect()
 }
 
 struct Number(Value);
@@ -69,7 +105,10 @@ impl<'py> IntoPyObject<'py> for Number {
         Ok(match self.0 {
             Value::Integer(integer) => integer.into_pyobject(py)?.into_any(),
             Value::Real(real) => real.into_pyobject(py)?.into_any(),
-            Value::Row(count) => count.into_pyobject(py)?.into_any(),
+            Value::Row(count)
+            | Value::Rows(count)
+            | Value::Bytes(count)
+            | Value::Text(count, _) => count.into_pyobject(py)?.into_any(),
         })
     }
 }

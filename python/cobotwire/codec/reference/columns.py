@@ -93,7 +93,7 @@ class ReferenceColumnReader:
             offset.append(event.offset)
             values = self._values(event, message.variant, message.values)
             for column, value in zip(columns, values):
-                column.extend(value if isinstance(value, tuple) else (value,))
+                column.extend(value)
         return Columns(
             self._table,
             [self._rows(key, *found) for key, found in sorted(rows.items(), key=self._order)],
@@ -103,7 +103,13 @@ class ReferenceColumnReader:
         )
 
     def _values(self, frame: Frame, variant: Variant, values: Sequence[Any]) -> Sequence[Any]:
-        return variant.unpack(self._table.frame.data(frame.data)) if self._raw else values
+        rows = variant.unpack(self._table.frame.data(frame.data))
+        if self._raw:
+            return rows
+        return [
+            [number.physical(raw) for number, raw in zip(variant.case(field, values).numbers, row)]
+            for field, row in zip(variant.fields, rows)
+        ]
 
     def _empty(self, variant: Variant) -> list[Any]:
         return [array(integer_type(field) if self._raw else "d") for field in variant.fields]
@@ -157,7 +163,7 @@ def scan(events: Iterable[Event], framer: ReferenceFramer) -> Scan:
 
 def shape(field: Field, column: Any, rows: int) -> Any:
     """Return a column, with two dimensions if the field is a row of numbers."""
-    if not field.many:
+    if not field.many or not len(column):
         return column
     return memoryview(column).cast("B").cast(column.typecode, (rows, len(column) // rows))
 

@@ -80,7 +80,11 @@ def _values(start: int, message: MessageVariant, data: bytes) -> tuple[object, .
     for field in message.variant.fields:
         case = _case(start, message, field, data)
         parts = _numbers(message, field, case, offset, data)
-        values.append(parts if field.many else parts[0])
+        bad = field.bad_text_at(parts)
+        if bad is not None:
+            at = offset + bad
+            raise reject_raw(message.command, field, case, bad, data[at], at, data)
+        values.append(field.present(parts))
         offset += field.size
     return tuple(values)
 
@@ -106,5 +110,5 @@ def _numbers(
         if not field.allows(number, raw):
             raise reject_raw(message.command, field, case, index, raw, offset, data)
         values.append(number.physical(raw))
-        offset += number.width
+        offset += number.step
     return tuple(values)

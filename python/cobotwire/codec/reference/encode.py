@@ -9,11 +9,17 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, SupportsFloat, SupportsIndex
 
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.rejection import ValueFault, reject_address, reject_value, reject_variant
+from cobotwire.protocol.fields import pack_numbers
+from cobotwire.protocol.rejection import (
+    ValueFault,
+    reject_address,
+    reject_value,
+    reject_variant,
+)
 from cobotwire.protocol.table import Case, Command, Direction, Field, FrameFormat, Number, Variant
 
 # Types that are iterable but never meant as a row of numbers.
@@ -53,13 +59,18 @@ def _first_that_fits(
     command: Command, direction: Direction, values: tuple[Any, ...], variant: int | None
 ) -> bytes:
     rejection: UsageError | None = None
+    other_size: UsageError | None = None
     for index, each in enumerate(command.variants(direction)):
         if len(each.fields) == len(values) and variant in (None, index):
             try:
                 return _data(each, values)
             except UsageError as error:
-                rejection = rejection or error
-    raise rejection or reject_variant(command, direction, len(values))
+                if error.argument in [f"len({f.counts or f.name})" for f in each.fields if f.sizes]:
+                    # A mistake in the variant of the right size says more.
+                    other_size = other_size or error
+                else:
+                    rejection = rejection or error
+    raise rejection or other_size or reject_variant(command, direction, len(values))
 
 
 def _data(variant: Variant, values: tuple[Any, ...]) -> bytes:
@@ -86,36 +97,76 @@ def _case(variant: Variant, field: Field, values: Sequence[Any]) -> Case:
 def _field(field: Field, case: Case, value: Any) -> bytes:
     if not field.many:
         return case.numbers[0].pack(_checked(field, case, -1, value))
-    if isinstance(value, NOT_SEQUENCES):
-        raise reject_value(field, case, -1, "type", value)
-    try:
-        elements = tuple(value)
-    except TypeError:
-        raise reject_value(field, case, -1, "type", value) from None
-    if len(elements) != len(case.numbers):
+    if field.kind == "text" and not field.each:
+        return _text(field, case, -1, len(case.numbers), value)
+    if field.kind == "bytes" and isinstance(value, (bytes, bytearray, memoryview)):
+        value = list(bytes(value))
+    elements = _elements(field, case, -1, "type", value)
+    each = field.each or 1
+    if len(elements) * each != len(case.numbers):
         raise reject_value(field, case, -1, "count", elements)
-    return b"".join(
-        [
-            number.pack(_checked(field, case, index, element))
-            for index, (number, element) in enumerate(zip(case.numbers, elements))
-        ]
-    )
+    if field.kind == "text":
+        return b"".join(
+            [_text(field, case, index * each, each, text) for index, text in enumerate(elements)]
+        )
+    if field.each:
+        elements = tuple([part for group in _groups(field, case, elements) for part in group])
+    row = [_checked(field, case, index, element) for index, element in enumerate(elements)]
+    return pack_numbers(case.numbers, row)
+
+
+def _elements(
+    field: Field, case: Case, element: int, fault: ValueFault, value: Any
+) -> tuple[Any, ...]:
+    """Return a row of values that does not change afterwards."""
+    if isinstance(value, NOT_SEQUENCES):
+        raise reject_value(field, case, element, fault, value)
+    try:
+        return tuple(value)
+    except TypeError:
+        raise reject_value(field, case, element, fault, value) from None
+
+
+def _groups(field: Field, case: Case, groups: tuple[Any, ...]) -> Iterator[tuple[Any, ...]]:
+    for index, group in enumerate(groups):
+        at = index * field.each
+        parts = _elements(field, case, at, "element-type", group)
+        if len(parts) != field.each:
+            raise reject_value(field, case, at, "element-count", parts)
+        yield parts
+
+
+def _text(field: Field, case: Case, element: int, size: int, value: Any) -> bytes:
+    """Return the bytes of a text; ``element`` is the index of its first byte in a list of texts."""
+    if not isinstance(value, str):
+        raise reject_value(field, case, element, "type", value)
+    try:
+        data = value.encode(field.encoding)
+    except UnicodeEncodeError:
+        raise reject_value(field, case, element, "text", value) from None
+    if len(data) > size or (len(data) < size and field.padding < 0):
+        raise reject_value(field, case, element, "count", value)
+    if field.padding >= 0 and data[-1:] == bytes([field.padding]):
+        raise reject_value(field, case, element, "text", value)
+    return data.ljust(size, bytes([max(field.padding, 0)]))
 
 
 def _checked(field: Field, case: Case, element: int, value: Any) -> int:
     """Return the raw value of a legal value; ``element`` is -1 if the field has one number."""
     number = case.numbers[max(element, 0)]
+    if field.counts and value is ...:
+        return field.choices[0]
     try:
-        raw = _real(number, value) if number.real else _integer(field, value)
+        raw = _real(number, value) if number.real else _integer(field, number, value)
         if not field.allows(number, raw):
-            raise _Rejected("choice" if field.choices else "range")
+            raise _Rejected("choice" if field.choices or number.choices else "range")
     except _Rejected as rejected:
         raise reject_value(field, case, element, rejected.fault, value) from None
     return raw
 
 
-def _integer(field: Field, value: Any) -> int:
-    if isinstance(value, bool) and field.kind != "flag":
+def _integer(field: Field, number: Number, value: Any) -> int:
+    if isinstance(value, bool) and "flag" not in (field.kind, number.kind):
         raise _Rejected("type")
     try:
         return operator.index(value)

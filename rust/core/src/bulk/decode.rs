@@ -60,7 +60,7 @@ impl Job<'_> {
             let mut start = usize::from(*at) + usize::from(plan.start);
             plan.numbers.iter().all(|number| {
                 let read = number.unpack(self.block, start);
-                start += number.width;
+                start += number.step();
                 check(number, read)
             })
         })

@@ -1,7 +1,7 @@
 //! Plans how to read the frames of each group, once for each table.
 
 use super::words::Words;
-use crate::field::Field;
+use crate::field::{Field, Shape};
 use crate::message::{Listening, Variant, VariantId};
 use crate::number::Number;
 use crate::table::Table;
@@ -77,9 +77,7 @@ fn plain_fields(table: &Table, variant: &Variant) -> Option<Vec<FieldPlan>> {
     let data = table.frame().overhead() + 1;
     let plan = |(index, field): (usize, &Field)| {
         let start = u16::try_from(data + variant.start(index)).ok()?;
-        field
-            .selector
-            .is_none()
+        (field.selector.is_none() && !matches!(field.shape, Shape::Text(..)))
             .then(|| FieldPlan::new(start, field))
     };
     variant.fields().iter().enumerate().map(plan).collect()

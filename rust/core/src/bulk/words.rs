@@ -24,7 +24,9 @@ impl Words {
     pub(crate) fn new(numbers: &[Number]) -> Option<Self> {
         let width = numbers.first()?.width;
         let alike = |number: &Number| {
-            number.width == width && (width == 1 || width == 2 && number.order == Order::Big)
+            number.width == width
+                && number.bits.is_none()
+                && (width == 1 || width == 2 && number.order == Order::Big)
         };
         if !matches!(numbers.len(), 1 | 2 | 3 | MOST) || !numbers.iter().all(alike) {
             return None;

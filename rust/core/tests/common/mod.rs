@@ -1,8 +1,8 @@
 //! Helpers of the tests: values to encode, and small tables.
 
 use cobotwire_core::{
-    Case, Check, Command, Event, Field, FrameFormat, Framer, Given, Number, Order, Reason, Row,
-    Table, Unread, ValueFault, Variant,
+    Case, Check, Command, Encoding, Event, Field, FrameFormat, Framer, Given, Number, Order,
+    Reason, Row, Shape, Table, Unread, ValueFault, Variant,
 };
 
 /// A value as a caller may have it.
@@ -55,6 +55,18 @@ impl Given for Sample {
             _ => Err(Unread::Fault(ValueFault::Type)),
         }
     }
+
+    fn counted(&self) -> bool {
+        false
+    }
+
+    fn bytes(&self) -> Result<Option<Vec<u8>>, Unread<Broken>> {
+        Ok(None)
+    }
+
+    fn text(&self, _: Encoding) -> Result<Vec<u8>, Unread<Broken>> {
+        Err(Unread::Fault(ValueFault::Type))
+    }
 }
 
 impl Row for Samples {
@@ -84,6 +96,9 @@ pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
         minimum,
         maximum,
         float: false,
+        choices: vec![],
+        flag: false,
+        bits: None,
     }
 }
 
@@ -106,6 +121,9 @@ pub fn field(numbers: Vec<Number>, many: bool) -> Field {
         choices: vec![],
         selector: None,
         cases,
+        shape: Shape::Numbers,
+        each: 0,
+        varies: false,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Reads the generator's JSON: the records of Python's `cobotwire.protocol.table` by attribute.
 
 use cobotwire_core::{
-    Case, Check, Command, Direction, Field, FrameFormat, Number, Order, Table, Variant,
+    Case, Check, Command, Direction, Field, FrameFormat, Number, Order, Shape, Table, Variant,
 };
 use serde_json::Value;
 
@@ -131,6 +131,9 @@ fn field(json: &Value) -> Field {
         choices: all(&json["choices"], integer),
         selector: usize::try_from(integer(&json["selector"])).ok(),
         cases: all(&json["cases"], case),
+        shape: Shape::Numbers,
+        each: 0,
+        varies: false,
     }
 }
 
@@ -155,6 +158,9 @@ fn number(json: &Value) -> Number {
         minimum: integer(&json["minimum"]),
         maximum: integer(&json["maximum"]),
         float: json["encoding"] == "float",
+        choices: vec![],
+        flag: false,
+        bits: None,
     }
 }
 
