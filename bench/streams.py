@@ -90,10 +90,8 @@ def frames_alike(
     table: Table, id: int, variant: Variant, count: int, random: np.random.Generator
 ) -> Bytes:
     """Return ``count`` frames of one variant, one in each row."""
-    assert table.frame.check == "footer", "other checks depend on the data"
-    head = table.frame.header + bytes(
-        [*table.frame.addresses[:1], table.frame.length(variant.size), id]
-    )
+    assert table.frame.check is None, "other checks depend on the data"
+    head = table.frame.start(id, table.frame.length(variant.size))
     footer = table.frame.footer
     body = [
         _words(number, raws[:, place])

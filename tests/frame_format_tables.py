@@ -6,9 +6,21 @@ an id and a size.
 
 from __future__ import annotations
 
-from cobotwire.protocol.table import Case, Command, Field, FrameFormat, Number, Table, Variant
+from cobotwire.protocol.table import (
+    Case,
+    Check,
+    Command,
+    Crc,
+    Field,
+    FrameFormat,
+    Number,
+    Table,
+    Variant,
+)
 
 HEADER = b"\xfe\xfe"
+CRC16_MODBUS = Check("crc", "header", 2, "big", Crc(16, 0x8005, 0xFFFF, True, True, 0))
+SUM_OF_DATA = Check("sum", "command")
 
 
 def _byte(name: str, minimum: int = 0, maximum: int = 255, *choices: int) -> Field:
@@ -34,7 +46,7 @@ CRC = Table(
     "The format with a CRC",
     6,
     115200,
-    FrameFormat(HEADER, b"", 40, "crc16-modbus"),
+    FrameFormat(HEADER, b"", 40, CRC16_MODBUS),
     (
         _command(0x58, "set_free_mode", (STATUS,), STATUS, SET),
         _command(0x6E, "get_robot_status", NOTHING, STATUS),
@@ -50,7 +62,7 @@ SUM = Table(
     "The format with an address and a sum",
     6,
     115200,
-    FrameFormat(HEADER, b"", 16, "sum", (1, 0, 2, 3)),
+    FrameFormat(HEADER, b"", 16, SUM_OF_DATA, (1, 0, 2, 3)),
     (
         _command(0x10, "power_on", NOTHING),
         _command(0x12, "is_power_on", NOTHING, STATUS),

@@ -9,9 +9,11 @@ from typing import Any
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.table import Case, Command, Field, FrameFormat, Number, Table, Variant
+from frame_format_tables import CRC16_MODBUS, SUM_OF_DATA
 from strategies import TABLES
 from vectors import ROOT
 
+CHECKS = {"footer": None, "crc16-modbus": CRC16_MODBUS, "sum": SUM_OF_DATA}
 SAMPLES = ROOT / "rust" / "core" / "tests" / "samples"
 
 
@@ -33,7 +35,7 @@ def table_of(record: dict[str, Any]) -> Table:
         bytes(frame["header"]),
         bytes(frame["footer"]),
         frame["maximum_length"],
-        frame.get("check", "footer"),
+        CHECKS[frame.get("check", "footer")],
         tuple(frame.get("addresses", ())),
     )
     return Table(

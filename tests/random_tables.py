@@ -15,26 +15,16 @@ import strategies
 from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import (
     Case,
-    Check,
     Command,
     Direction,
     Field,
-    FrameFormat,
     Number,
     Table,
     Variant,
 )
+from random_formats import frame_formats
 
 SCALES = [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
-
-
-@st.composite
-def frame_formats(draw: st.DrawFn) -> FrameFormat:
-    """Draw a footer, a CRC or a sum, with or without an address byte."""
-    check: Check = draw(st.sampled_from(["footer", "footer", "crc16-modbus", "sum"]))
-    footer = bytes([draw(st.sampled_from([0xFA, 0xFE, 0]))]) if check == "footer" else b""
-    addresses = draw(st.sampled_from([(), (), (1, 0), (0xFE,)]))
-    return FrameFormat(b"\xfe\xfe", footer, draw(st.integers(2, 40)), check, addresses)
 
 
 @st.composite
@@ -149,9 +139,14 @@ def variants(draw: st.DrawFn) -> Variant:
 @st.composite
 def tables(draw: st.DrawFn) -> Table:
     """Draw a table of up to four commands on up to three ids."""
+    format = draw(frame_formats())
+    ids = [0, 0x20, 0xFE] if format.id_number.width == 1 else [0, 0x20, 0x20FE]
+    # A reply without an id has data in its place.
+    least = 0 if format.reply_has_id else format.id_number.width
+    replies = variants().filter(lambda variant: variant.size >= least)
     commands = [
         Command(
-            draw(st.sampled_from([0, 0x20, 0xFE])),
+            draw(st.sampled_from(ids)),
             f"call{index}",
             "",
             "",
@@ -159,19 +154,11 @@ def tables(draw: st.DrawFn) -> Table:
             "query",
             100,
             tuple(draw(st.lists(variants(), min_size=1, max_size=2))),
-            tuple(draw(st.lists(variants(), max_size=2))),
+            tuple(draw(st.lists(replies, max_size=2))),
         )
         for index in range(draw(st.integers(1, 4)))
     ]
-    return Table("random", "A random table", 6, 115200, draw(frame_formats()), tuple(commands))
-
-
-def frame(format: FrameFormat, id: int, data: bytes) -> bytes:
-    """Return a frame with these data bytes."""
-    body = (
-        format.header + bytes(format.addresses[:1]) + bytes([format.length(len(data)), id]) + data
-    )
-    return body + format.end(body)
+    return Table("random", "A random table", 6, 115200, format, tuple(commands))
 
 
 @st.composite
@@ -179,14 +166,16 @@ def frames(draw: st.DrawFn, table: Table) -> bytes:
     """Draw a frame of the table with any data bytes, or one with any id and size."""
     command = draw(st.sampled_from(table.commands))
     ways: list[Direction] = ["request", "reply"] if command.reply else ["request"]
-    variant = draw(st.sampled_from(command.variants(draw(st.sampled_from(ways)))))
+    direction = draw(st.sampled_from(ways))
+    variant = draw(st.sampled_from(command.variants(direction)))
     id, size = command.id, variant.size
     if draw(st.integers(0, 4)) == 0:
-        id, size = draw(st.integers(0, 255)), draw(st.integers(0, 40))
+        id, size = draw(st.integers(0, 255)), draw(st.integers(2, 40))
     data = draw(
         st.sampled_from([bytes(size), b"\xff" * size]) | st.binary(min_size=size, max_size=size)
     )
-    return frame(table.frame, id, data)
+    address = draw(st.none() | st.sampled_from(table.frame.addresses or [None]))
+    return table.frame.enclose(id, data, address, direction)
 
 
 def streams(table: Table) -> st.SearchStrategy[bytes]:

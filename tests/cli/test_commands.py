@@ -8,12 +8,13 @@ import pytest
 
 from cobotwire.cli.commands import byte_table
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.protocol.frame_format import Check, FrameFormat
+from cobotwire.protocol.table import Check, FrameFormat
+from frame_format_tables import CRC16_MODBUS, SUM_OF_DATA
 
 
 def rows(frame: FrameFormat) -> list[tuple[object, ...]]:
     command = TABLE.command("get_encoder")
-    grid = byte_table(frame, command, command.request[0])
+    grid = byte_table(frame, command, "request", command.request[0])
     return list(zip(*[list(column.cells) for column in grid.columns[:3]]))
 
 
@@ -28,7 +29,7 @@ def test_byte_table_shows_the_footer() -> None:
 
 
 @pytest.mark.parametrize(
-    ("check", "place", "length"), [("crc16-modbus", "6-7", 4), ("sum", "6", 3)]
+    ("check", "place", "length"), [(CRC16_MODBUS, "6-7", 4), (SUM_OF_DATA, "6", 3)]
 )
 def test_byte_table_shows_address_and_check(check: Check, place: str, length: int) -> None:
     frame = replace(TABLE.frame, check=check, footer=b"", addresses=(1, 2))
@@ -38,5 +39,5 @@ def test_byte_table_shows_address_and_check(check: Check, place: str, length: in
         ("3", "LEN", f"{length:02X}"),
         ("4", "CMD", "3B"),
         ("5", "joint", "1..6"),
-        (place, check, ""),
+        (place, check.algorithm, ""),
     ]

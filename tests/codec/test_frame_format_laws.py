@@ -1,4 +1,4 @@
-"""The framing laws and the agreement of both codecs, for streams in the other frame formats."""
+"""The framing laws and the agreement of both codecs, in the maker's formats and random ones."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
+import random_tables
 import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame, Listening
@@ -17,28 +18,37 @@ from cobotwire.protocol.table import Direction, Table
 from frame_format_tables import ALIKE, CRC, HEADER, SUM
 from framed_events import cut, joined
 
-NAMES: list[codecs.CodecName] = ["reference", "native"]
 TABLES = [CRC, SUM, ALIKE]
-PAIRS = st.sampled_from([tuple(codecs.load(table, name) for name in NAMES) for table in TABLES])
+FIXED: st.SearchStrategy[tuple[Codec, Codec]] = st.sampled_from(
+    [(codecs.load(table, "reference"), codecs.load(table, "native")) for table in TABLES]
+)
+WAYS: list[Direction] = ["request", "reply"]
 DIRECTIONS: st.SearchStrategy[Direction] = st.sampled_from(["request", "reply"])
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
+
+
+@st.composite
+def _pairs(draw: st.DrawFn) -> tuple[Codec, Codec]:
+    table = draw(random_tables.tables())
+    return codecs.load(table, "reference"), codecs.load(table, "native")
+
+
+PAIRS = FIXED | _pairs()
 
 
 @st.composite
 def _frames(draw: st.DrawFn, table: Table, *, damaged: bool = False) -> bytes:
     """Draw a legal frame with any values; with ``damaged``, one or two bytes may be changed."""
     variants = [
-        (command.id, variant)
+        (command.id, direction, variant)
         for command in table.commands
-        for variant in command.request + command.reply
+        for direction in WAYS
+        for variant in command.variants(direction)
     ]
-    id, variant = draw(st.sampled_from(variants))
-    size = variant.size
-    data = draw(st.binary(min_size=size, max_size=size))
-    frame = table.frame
-    address = [draw(st.sampled_from(frame.addresses))] if frame.addresses else []
-    body = frame.header + bytes([*address, frame.length(size), id]) + data
-    whole = bytearray(body + frame.end(body))
+    id, direction, variant = draw(st.sampled_from(variants))
+    data = draw(st.binary(min_size=variant.size, max_size=variant.size))
+    address = draw(st.sampled_from(table.frame.addresses or [None]))
+    whole = bytearray(table.frame.enclose(id, data, address, direction))
     for place in draw(st.lists(st.integers(0, len(whole) - 1), max_size=2)) if damaged else ():
         whole[place] = draw(st.integers(0, 255))
     return bytes(whole)
@@ -131,6 +141,6 @@ def test_undamaged_frame_is_found_unless_a_legal_one_covers_it(
     start = len(before)
     for codec in pair:
         events = joined(cut(codec, "both", chunks))
-        if Frame(start, frame, frame[table.frame.overhead]) not in events:
+        if Frame(start, frame, table.frame.read_id(frame)) not in events:
             covers = [e for e in events if isinstance(e, Frame) and e.offset < start]
             assert covers[-1].offset + len(covers[-1].data) > start

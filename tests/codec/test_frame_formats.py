@@ -10,7 +10,6 @@ import pytest
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.frame_format import crc16_modbus
 from cobotwire.protocol.table import Table
 from frame_format_tables import CRC, HEADER, SUM
 
@@ -41,10 +40,6 @@ NAMES: list[codecs.CodecName] = ["reference", "native"]
 def load(request: pytest.FixtureRequest) -> Callable[[Table], Codec]:
     """Return a function that makes codecs of one kind; each test runs with both kinds."""
     return lambda table: codecs.load(table, request.param)
-
-
-def test_crc_is_that_of_modbus() -> None:
-    assert crc16_modbus(b"123456789") == 0x4B37
 
 
 @pytest.mark.parametrize("text", REAL)

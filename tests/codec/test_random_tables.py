@@ -119,7 +119,7 @@ def test_rejected_frames_are_listed_in_the_order_of_the_stream(frames: int) -> N
     """Also where commands take turns, and where the native codec reads whole blocks."""
     request = (Variant((BOUNDED,)),)
     table = small_tables.table(*(small_tables.command(id, f"c{id}", request) for id in (9, 5, 7)))
-    each = [random_tables.frame(table.frame, id, b"\0") for id in (7, 9, 5, 9, 7)]
+    each = [table.frame.enclose(id, b"\0") for id in (7, 9, 5, 9, 7)]
     stream = b"".join(each[index % 5] for index in range(frames))
     expected = list(range(0, 6 * frames, 6))
     for codec in both(table):
@@ -144,7 +144,7 @@ def test_zero_of_a_negative_scale_has_the_sign_that_the_reference_gives_it(
     ]
     for field in kinds:
         table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
-        frame = random_tables.frame(table.frame, 1, bytes(field.size))
+        frame = table.frame.enclose(1, bytes(field.size))
         reference, native = both(table)
         expected = repr(reference.decode_columns(frame)[0][field.name].tolist()[0])
         assert repr(native.decode("request", frame).values[0]).strip("()") == expected.strip("[]")
@@ -159,7 +159,7 @@ def test_frame_with_an_unknown_id_is_missed_in_the_direction_that_was_meant(
 ) -> None:
     empty = (Variant(()),)
     table = small_tables.table(small_tables.command(1, "get", empty, empty))
-    stream = random_tables.frame(table.frame, 0x77, b"")
+    stream = table.frame.enclose(0x77, b"")
     meant = way or ("request" if listening == "both" else listening)
     for codec in both(table):
         [frame] = codec.framer(listening, accept_unknown=True).feed(stream)

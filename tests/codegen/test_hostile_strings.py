@@ -172,15 +172,3 @@ def test_hostile_string_is_refused_at_its_place_or_stays_text(
             assert re.match(r"lamp\.yaml:\d+:\d+: [a-z-]+: ", str(problem))
         return
     _judge(_outputs(edition))
-
-
-@pytest.mark.parametrize(("old", "new"), [("tell", "sET_mode"), ("LEFT", "left")])
-def test_names_that_meet_in_upper_case_are_refused_for_c_only_if_they_collide(
-    tmp_path: Path, old: str, new: str
-) -> None:
-    edition = _edition(hostile.renamed(SPEC, old, new), tmp_path)
-    if new == "left":
-        assert "LAMP_ADDRESS_left " in render_c(edition)[PurePosixPath("lamp.h")]
-        return
-    with pytest.raises(SpecError, match="the constant LAMP_SET_MODE_REQUEST of the C header"):
-        render_c(edition)

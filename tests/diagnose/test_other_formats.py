@@ -16,10 +16,11 @@ from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Item
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
 from cobotwire.protocol.table import FrameFormat
+from frame_format_tables import CRC16_MODBUS, SUM_OF_DATA
 
 FORMATS = [
-    FrameFormat(b"\xfe\xfe", b"", 40, "crc16-modbus"),
-    FrameFormat(b"\xfe\xfe", b"", 18, "sum", (1, 2)),
+    FrameFormat(b"\xfe\xfe", b"", 40, CRC16_MODBUS),
+    FrameFormat(b"\xfe\xfe", b"", 18, SUM_OF_DATA, (1, 2)),
     # Headers that also start text, a servo packet or NULs.
     FrameFormat(b"AT", b"\xfa", 18),
     FrameFormat(b"\xff\xff", b"\xfa", 18),

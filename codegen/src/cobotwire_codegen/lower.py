@@ -128,8 +128,8 @@ def table(edition: Edition) -> dict[str, Any]:
             "header": list(edition.frame.header),
             "footer": list(edition.frame.footer),
             "maximum_length": maximum_length(edition),
-            "check": edition.frame.check,
-            "addresses": [member.value for member in edition.frame.addresses],
+            "check": edition.frame.check_word,
+            "addresses": list(edition.frame.address_values),
         },
         "commands": [
             _command(family.name, c) for family in edition.families for c in family.commands
@@ -139,7 +139,7 @@ def table(edition: Edition) -> dict[str, Any]:
 
 def maximum_length(edition: Edition) -> int:
     """Return the highest LEN of a frame."""
-    return 1 + edition.frame.maximum_data + edition.frame.check_size
+    return edition.frame.maximum_length
 
 
 def _command(family: str, command: Command) -> dict[str, Any]:

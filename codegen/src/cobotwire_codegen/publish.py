@@ -24,6 +24,7 @@ from cobotwire_codegen.model import (
     Enum,
     Field,
     Flag,
+    Frame,
     Member,
     Quantity,
     Text,
@@ -87,7 +88,8 @@ def _document(edition: Edition) -> Record:
         "frame": _given(
             header=_hex(frame.header),
             footer=_hex(frame.footer),
-            check=frame.check,
+            check=frame.check_word,
+            **_frame_parts(frame),
             addresses=[_address(address) for address in frame.addresses],
             maximum_data=frame.maximum_data,
             maximum_length=lower.maximum_length(edition),
@@ -107,6 +109,34 @@ def _document(edition: Edition) -> Record:
             for command in family.commands
         ],
     }
+
+
+def _frame_parts(frame: Frame) -> Record:
+    """Return what differs from frames with LEN and CMD of one byte after the header."""
+    record: Record = {}
+    if frame.check is not None:
+        crc = frame.check.crc
+        record |= {
+            "check_from": frame.check.covers_from,
+            "check_width": frame.check.width,
+            "check_order": frame.check.order,
+            "crc": crc and {key: value for key, value in crc._asdict().items() if key != "check"},
+        }
+    usual = ("address", "length", "command")
+    if frame.layout != usual:
+        record["layout"] = list(frame.layout)
+    if set(frame.counted) != {"command", "data", *_ending(frame)}:
+        record["counted"] = list(frame.counted)
+    for key, number in (("length", frame.length_number), ("id", frame.command_number)):
+        if number.width != 1:
+            record[key] = [number.width, number.order]
+    record["replies_without_id"] = not frame.replies_have_command
+    record["address_range"] = list(frame.address_range[:1] + frame.address_range[-1:])
+    return record
+
+
+def _ending(frame: Frame) -> list[str]:
+    return [part for part in ("check", "footer") if frame.sizes[part]]
 
 
 def _geometry(edition: Edition) -> Record | None:

@@ -7,14 +7,19 @@ makes a vector fail.
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import reduce
+from operator import xor
 from typing import Literal
 
+from cobotwire_codegen.catalogue import Crc
 from cobotwire_codegen.model import (
     Command,
     Enum,
     Field,
     Flag,
     Frame,
+    FrameCheck,
+    FrameNumber,
     Quantity,
     Type,
     Value,
@@ -36,7 +41,7 @@ def build_frame(
         ValueError: the message has no such variant, or a value cannot be encoded.
     """
     _, data = encode_variant(command, direction, values)
-    return enclose(frame, command.id, data)
+    return enclose(frame, command.id, data, direction)
 
 
 def encode_variant(
@@ -57,26 +62,64 @@ def encode_variant(
     raise ValueError(problem)
 
 
-def enclose(frame: Frame, id: int, data: bytes) -> bytes:
-    """Return the frame around data bytes, with its first address if it has addresses."""
-    start = frame.header + bytes(member.value for member in frame.addresses[:1])
-    body = start + bytes([1 + len(data) + frame.check_size, id]) + data
-    return body + check_of(frame, body, len(data))
+def enclose(
+    frame: Frame, id: int, data: bytes, direction: Literal["request", "reply"] = "request"
+) -> bytes:
+    """Return the frame around data bytes, with its first address if it has addresses.
+
+    Raises:
+        ValueError: the id or LEN is too large.
+    """
+    parts = {
+        "address": bytes(frame.address_values[:1]),
+        "length": _number(frame.length_number, frame.length(len(data), direction)),
+        "command": _number(frame.command_number, id) if frame.has_command(direction) else b"",
+    }
+    body = frame.header + b"".join(parts[part] for part in frame.layout) + data
+    return body + check_of(frame, body)
 
 
-def check_of(frame: Frame, body: bytes, data_size: int) -> bytes:
-    """Return the bytes that end a frame, from all bytes before them."""
-    if frame.check == "footer":
+def _number(form: FrameNumber, number: int) -> bytes:
+    if number >= 1 << 8 * form.width:
+        raise ValueError(f"{number} is larger than its {form.width} bytes")
+    return number.to_bytes(form.width, form.order)
+
+
+def check_of(frame: Frame, body: bytes) -> bytes:
+    """Return check and footer of a frame, from all bytes before them."""
+    if frame.check is None:
         return frame.footer
-    if frame.check == "sum":
-        return bytes([sum(body[len(body) - data_size - 1 :]) % 256])
-    # CRC-16/MODBUS as polynomial division, bit by bit.
-    remainder = 0xFFFF
-    for byte in body:
+    number = number_of(frame.check, body[frame.offset(frame.check.covers_from) :])
+    return number.to_bytes(frame.check.width, frame.check.order) + frame.footer
+
+
+def number_of(check: FrameCheck, covered: bytes) -> int:
+    """Return the number of a check, straight from its definition."""
+    total, size = sum(covered), 1 << 8 * check.width
+    if check.crc is not None:
+        return remainder(check.crc, covered)
+    if check.word == "xor":
+        return reduce(xor, covered, 0)
+    if check.word in ("fletcher", "fletcher-16"):
+        modulus = 256 if check.word == "fletcher" else 255
+        second = sum(place * byte for place, byte in enumerate(reversed(covered), 1))
+        return second % modulus * 256 + total % modulus
+    numbers = {"sum": total, "inverted-sum": -1 - total, "negated-sum": -total}
+    return numbers[check.word] % size
+
+
+def remainder(crc: Crc, data: bytes) -> int:
+    """Return a CRC by division of polynomials, bit by bit."""
+    register, top = crc.init, 1 << crc.width - 1
+    for byte in data:
         for bit in range(8):
-            carry = (remainder ^ byte >> bit) & 1
-            remainder = remainder >> 1 ^ (0xA001 if carry else 0)
-    return bytes([remainder >> 8, remainder & 0xFF])
+            given = byte >> (bit if crc.refin else 7 - bit) & 1
+            carry = bool(register & top) != bool(given)
+            register = register << 1 & 2 * top - 1
+            register ^= crc.poly if carry else 0
+    if crc.refout:
+        register = sum((register >> bit & 1) << crc.width - 1 - bit for bit in range(crc.width))
+    return register ^ crc.xorout
 
 
 def _field(field: Field, values: dict[str, object]) -> bytes:

@@ -11,7 +11,11 @@ from rich.table import Table as Grid
 from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_commands
 from cobotwire.cli.shared.output import plain_console
-from cobotwire.protocol.table import Command, Field, FrameFormat, Number, Variant
+from cobotwire.protocol.frame_format import FixedPart
+from cobotwire.protocol.table import Command, Direction, Field, FrameFormat, Number, Variant
+
+_DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
+_NAMES = {"address": "address", "length": "LEN", "command": "CMD"}
 
 
 @click.command(short_help="List the commands, or describe one.")
@@ -43,10 +47,10 @@ def _print_reference(frame: FrameFormat, command: Command) -> None:
     console.print(f"{command.title}. {command.doc}")
     for note in command.notes:
         console.print(f"Note: {note}")
-    for direction, variants in (("request", command.request), ("reply", command.reply)):
-        for variant in variants:
+    for direction in _DIRECTIONS:
+        for variant in command.variants(direction):
             console.print(f"\n{direction}", style="bold")
-            console.print(byte_table(frame, command, variant))
+            console.print(byte_table(frame, command, direction, variant))
     if command.text is not None:
         pairs = zip(command.text.prefixes, command.text.fields)
         console.print("\nreply, as text without a frame", style="bold")
@@ -55,28 +59,48 @@ def _print_reference(frame: FrameFormat, command: Command) -> None:
         console.print("\nreply: none")
 
 
-def byte_table(frame: FrameFormat, command: Command, variant: Variant) -> Grid:
+def byte_table(
+    frame: FrameFormat, command: Command, direction: Direction, variant: Variant
+) -> Grid:
     """Return a table of the bytes of one variant of a message."""
     grid = Grid("byte", "content", "value", "meaning", box=None, pad_edge=False)
-    start = len(frame.header)
-    grid.add_row(f"0-{start - 1}", "header", frame.header.hex(" ").upper(), "")
-    if frame.addresses:
-        grid.add_row(str(start), "address", ", ".join(f"{a:02X}" for a in frame.addresses), "")
-    grid.add_row(str(frame.length_at), "LEN", f"{frame.length(variant.size):02X}", "")
-    grid.add_row(str(frame.length_at + 1), "CMD", f"{command.id:02X}", "")
-    offset = frame.length_at + 2
+    grid.add_row(_place(0, len(frame.header)), "header", frame.header.hex(" ").upper(), "")
+    start = frame.start(command.id, frame.length(variant.size, direction), direction=direction)
+    for part in frame.layout:
+        at, width = _fixed_part(frame, part, direction)
+        value = start[at : at + width].hex(" ").upper()
+        if part == "address":
+            value = ", ".join(f"{a:02X}" for a in frame.addresses)
+        if width:
+            grid.add_row(_place(at, width), _NAMES[part], value, "")
+    offset = len(start)
     for field in variant.fields:
         for index, number in enumerate(field.cases[0].numbers):
-            last = offset + number.width - 1
-            place = str(offset) if last == offset else f"{offset}-{last}"
+            place = _place(offset, number.width)
             name = f"{field.name} {number.name}".strip()
             ranges = [_allowed(field, case.numbers[index]) for case in field.cases]
             grid.add_row(place, name, " or ".join(ranges), field.doc)
-            offset = last + 1
-    last = offset + frame.check_size - 1
-    place = str(offset) if last == offset else f"{offset}-{last}"
-    grid.add_row(place, frame.check, frame.footer.hex(" ").upper(), "")
+            offset += number.width
+    if frame.check is not None:
+        grid.add_row(_place(offset, frame.check.width), frame.check.algorithm, "", "")
+        offset += frame.check.width
+    if frame.footer:
+        place = _place(offset, len(frame.footer))
+        grid.add_row(place, "footer", frame.footer.hex(" ").upper(), "")
     return grid
+
+
+def _place(at: int, width: int) -> str:
+    return str(at) if width == 1 else f"{at}-{at + width - 1}"
+
+
+def _fixed_part(frame: FrameFormat, part: FixedPart, direction: Direction) -> tuple[int, int]:
+    """Return the offset and the size of a part; its size is 0 if frames do not have it."""
+    if part == "address":
+        return frame.address_at or 0, 1 if frame.addresses else 0
+    if part == "length":
+        return frame.length_at, frame.length_number.width
+    return frame.id_at, frame.id_number.width if frame.has_id(direction) else 0
 
 
 def _allowed(field: Field, number: Number) -> str:

@@ -71,9 +71,9 @@ def load(table: Table, name: CodecName | None = None) -> Codec:
         from cobotwire.codec.reference import ReferenceCodec
 
         return ReferenceCodec(table)
-    from cobotwire.codec.native import NativeCodec
+    from cobotwire.codec.native import native_codec
 
-    return NativeCodec(table)
+    return native_codec(table)
 
 
 def _no_binary(what: str) -> UsageError:

@@ -54,8 +54,9 @@ class DamagedFrames(FrameStarts):
         # Nothing tells which one of the commands that share an id it was.
         self._all_names: dict[int, str] = {}
         for command in codec.table.commands:
-            variants = (v for d in DIRECTIONS for v in command.variants(d))
-            legal = {self._format.length(variant.size) for variant in variants}
+            legal = {
+                self._format.length(v.size, d) for d in DIRECTIONS for v in command.variants(d)
+            }
             self._lengths.setdefault(command.id, set()).update(legal)
             before = self._all_names.get(command.id)
             self._all_names[command.id] = f"{before} or {command.name}" if before else command.name
@@ -65,9 +66,9 @@ class DamagedFrames(FrameStarts):
         head, limit, final = self._head(residue, at)
         if head is None:
             return None
-        if len(head) <= self._format.overhead:
+        if len(head) < self._format.head_size:
             return self._start_only(residue, at, limit) if final else Wait.WAIT
-        id, reason = head[-1], residue.reason(at)
+        id, reason = self._format.read_id(head), residue.reason(at)
         if reason not in _DAMAGES or id not in self._names:
             return None
         extent = self._extent(residue, at, id)
@@ -102,9 +103,9 @@ class DamagedFrames(FrameStarts):
                 limit = inside
                 break
         format, lengths = self._format, self._lengths[id]
-        claimed = residue.data[at + format.length_at]
+        claimed = format.read_length(residue.data, at)
         for length in sorted(lengths, key=lambda length: (length != claimed, length)):
-            for extra in _SLACK if format.check == "footer" else ():
+            for extra in _SLACK if format.check is None else ():
                 end = at + format.overhead + length + extra
                 if end <= limit and residue.data.startswith(format.footer, end - format.check_size):
                     return end
@@ -122,6 +123,6 @@ class DamagedFrames(FrameStarts):
         head, _, final = self._head(residue, at)
         if head is None:
             return False
-        if len(head) <= self._format.overhead:
+        if len(head) < self._format.head_size:
             return False if final else Wait.WAIT
-        return residue.reason(at) in _DAMAGES and head[-1] in self._names
+        return residue.reason(at) in _DAMAGES and self._format.read_id(head) in self._names

@@ -51,8 +51,9 @@ class FrameReader:
         frame = self._codec.table.frame
         if not data.startswith(frame.header):
             return ()
-        start = data[frame.length_at : frame.length_at + 2]
-        fitting = [i.direction for i in self._indexes if len(start) == 2 and i.find(*start[::-1])]
+        heading = frame.read_id(data), frame.read_length(data)
+        complete = len(data) >= frame.head_size
+        fitting = [i.direction for i in self._indexes if complete and i.find(*heading)]
         found = tuple(self._read_as(d, data) for d in fitting or self._directions)
         messages = tuple(reading for reading in found if reading.message is not None)
         # A bad value in one direction says more than a LEN that does not fit the other.
@@ -71,16 +72,9 @@ class FrameReader:
 def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[Part]:
     """Yield every byte of a legal frame with its meaning, in order."""
     frame = table.frame
-    start = frame.length_at
     yield Part(0, data[: len(frame.header)], "header", "a frame starts here")
-    if message.address is not None:
-        device = address_name(table, message.address)
-        yield Part(start - 1, data[start - 1 : start], "address", device)
-    length = data[start]
-    yield Part(start, data[start : start + 1], "LEN", f"{length}: {length} bytes follow")
-    command = message.command
-    yield Part(start + 1, data[start + 1 : start + 2], "CMD", f"{command.name}: {command.title}")
-    offset = frame.overhead + 1
+    yield from sorted(_fixed_parts(table, data, message))
+    offset = frame.data_start(message.direction)
     for field, value in zip(message.variant.fields, message.values):
         if field.kind in ("bytes", "text"):
             size = field.size
@@ -92,8 +86,23 @@ def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[
             chunk = data[offset : offset + number.width]
             yield Part(offset, chunk, name, format_value(field, number, single))
             offset += number.step
-    end = "footer" if frame.check == "footer" else "check"
+    end = "footer" if frame.check is None else "check"
     yield Part(offset, data[offset:], end, "the frame ends here")
+
+
+def _fixed_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[Part]:
+    frame = table.frame
+    if frame.address_at is not None and message.address is not None:
+        at = frame.address_at
+        yield Part(at, data[at : at + 1], "address", address_name(table, message.address))
+    length, at = frame.read_length(data), frame.length_at
+    follow = at + frame.length_number.width == frame.overhead
+    meaning = f"{length}: {length} bytes follow" if follow else str(length)
+    yield Part(at, data[at : at + frame.length_number.width], "LEN", meaning)
+    if frame.has_id(message.direction):
+        command, at = message.command, frame.id_at
+        id = data[at : at + frame.id_number.width]
+        yield Part(at, id, "CMD", f"{command.name}: {command.title}")
 
 
 def _numbers(message: DecodedMessage, field: Field, value: Any) -> Iterator[tuple[Number, Any]]:

@@ -82,7 +82,7 @@ class FrameStarts(Recogniser):
         There are fewer bytes if the stretch ends before the id, and None if no frame starts here.
         """
         limit, final = residue.stretch(at)
-        head = residue.data[at : min(limit, at + self._format.overhead + 1)]
+        head = residue.data[at : min(limit, at + self._format.head_size)]
         fits = self._format.header.startswith(head[: len(self._format.header)])
         return head if fits else None, limit, final
 
@@ -110,9 +110,9 @@ class Frames(FrameStarts):
         echo = self._echo(residue, at, limit, final)
         if echo is not None or head is None:
             return echo
-        if len(head) <= self._format.overhead:
+        if len(head) < self._format.head_size:
             return None if final else Wait.WAIT
-        end = at + self._format.overhead + head[self._format.length_at]
+        end = at + self._format.overhead + self._format.read_length(head)
         if not at + len(head) <= end <= at + self._longest:
             return None
         if end > limit:
@@ -136,7 +136,7 @@ class Frames(FrameStarts):
 
     def _complete(self, residue: Residue, at: int, end: int) -> Finding | None:
         data, spans, reason = residue.data[at:end], residue.spans(at, end), residue.reason(at)
-        id = data[self._format.overhead]
+        id = self._format.read_id(data)
         if self._other is not None and self._other_framer is not None:
             events = [*self._other_framer.feed(data), *self._other_framer.flush()]
             if len(events) == 1 and isinstance(events[0], Frame):
@@ -158,9 +158,8 @@ class Frames(FrameStarts):
 
     def _name(self, data: bytes, direction: Direction) -> str | None:
         """Return the name of a frame's command; of those with its id, the first with its size."""
-        length = len(data) - self._format.overhead
-        if length <= 0:
+        if len(data) < self._format.head_size:
             return None
-        id = data[self._format.overhead]
+        length, id = len(data) - self._format.overhead, self._format.read_id(data)
         found = self._indexes[direction].find(id, length)
         return found[0].command.name if found else self._names.get(id)

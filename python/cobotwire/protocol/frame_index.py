@@ -30,19 +30,27 @@ class FrameIndex:
     def __init__(self, table: Table, direction: Direction) -> None:
         self.table = table
         self.direction: Direction = direction
-        self._found: dict[tuple[int, int], list[MessageVariant]] = {}
+        self._has_id = table.frame.has_id(direction)
+        self._found: dict[tuple[int | None, int], list[MessageVariant]] = {}
         for command in table.commands:
             for index, variant in enumerate(command.variants(direction)):
-                key = command.id, table.frame.length(variant.size)
+                length = table.frame.length(variant.size, direction)
+                key = self._key(command.id, length)
                 # Commands may share an id and a LEN. They are tried in the order of the table.
                 self._found.setdefault(key, []).append(MessageVariant(command, direction, index))
         self._ids = {id for id, _ in self._found}
         self.lengths = {length for _, length in self._found}
 
     def find(self, id: int, length: int) -> list[MessageVariant]:
-        """Return the messages with that command id and LEN; an empty list if there are none."""
-        return self._found.get((id, length), [])
+        """Return the messages with that command id and LEN; an empty list if there are none.
+
+        If messages of this direction carry no id, ``id`` does not matter.
+        """
+        return self._found.get(self._key(id, length), [])
 
     def has(self, id: int) -> bool:
         """Return whether any message of this direction has that command id."""
-        return id in self._ids
+        return (id if self._has_id else None) in self._ids
+
+    def _key(self, id: int, length: int) -> tuple[int | None, int]:
+        return (id if self._has_id else None), length

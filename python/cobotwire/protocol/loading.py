@@ -12,7 +12,9 @@ from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import (
     Address,
     Case,
+    Check,
     Command,
+    Crc,
     Dimensions,
     Field,
     FrameFormat,
@@ -21,6 +23,7 @@ from cobotwire.protocol.table import (
     Table,
     TextReply,
     TextRequest,
+    Unsigned,
     Variant,
 )
 
@@ -42,16 +45,46 @@ def load_table(package: str) -> Table:
         edition["title"],
         edition["joints"],
         frame["baudrate"],
-        FrameFormat(
-            bytes.fromhex(frame["header"]),
-            bytes.fromhex(frame.get("footer", "")),
-            frame["maximum_length"],
-            frame["check"],
-            tuple([value for _, value, *_ in frame.get("addresses", ())]),
-        ),
+        load_frame(frame),
         tuple([reader.command(record) for record in document["commands"]]),
         _dimensions(edition.get("geometry")),
         tuple([Address(*address) for address in frame.get("addresses", ())]),
+    )
+
+
+def load_frame(record: Record) -> FrameFormat:
+    """Return the frame format of a record; keys that are left out have the format's defaults."""
+    get = record.get
+    default = FrameFormat(b"", b"", 0)
+    return FrameFormat(
+        bytes.fromhex(record["header"]),
+        bytes.fromhex(get("footer", "")),
+        record["maximum_length"],
+        None if record["check"] == "footer" else _check(record),
+        _addresses(record),
+        tuple(get("layout", default.layout)),
+        tuple(get("counted", default.counted)),
+        Unsigned(*get("length", ())),
+        Unsigned(*get("id", ())),
+        not get("replies_without_id", False),
+    )
+
+
+def _addresses(record: Record) -> tuple[int, ...]:
+    named = [value for _, value, *_ in record.get("addresses", ())]
+    bounds = record.get("address_range")
+    unnamed = range(bounds[0], bounds[1] + 1) if bounds else ()
+    return (*named, *(value for value in unnamed if value not in named))
+
+
+def _check(record: Record) -> Check:
+    crc = record.get("crc")
+    return Check(
+        "crc" if crc else record["check"],
+        record["check_from"],
+        record["check_width"],
+        record["check_order"],
+        Crc(**crc) if crc else None,
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.fields import Case, Field
-from cobotwire.protocol.frame_format import FrameFormat
+from cobotwire.protocol.frame_format import FrameFormat, Unsigned
 from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.table import Command, Direction, Table
 
@@ -45,7 +45,8 @@ def reject_variant(command: Command, direction: Direction, given: int) -> UsageE
 
 def reject_address(given: Any, addresses: tuple[int, ...]) -> UsageError:
     """Return the error for an address byte that the frame format does not have."""
-    allowed = ", ".join(map(str, addresses)) or "None, because the frames have no address"
+    runs = [str(a) if a == b else f"{a}..{b}" for a, b in ranges(addresses)]
+    allowed = ", ".join(runs) or "None, because the frames have no address"
     return UsageError("address", given, allowed)
 
 
@@ -140,48 +141,90 @@ def reject_frame(
 
 def _frame_fault(table: Table, direction: Direction, fault: FrameFault, data: bytes) -> str:
     frame = table.frame
-    at = frame.length_at
     if fault == "no-header":
         return f"the bytes do not start with the header {frame.header.hex(' ').upper()}"
     if fault == "bad-address":
-        legal = ", ".join([f"{address:02X}" for address in frame.addresses])
-        return f"the address is {data[at - 1]:02X}; allowed: {legal}"
+        return f"the address is {frame.address(data):02X}; allowed: {_hex_ranges(frame.addresses)}"
     if fault == "truncated":
-        if len(data) <= at:
-            return "the bytes end before LEN"
-        missing = data[at] + frame.overhead - len(data)
-        what = "byte of the frame is" if missing == 1 else f"{missing} bytes of the frame are"
-        return f"LEN is {data[at]:02X}, but the last {what} missing"
+        return _truncated(frame, data)
     if fault == "bad-length":
         return _bad_length(table, direction, data)
     if fault == "unknown-id":
-        return f"edition {table.edition} has no {direction} with id {data[at + 1]:02X}"
+        id = _digits(frame.read_id(data), frame.id_number)
+        return f"edition {table.edition} has no {direction} with id {id}"
     if fault == "bad-check":
         return _bad_check(frame)
-    return f"LEN is {data[at]:02X}, but more bytes follow the end of the frame"
+    length = _digits(frame.read_length(data), frame.length_number)
+    return f"LEN is {length}, but more bytes follow the end of the frame"
+
+
+def _truncated(frame: FrameFormat, data: bytes) -> str:
+    if len(data) < frame.length_at + frame.length_number.width:
+        return "the bytes end before LEN"
+    length = frame.read_length(data)
+    missing = length + frame.overhead - len(data)
+    what = "byte of the frame is" if missing == 1 else f"{missing} bytes of the frame are"
+    return f"LEN is {_digits(length, frame.length_number)}, but the last {what} missing"
+
+
+def _digits(number: int, form: Unsigned) -> str:
+    return f"{number:0{2 * form.width}X}"
+
+
+def _hex_ranges(addresses: tuple[int, ...]) -> str:
+    return ", ".join(
+        [
+            f"{first:02X}" if first == last else f"{first:02X}..{last:02X}"
+            for first, last in ranges(addresses)
+        ]
+    )
+
+
+def ranges(numbers: tuple[int, ...]) -> list[tuple[int, int]]:
+    """Return the first and last of each run of consecutive numbers; short runs stay apart."""
+    found: list[tuple[int, int]] = []
+    for number in numbers:
+        if found and number == found[-1][1] + 1:
+            found[-1] = found[-1][0], number
+        else:
+            found.append((number, number))
+    return [
+        pair
+        for first, last in found
+        for pair in (
+            [(first, last)] if last - first > 2 else [(n, n) for n in range(first, last + 1)]
+        )
+    ]
 
 
 def _bad_check(frame: FrameFormat) -> str:
-    if frame.check == "footer":
+    if frame.check is None:
         return f"the frame does not end with the footer {frame.footer.hex().upper()}"
-    return "the CRC is wrong" if frame.check == "crc16-modbus" else "the sum is wrong"
+    wrong = {"crc": "the CRC is wrong", "sum": "the sum is wrong"}
+    return wrong.get(frame.check.algorithm, "the check is wrong")
 
 
 def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
-    at = table.frame.length_at
-    id = data[at + 1] if len(data) > at + 1 else None
-    commands = [command for command in table.commands if command.id == id]
+    frame = table.frame
+    length = _digits(frame.read_length(data), frame.length_number)
+    has_id = frame.has_id(direction)
+    come = len(data) >= frame.head_size
+    id = frame.read_id(data) if come else None
+    commands = [command for command in table.commands if command.id == id or (come and not has_id)]
     legal = {
-        table.frame.length(variant.size)
+        frame.length(variant.size, direction)
         for command in commands
         for variant in command.variants(direction)
     }
     if not legal:
-        return f"no {direction} of edition {table.edition} has LEN {data[at]:02X}"
+        return f"no {direction} of edition {table.edition} has LEN {length}"
+    lengths = " or ".join([_digits(each, frame.length_number) for each in sorted(legal)])
+    if id is None or not has_id:
+        return f"LEN of the {direction} is {length}; allowed: {lengths}"
     # Commands that share an id are all named: the frame does not tell which one was called.
     name = " or ".join([command.name for command in commands if command.variants(direction)])
-    lengths = " or ".join([f"{length:02X}" for length in sorted(legal)])
-    return f"LEN of the {direction} {id:02X} ({name}) is {data[at]:02X}; allowed: {lengths}"
+    what = f"{direction} {_digits(id, frame.id_number)} ({name})"
+    return f"LEN of the {what} is {length}; allowed: {lengths}"
 
 
 def _element(field: Field, number: Number, at: int) -> str:

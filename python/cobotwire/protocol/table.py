@@ -11,9 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
+from cobotwire.protocol.checks import Check, Crc
 from cobotwire.protocol.errors import UsageError, did_you_mean
 from cobotwire.protocol.fields import Case, Field, FieldKind, Variant, named_fields
-from cobotwire.protocol.frame_format import Check, FrameFormat
+from cobotwire.protocol.frame_format import Direction, FrameFormat, Unsigned
 from cobotwire.protocol.made_messages import (
     MessageTypes,
     generated_types,
@@ -29,6 +30,7 @@ __all__ = [
     "Case",
     "Check",
     "Command",
+    "Crc",
     "Dimensions",
     "Direction",
     "Field",
@@ -41,10 +43,10 @@ __all__ = [
     "Table",
     "TextReply",
     "TextRequest",
+    "Unsigned",
     "Variant",
 ]
 
-Direction = Literal["request", "reply"]
 Safety = Literal["query", "setting", "motion", "power", "persistent write"]
 Role = Literal[
     "",

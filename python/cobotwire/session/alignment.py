@@ -89,7 +89,8 @@ class Alignment:
         This request, and earlier ones that were still on their way, may be cut anywhere.
         """
         longest = max(FrameIndex(self._codec.table, "request").lengths)
-        begun = last[: self._format.length_at] + bytes([longest])
+        width, order = self._format.length_number
+        begun = last[: self._format.length_at] + longest.to_bytes(width, order)
         parts = Part(begun, len(begun)), *_all_parts(self._format, last)
         self.hold(self._held + parts)
 
@@ -136,9 +137,10 @@ def _frames(format: FrameFormat, part: bytes, pair: Sequence[int]) -> Iterator[t
     size = len(format.header)
     for start in range(len(part)):
         if format.header.startswith(part[start : start + size]):
-            at = start + format.length_at
-            length = part[at] if at < len(part) else pair[(at - len(part)) % 2]
-            yield start, start + format.overhead + length
+            at, width = start + format.length_at, format.length_number.width
+            missing = range(len(part), at + width)
+            known = part + bytes([pair[(index - len(part)) % 2] for index in missing])
+            yield start, start + format.overhead + format.read_length(known, start)
 
 
 def _completes_one(format: FrameFormat, part: bytes, fill: bytes) -> bool:
@@ -146,7 +148,7 @@ def _completes_one(format: FrameFormat, part: bytes, fill: bytes) -> bool:
     data = part + fill
     for start, end in _frames(format, part, (fill * 2)[:2]):
         check_at = end - format.check_size
-        ends_in_fill = end > len(part) and check_at > start + format.overhead
+        ends_in_fill = end > len(part) and check_at >= start + format.head_size
         if ends_in_fill and format.end(data[start:check_at]) == data[check_at:end]:
             return True
     return False
@@ -158,4 +160,4 @@ def _all_parts(format: FrameFormat, request: bytes) -> tuple[Part, ...]:
 
 def _frame_size(format: FrameFormat, request: bytes) -> int:
     """Return the size of the frame at the start of a request."""
-    return format.overhead + request[format.length_at]
+    return format.overhead + format.read_length(request)

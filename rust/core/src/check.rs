@@ -1,96 +1,147 @@
 //! The bytes that end a frame.
 
-/// The kinds of check.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+use crate::crc::Crc;
+use crate::number::Order;
+
+/// How a frame ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// Always this byte.
+    /// Always with this byte.
     Footer(u8),
-    /// A CRC-16/MODBUS over everything before it, high byte first.
-    Crc16Modbus,
-    /// The low byte of the sum of CMD and DATA.
+    /// With a number computed from the frame, and then a footer.
+    Computed(Box<Computed>),
+}
+
+/// A check that is computed from a frame, and the footer after it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Computed {
+    /// The number; `None`: there is only a footer.
+    pub algorithm: Option<Algorithm>,
+    /// The bytes of the number: at most 16.
+    pub width: usize,
+    /// Their order.
+    pub order: Order,
+    /// The offset of the first byte that the number covers; it covers all up to itself.
+    pub from: usize,
+    /// The bytes after it.
+    pub footer: Vec<u8>,
+}
+
+/// How the number is computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Algorithm {
+    /// The sum of the bytes.
     Sum,
+    /// The sum with all bits inverted.
+    InvertedSum,
+    /// The number that added to the sum gives zero.
+    NegatedSum,
+    /// The exclusive or of the bytes.
+    Xor,
+    /// Two running sums of bytes by this modulus, the second in the high byte.
+    Fletcher(u32),
+    /// A CRC.
+    Crc(Crc),
 }
 
 impl Check {
-    /// Return the number of bytes of the check.
+    /// Return the number of bytes that end a frame.
     #[must_use]
-    pub fn size(self) -> usize {
+    pub fn size(&self) -> usize {
         match self {
-            Self::Footer(_) | Self::Sum => 1,
-            Self::Crc16Modbus => 2,
+            Self::Footer(_) => 1,
+            Self::Computed(computed) => computed.size(),
         }
     }
 
-    /// Return whether the check of a frame is right; its CMD is at `start`.
+    /// Return whether a frame ends as it must.
     #[inline]
-    pub(crate) fn holds(self, frame: &[u8], start: usize) -> bool {
+    pub(crate) fn holds(&self, frame: &[u8]) -> bool {
         match self {
-            Self::Footer(footer) => frame.last() == Some(&footer),
-            Self::Crc16Modbus => crc_holds(frame),
-            Self::Sum => sum_holds(frame, start),
+            Self::Footer(footer) => frame.last() == Some(footer),
+            Self::Computed(computed) => computed.holds(frame),
         }
     }
 
-    /// Append the check to a frame; its CMD is at `start`.
-    pub(crate) fn end(self, frame: &mut Vec<u8>, start: usize) {
+    /// Append what must follow the frame so far.
+    pub fn end(&self, frame: &mut Vec<u8>) {
         match self {
-            Self::Footer(footer) => frame.push(footer),
-            Self::Crc16Modbus => frame.extend(crc16_modbus(frame).to_be_bytes()),
-            Self::Sum => frame.push(sum(frame, start)),
+            Self::Footer(footer) => frame.push(*footer),
+            Self::Computed(computed) => computed.end(frame),
         }
     }
 }
 
-#[inline(never)]
-fn crc_holds(frame: &[u8]) -> bool {
-    frame
-        .split_last_chunk()
-        .is_some_and(|(body, end)| crc16_modbus(body).to_be_bytes() == *end)
-}
-
-#[inline(never)]
-fn sum_holds(frame: &[u8], start: usize) -> bool {
-    frame
-        .split_last()
-        .is_some_and(|(end, body)| sum(body, start) == *end)
-}
-
-fn sum(body: &[u8], start: usize) -> u8 {
-    let counted = body.get(start..).unwrap_or_default().iter();
-    counted.fold(0, |sum, byte| sum.wrapping_add(*byte))
-}
-
-/// CRC-16/MODBUS: polynomial 0x8005 reflected, start FFFF; 4B37 for `123456789`.
-#[must_use]
-pub fn crc16_modbus(data: &[u8]) -> u16 {
-    data.iter().fold(0xFFFF, |crc, byte| {
-        let [low, _] = (crc ^ u16::from(*byte)).to_le_bytes();
-        let step = STEPS.get(usize::from(low)).copied().unwrap_or_default();
-        crc >> 8 ^ step
-    })
-}
-
-/// The effect of each byte on a CRC: the table is eight times as fast as a loop over bits.
-const STEPS: [u16; 256] = steps();
-
-// This runs in the compiler, where an index out of bounds is an error.
-#[allow(clippy::indexing_slicing)]
-const fn steps() -> [u16; 256] {
-    let mut steps = [0; 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut crc = byte as u16;
-        let mut bit = 0;
-        while bit < 8 {
-            crc = if crc & 1 == 1 {
-                crc >> 1 ^ 0xA001
-            } else {
-                crc >> 1
-            };
-            bit += 1;
-        }
-        steps[byte] = crc;
-        byte += 1;
+impl Computed {
+    fn size(&self) -> usize {
+        let number = if self.algorithm.is_some() {
+            self.width
+        } else {
+            0
+        };
+        number + self.footer.len()
     }
-    steps
+
+    #[inline(never)]
+    fn holds(&self, frame: &[u8]) -> bool {
+        let Some(body) = frame
+            .strip_suffix(self.footer.as_slice())
+            .and_then(|rest| rest.get(..frame.len().checked_sub(self.size())?))
+        else {
+            return false;
+        };
+        let given = frame.get(body.len()..frame.len() - self.footer.len());
+        self.number(body, |bytes| Some(bytes) == given)
+    }
+
+    fn end(&self, frame: &mut Vec<u8>) {
+        let mut number = [0; 16];
+        let size = self.number(frame, |bytes| {
+            let start = number.get_mut(..bytes.len());
+            start.map_or(0, |start| {
+                start.copy_from_slice(bytes);
+                bytes.len()
+            })
+        });
+        frame.extend_from_slice(number.get(..size).unwrap_or_default());
+        frame.extend_from_slice(&self.footer);
+    }
+
+    /// Call `with` with the bytes of the number that must follow `body`.
+    fn number<R>(&self, body: &[u8], with: impl FnOnce(&[u8]) -> R) -> R {
+        let Some(algorithm) = &self.algorithm else {
+            return with(&[]);
+        };
+        let number = algorithm.of(body.get(self.from..).unwrap_or_default());
+        let width = self.width.min(16);
+        match self.order {
+            Order::Little => with(number.to_le_bytes().get(..width).unwrap_or_default()),
+            Order::Big => with(number.to_be_bytes().get(16 - width..).unwrap_or_default()),
+        }
+    }
+}
+
+impl Algorithm {
+    /// Return the number for some bytes; its low bytes count.
+    #[must_use]
+    pub fn of(&self, data: &[u8]) -> u128 {
+        let sum = || data.iter().map(|byte| u128::from(*byte)).sum::<u128>();
+        match self {
+            Self::Sum => sum(),
+            Self::InvertedSum => !sum(),
+            Self::NegatedSum => sum().wrapping_neg(),
+            Self::Xor => u128::from(data.iter().fold(0, |all, byte| all ^ byte)),
+            Self::Fletcher(modulus) => fletcher(data, *modulus),
+            Self::Crc(crc) => crc.of(data),
+        }
+    }
+}
+
+fn fletcher(data: &[u8], modulus: u32) -> u128 {
+    let rest = |sum: u32| sum.checked_rem(modulus).unwrap_or_default();
+    let (first, second) = data.iter().fold((0, 0), |(first, second), byte| {
+        let first = rest(first + u32::from(*byte));
+        (first, rest(second + first))
+    });
+    u128::from(second << 8 | first)
 }

@@ -1,9 +1,10 @@
 //! Decodes bytes to values. An illegal frame, or a number that the table does not allow, is an
 //! error.
 
-use crate::frame::{Frame, FrameFormat};
+use crate::direction::{Direction, Listening};
+use crate::frame::{Frame, FrameFormat, Layout};
 use crate::judge::{Rules, Verdict};
-use crate::message::{Direction, Listening, VariantId};
+use crate::message::VariantId;
 use crate::number::Value;
 use crate::read::{BadRaw, Reader};
 use crate::reason::Reason;
@@ -73,8 +74,8 @@ pub fn read(
         let reader = Reader {
             id: *id,
             variant,
-            data: table.frame().data(frame),
-            offset: table.frame().overhead() + 1,
+            data: table.frame().data(frame, id.direction),
+            offset: table.frame().data_start(id.direction),
         };
         match reader.values() {
             Ok(values) => {
@@ -134,7 +135,8 @@ fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: Option<usize>) -> Opt
         return None;
     }
     let command = table.commands().get(of);
-    Some(if command.is_some_and(|command| command.id == claim.id) {
+    let is_id = command.is_some_and(|command| command.id == claim.id);
+    Some(if is_id || rules.nameless() {
         Reason::BadLength
     } else {
         Reason::UnknownId
@@ -143,18 +145,24 @@ fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: Option<usize>) -> Opt
 
 /// Return the error, with the index of the byte that refutes a frame at the start of `data`.
 fn reject(frame: &FrameFormat, reason: Reason, data: &[u8]) -> DecodeError {
-    let at = frame.length_at();
+    let Layout {
+        length,
+        id,
+        address_at,
+        overhead,
+        ..
+    } = frame.layout;
     let offset = match reason {
         Reason::NoHeader => {
             let header = frame.header.iter().zip(data);
             header.take_while(|(byte, given)| byte == given).count()
         }
-        Reason::BadAddress => at - 1,
-        Reason::BadLength => at,
-        Reason::UnknownId => at + 1,
+        Reason::BadAddress => address_at.unwrap_or_default(),
+        Reason::BadLength => length.at,
+        Reason::UnknownId => id.at,
         Reason::BadCheck => {
-            let length = data.get(at).map_or(0, |length| usize::from(*length));
-            (frame.overhead() + length).saturating_sub(frame.check.size())
+            let length = usize::from(length.read(data).unwrap_or_default());
+            (overhead + length).saturating_sub(frame.check.size())
         }
         Reason::Truncated | Reason::Trailing => data.len(),
     };

@@ -1,8 +1,9 @@
 //! Encodes values: chooses the variant that allows the values, and builds the frame around them.
 
+use crate::direction::Direction;
 use crate::frame::FrameFormat;
 use crate::given::{Given, Row, ValueFault};
-use crate::message::{Command, Direction, Variant};
+use crate::message::{Command, Variant};
 use crate::write::{BadValue, EncodeError, Writer};
 
 /// The options of a caller besides the values.
@@ -37,7 +38,8 @@ pub fn encode<V: Given>(
         {
             continue;
         }
-        let mut bytes = start(frame, command, address, variant).ok_or(EncodeError::VariantId)?;
+        let mut bytes =
+            start(frame, command, address, direction, variant).ok_or(EncodeError::VariantId)?;
         let writer = Writer {
             index,
             variant,
@@ -47,7 +49,7 @@ pub fn encode<V: Given>(
         };
         match writer.fields() {
             Ok(()) => {
-                frame.check.end(&mut bytes, frame.overhead());
+                frame.check.end(&mut bytes);
                 return Ok(bytes);
             }
             // A mistake in the variant of the right size says more.
@@ -72,19 +74,18 @@ fn of_other_size<V>(variant: &Variant, bad: &BadValue<V>) -> bool {
     varies && bad.element.is_none() && matches!(bad.fault, ValueFault::Count | ValueFault::Choice)
 }
 
-/// Return the start of a frame, up to its id.
+/// Return the start of a frame, up to its data.
 fn start(
     frame: &FrameFormat,
     command: &Command,
     address: Option<u8>,
+    direction: Direction,
     variant: &Variant,
 ) -> Option<Vec<u8>> {
-    let length = frame.length(variant.size());
-    let mut bytes = Vec::with_capacity(frame.overhead() + length);
-    bytes.extend_from_slice(&frame.header);
-    bytes.extend(address);
-    // LEN fits a byte: Table::new checked that.
-    bytes.push(u8::try_from(length).ok()?);
-    bytes.push(command.id);
+    let length = frame.length(variant.size(), direction);
+    let mut bytes = Vec::with_capacity(frame.layout.overhead + length);
+    // LEN fits: Table::new checked that.
+    let length = u16::try_from(length).ok()?;
+    frame.start(&mut bytes, address, length, command.id, direction);
     Some(bytes)
 }

@@ -1,8 +1,9 @@
 //! Judges whether a frame starts some bytes: the one legality check of framer and decoder.
 
-use crate::frame::{Frame, FrameFormat};
+use crate::direction::Direction;
+use crate::frame::{Frame, FrameFormat, Layout};
 use crate::legal::{Heading, Legal};
-use crate::message::{Command, Direction, VariantId};
+use crate::message::{Command, VariantId};
 use crate::reason::Reason;
 
 /// The verdict on the bytes at a position.
@@ -19,8 +20,8 @@ pub enum Verdict<'a> {
 /// The LEN and the id of a candidate.
 #[derive(Clone, Copy)]
 pub(crate) struct Claim {
-    pub(crate) length: u8,
-    pub(crate) id: u8,
+    pub(crate) length: u16,
+    pub(crate) id: u16,
 }
 
 /// The legal frames, and whether ids that the table lacks are accepted.
@@ -28,8 +29,11 @@ pub(crate) struct Claim {
 pub struct Rules {
     frame: FrameFormat,
     legal: Legal,
-    /// Whether LEN and id directly follow the header, as in nearly all formats.
+    /// Whether frames are `h h LEN id`, and LEN counts all after itself, as in nearly all formats.
     plain: bool,
+    /// The header of a plain format.
+    first_two: [u8; 2],
+    nameless: bool,
 }
 
 impl Rules {
@@ -38,7 +42,9 @@ impl Rules {
         Self {
             frame: frame.clone(),
             legal: Legal::new(frame, commands, all),
-            plain: frame.addresses.is_empty(),
+            plain: frame.plain(),
+            nameless: !all.iter().any(|direction| frame.has_id(*direction)),
+            first_two: frame.header.first_chunk().copied().unwrap_or_default(),
         }
     }
 
@@ -46,8 +52,11 @@ impl Rules {
     /// edition's maximum: for sniffing unknown firmware.
     #[must_use]
     pub fn accepting_unknown(self) -> Self {
-        let most = usize::try_from(self.frame.maximum_length.min(255)).unwrap_or_default();
-        let legal = self.legal.believing(self.frame.length(0), most);
+        let most = u16::try_from(self.frame.maximum_length).unwrap_or_default();
+        let least = self.frame.length(0, Direction::Request);
+        let legal = self
+            .legal
+            .believing(u16::try_from(least).unwrap_or(u16::MAX), most);
         Self { legal, ..self }
     }
 
@@ -63,13 +72,19 @@ impl Rules {
         self.legal.variants(claim.length, claim.id)
     }
 
+    /// Return whether no frame carries a command id.
+    pub(crate) fn nameless(&self) -> bool {
+        self.nameless
+    }
+
     pub(crate) fn legal(&self) -> &Legal {
         &self.legal
     }
 
-    /// Return whether LEN and id directly follow the header.
-    pub(crate) fn plain(&self) -> bool {
-        self.plain
+    /// Return the header, if LEN and id directly follow its two bytes and LEN counts all after
+    /// itself.
+    pub(crate) fn plain_header(&self) -> Option<[u8; 2]> {
+        self.plain.then_some(self.first_two)
     }
 
     pub(crate) fn frame(&self) -> &FrameFormat {
@@ -80,7 +95,13 @@ impl Rules {
     #[must_use]
     pub fn longest(&self) -> usize {
         let most = self.legal.lengths().map_or(0, |(_, most)| most);
-        self.frame.overhead() + usize::from(most)
+        let Layout {
+            length,
+            id,
+            overhead,
+            ..
+        } = self.frame.layout;
+        length.end().max(id.end()).max(overhead + usize::from(most))
     }
 
     /// Judge whether a frame starts `rest`. This takes no longer than reading the longest frame
@@ -92,8 +113,8 @@ impl Rules {
         if let Some(&[first, second, length, id]) = rest.first_chunk()
             && self.plain
         {
-            return if [first, second] == self.frame.header {
-                self.judge_body(rest, 3, Claim { length, id })
+            return if [first, second] == self.first_two {
+                self.judge_body(rest, length, id)
             } else {
                 Verdict::Refuted(Reason::NoHeader)
             };
@@ -103,46 +124,71 @@ impl Rules {
 
     #[inline(never)]
     fn judge_stepwise<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
-        match self.claim(rest) {
-            Err(reason) => Verdict::Refuted(reason),
-            Ok(None) => Verdict::Waits,
-            Ok(Some(claim)) => self.judge_body(rest, self.frame.overhead(), claim),
-        }
-    }
-
-    /// Return the LEN and the id of a candidate; `None` if they have not come yet.
-    pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
-        let [first, second] = self.frame.header;
-        match rest {
-            [byte, ..] if *byte != first => Err(Reason::NoHeader),
-            [_, byte, ..] if *byte != second => Err(Reason::NoHeader),
-            [_, _, after @ ..] if self.plain => self.claim_after(after),
-            [_, _, address, ..] if !self.frame.addresses.contains(address) => {
-                Err(Reason::BadAddress)
-            }
-            [_, _, _, after @ ..] => self.claim_after(after),
-            _ => Ok(None),
-        }
-    }
-
-    fn claim_after(&self, after: &[u8]) -> Result<Option<Claim>, Reason> {
-        match *after {
-            [length, ..] if !self.legal.is_length(length) => Err(Reason::BadLength),
-            [length, id, ..] => Ok(Some(Claim { length, id })),
-            _ => Ok(None),
-        }
-    }
-
-    /// Judge a candidate; its header and LEN have `start` bytes.
-    #[inline]
-    fn judge_body<'a>(&self, rest: &'a [u8], start: usize, claim: Claim) -> Verdict<'a> {
+        let claim = match self.claim(rest) {
+            Err(reason) => return Verdict::Refuted(reason),
+            Ok(None) => return Verdict::Waits,
+            Ok(Some(claim)) => claim,
+        };
         let Claim { length, id } = claim;
+        match self.legal.wide_heading(length, id) {
+            Heading::Refuted(reason) => Verdict::Refuted(reason),
+            _ => self.judge_rest(rest, self.frame.layout.overhead, claim),
+        }
+    }
+
+    /// Return the LEN and the id of a candidate; `None` if they have not come yet. The parts are
+    /// judged in their order on the wire, each when its last byte has come.
+    pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
+        let header = self.frame.header.iter().zip(rest);
+        if header.into_iter().any(|(byte, given)| byte != given) {
+            return Err(Reason::NoHeader);
+        }
+        let Layout {
+            length,
+            id,
+            address_at,
+            ..
+        } = self.frame.layout;
+        let (length_read, id_read) = (length.read(rest), id.read(rest));
+        let address = address_at.and_then(|at| Some((at, rest.get(at)?)));
+        let bad_address = address
+            .filter(|(_, address)| !self.frame.addresses.contains(address))
+            .map(|(at, _)| (at, Reason::BadAddress));
+        let bad_length = length_read
+            .filter(|read| !self.legal.is_length(*read))
+            .map(|_| (length.at, Reason::BadLength));
+        // After LEN, the two are judged together.
+        let bad_id = id_read
+            .filter(|read| id.at < length.at && !self.legal.is_id(*read))
+            .map(|_| (id.at, Reason::UnknownId));
+        let first = [bad_address, bad_length, bad_id]
+            .into_iter()
+            .flatten()
+            .min_by_key(|(at, _)| *at);
+        if let Some((_, reason)) = first {
+            return Err(reason);
+        }
+        Ok(length_read
+            .zip(id_read)
+            .map(|(length, id)| Claim { length, id }))
+    }
+
+    /// Judge a candidate of a plain format; `h h LEN` precede the id.
+    #[inline]
+    fn judge_body<'a>(&self, rest: &'a [u8], length: u8, id: u8) -> Verdict<'a> {
         if let Heading::Refuted(reason) = self.legal.heading(length, id) {
             return Verdict::Refuted(reason);
         }
-        match rest.get(..start + usize::from(length)) {
+        let (length, id) = (u16::from(length), u16::from(id));
+        self.judge_rest(rest, 3, Claim { length, id })
+    }
+
+    #[inline]
+    fn judge_rest<'a>(&self, rest: &'a [u8], overhead: usize, claim: Claim) -> Verdict<'a> {
+        let Claim { length, id } = claim;
+        match rest.get(..overhead + usize::from(length)) {
             None => Verdict::Waits,
-            Some(bytes) if self.frame.check.holds(bytes, start) => {
+            Some(bytes) if self.frame.check.holds(bytes) => {
                 Verdict::Frame(Frame::new(bytes, length, id))
             }
             Some(_) => Verdict::Refuted(Reason::BadCheck),

@@ -1,9 +1,11 @@
 //! Finds the legal variants of messages by id and LEN.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
+use crate::direction::Direction;
 use crate::frame::FrameFormat;
-use crate::message::{Command, Direction, VariantId};
+use crate::message::{Command, VariantId};
 use crate::reason::Reason;
 
 /// What a header with a certain LEN and id can be.
@@ -31,63 +33,104 @@ pub(crate) type Headings = [u16; 0x1_0000];
 pub(crate) struct Legal {
     /// Indexed by the bytes of a header. A stream uses few of its cache lines.
     headings: Arc<Headings>,
+    /// The groups of frames with a LEN or an id above 255, by LEN and id.
+    wide: Arc<HashMap<(u16, u16), u16>>,
+    /// The groups of frames without an id, by LEN; they have no entry elsewhere.
+    nameless: Arc<HashMap<u16, u16>>,
     /// The variants that share an id and a LEN; the first one that allows a frame's values counts.
     groups: Arc<[Vec<VariantId>]>,
-    known: [bool; 256],
+    known: Arc<Set>,
     /// The LENs of all frames. Any other LEN refutes a candidate before its id has come.
-    lengths: [bool; 256],
+    lengths: Arc<Set>,
+    /// Whether ids that the table lacks are accepted.
+    believing: bool,
 }
 
 impl Legal {
     /// Index the variants of the directions; earlier directions and commands take precedence.
     pub(crate) fn new(frame: &FrameFormat, commands: &[Command], all: &[Direction]) -> Self {
+        let mut groups = Groups::default();
+        let (mut known, mut lengths) = (Set::default(), Set::default());
+        for (id, length, variant) in all.iter().flat_map(|way| variants(frame, commands, *way)) {
+            lengths.add(length);
+            match id {
+                Some(id) => known.add(id),
+                None => known.add_all(),
+            }
+            groups.add(length, id, variant);
+        }
         let mut headings = [BAD_LENGTH; 0x1_0000];
-        let mut known = [false; 256];
-        let mut groups: Vec<Vec<VariantId>> = Vec::new();
-        let mut lengths = [false; 256];
-        let variants = all.iter().flat_map(|way| variants(frame, commands, *way));
-        for (id, length, variant) in variants {
-            mark(&mut lengths, length);
-            mark(&mut known, usize::from(id));
-            let Some(cell) = headings.get_mut(usize::from(id) << 8 | length) else {
+        let mut wide = HashMap::new();
+        for ((length, id), group) in groups.named {
+            match (u8::try_from(length), u8::try_from(id)) {
+                (Ok(length), Ok(id)) => {
+                    if let Some(cell) = headings.get_mut(usize::from(cell_of(length, id))) {
+                        *cell = group;
+                    }
+                }
+                _ => {
+                    wide.insert((length, id), group);
+                }
+            }
+        }
+        for (length, group) in &groups.nameless {
+            let Ok(length) = u8::try_from(*length) else {
                 continue;
             };
-            if let Some(group) = groups.get_mut(usize::from(*cell)) {
-                group.push(variant);
-            } else {
-                *cell = u16::try_from(groups.len()).unwrap_or(BAD_LENGTH);
-                groups.push(vec![variant]);
+            for id in 0..=u8::MAX {
+                let cell = headings.get_mut(usize::from(cell_of(length, id)));
+                if let Some(cell) = cell.filter(|cell| **cell == BAD_LENGTH) {
+                    *cell = *group;
+                }
             }
         }
         fill_unknown(&mut headings, &known, &lengths, UNKNOWN_ID);
         Self {
             headings: Arc::new(headings),
-            groups: groups.into(),
-            known,
-            lengths,
+            wide: Arc::new(wide),
+            nameless: Arc::new(groups.nameless),
+            groups: groups.variants.into(),
+            known: Arc::new(known),
+            lengths: Arc::new(lengths),
+            believing: false,
         }
     }
 
     /// Return the same index, but accept ids that the table lacks. Their LEN must be legal for
     /// another id, or lie between `least` and `most`.
-    pub(crate) fn believing(mut self, least: usize, most: usize) -> Self {
-        (least..=most).for_each(|length| mark(&mut self.lengths, length));
+    pub(crate) fn believing(mut self, least: u16, most: u16) -> Self {
+        let mut lengths = Set::clone(&self.lengths);
+        (least..=most).for_each(|length| lengths.add(length));
         let mut headings = *self.headings;
-        fill_unknown(&mut headings, &self.known, &self.lengths, BELIEVED);
+        fill_unknown(&mut headings, &self.known, &lengths, BELIEVED);
         self.headings = Arc::new(headings);
+        self.lengths = Arc::new(lengths);
+        self.believing = true;
         self
     }
 
     /// Return what a header with that LEN and id can be.
     #[inline]
     pub(crate) fn heading(&self, length: u8, id: u8) -> Heading {
-        let index = u16::from_le_bytes([length, id]);
-        let cell = self.headings.get(usize::from(index)).copied();
-        match cell.unwrap_or(BAD_LENGTH) {
-            UNKNOWN_ID => Heading::Refuted(Reason::UnknownId),
-            BAD_LENGTH => Heading::Refuted(Reason::BadLength),
-            BELIEVED => Heading::Unknown,
-            group => Heading::Group(group),
+        let cell = self.headings.get(usize::from(cell_of(length, id))).copied();
+        heading(cell.unwrap_or(BAD_LENGTH))
+    }
+
+    /// Return the same for any LEN and id.
+    pub(crate) fn wide_heading(&self, length: u16, id: u16) -> Heading {
+        if let (Ok(length), Ok(id)) = (u8::try_from(length), u8::try_from(id)) {
+            return self.heading(length, id);
+        }
+        let group = self.wide.get(&(length, id));
+        if let Some(group) = group.or_else(|| self.nameless.get(&length)) {
+            return heading(*group);
+        }
+        if self.known.has(id) || !self.lengths.has(length) {
+            heading(BAD_LENGTH)
+        } else if self.believing {
+            Heading::Unknown
+        } else {
+            heading(UNKNOWN_ID)
         }
     }
 
@@ -98,16 +141,18 @@ impl Legal {
 
     /// Return whether any frame has that LEN.
     #[inline]
-    pub(crate) fn is_length(&self, length: u8) -> bool {
-        let legal = self.lengths.get(usize::from(length));
-        legal.copied().unwrap_or_default()
+    pub(crate) fn is_length(&self, length: u16) -> bool {
+        self.lengths.has(length)
+    }
+
+    /// Return whether any frame has that id, or unknown ids are accepted.
+    pub(crate) fn is_id(&self, id: u16) -> bool {
+        self.believing || self.known.has(id)
     }
 
     /// Return the smallest and the largest LEN of any frame; `None`: there are no frames.
-    pub(crate) fn lengths(&self) -> Option<(u8, u8)> {
-        let least = self.lengths.iter().position(|legal| *legal)?;
-        let most = self.lengths.iter().rposition(|legal| *legal)?;
-        Some((u8::try_from(least).ok()?, u8::try_from(most).ok()?))
+    pub(crate) fn lengths(&self) -> Option<(u16, u16)> {
+        self.lengths.ends()
     }
 
     /// Return all groups; a heading's number is the index here.
@@ -116,8 +161,8 @@ impl Legal {
     }
 
     /// Return the variants with that LEN and id, in order of precedence.
-    pub(crate) fn variants(&self, length: u8, id: u8) -> &[VariantId] {
-        let Heading::Group(group) = self.heading(length, id) else {
+    pub(crate) fn variants(&self, length: u16, id: u16) -> &[VariantId] {
+        let Heading::Group(group) = self.wide_heading(length, id) else {
             return &[];
         };
         let variants = self.groups.get(usize::from(group));
@@ -125,21 +170,120 @@ impl Legal {
     }
 }
 
-/// Return each variant of a direction, with its id and LEN.
+/// The index of the cell of a LEN and an id.
+#[inline]
+fn cell_of(length: u8, id: u8) -> u16 {
+    u16::from_le_bytes([length, id])
+}
+
+#[inline]
+fn heading(cell: u16) -> Heading {
+    match cell {
+        UNKNOWN_ID => Heading::Refuted(Reason::UnknownId),
+        BAD_LENGTH => Heading::Refuted(Reason::BadLength),
+        BELIEVED => Heading::Unknown,
+        group => Heading::Group(group),
+    }
+}
+
+/// A set of numbers of 16 bits.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Set(Vec<bool>);
+
+impl Set {
+    fn add(&mut self, number: u16) {
+        let index = usize::from(number);
+        if self.0.len() <= index {
+            self.0.resize(index + 1, false);
+        }
+        if let Some(entry) = self.0.get_mut(index) {
+            *entry = true;
+        }
+    }
+
+    fn add_all(&mut self) {
+        self.0 = vec![true; 0x1_0000];
+    }
+
+    #[inline]
+    fn has(&self, number: u16) -> bool {
+        let entry = self.0.get(usize::from(number));
+        entry.copied().unwrap_or_default()
+    }
+
+    fn ends(&self) -> Option<(u16, u16)> {
+        let least = self.0.iter().position(|entry| *entry)?;
+        let most = self.0.iter().rposition(|entry| *entry)?;
+        Some((u16::try_from(least).ok()?, u16::try_from(most).ok()?))
+    }
+}
+
+/// The groups while they are being collected.
+#[derive(Default)]
+struct Groups {
+    named: HashMap<(u16, u16), u16>,
+    nameless: HashMap<u16, u16>,
+    variants: Vec<Vec<VariantId>>,
+}
+
+impl Groups {
+    /// Add a variant; one without an id can also be what other ids of its LEN stand for.
+    fn add(&mut self, length: u16, id: Option<u16>, variant: VariantId) {
+        let Some(id) = id else {
+            let named = self.named.iter().filter(|((of, _), _)| *of == length);
+            let groups: Vec<u16> = named.map(|(_, group)| *group).collect();
+            for group in groups {
+                self.push(group, variant);
+            }
+            let known = self.nameless.get(&length).copied();
+            let group = known.or_else(|| self.open());
+            if let Some(group) = group {
+                self.nameless.insert(length, group);
+                self.push(group, variant);
+            }
+            return;
+        };
+        let known = self.named.get(&(length, id)).copied();
+        if let Some(group) = known.or_else(|| self.open()) {
+            self.named.insert((length, id), group);
+            self.push(group, variant);
+        }
+    }
+
+    /// Return a new group; `None` if there are too many.
+    fn open(&mut self) -> Option<u16> {
+        let group = u16::try_from(self.variants.len()).ok()?;
+        (group < BELIEVED).then(|| {
+            self.variants.push(Vec::new());
+            group
+        })
+    }
+
+    fn push(&mut self, group: u16, variant: VariantId) {
+        if let Some(variants) = self.variants.get_mut(usize::from(group)) {
+            variants.push(variant);
+        }
+    }
+}
+
+/// Return each variant of a direction, with its id, if it has one, and its LEN.
 fn variants(
     frame: &FrameFormat,
     commands: &[Command],
     direction: Direction,
-) -> Vec<(u8, usize, VariantId)> {
+) -> Vec<(Option<u16>, u16, VariantId)> {
     let mut all = Vec::new();
     for (command, record) in commands.iter().enumerate() {
         for (index, variant) in record.variants(direction).iter().enumerate() {
-            let id = VariantId {
+            let variant_id = VariantId {
                 direction,
                 command,
                 variant: index,
             };
-            all.push((record.id, frame.length(variant.size()), id));
+            let id = frame.has_id(direction).then_some(record.id);
+            // LEN fits: Table::new checked that.
+            let length = frame.length(variant.size(), direction);
+            all.extend(u16::try_from(length).map(|length| (id, length, variant_id)));
         }
     }
     all
@@ -147,16 +291,17 @@ fn variants(
 
 /// Set the cells of ids that the table lacks: `cell` for a LEN of some frame, bad length for
 /// others.
-fn fill_unknown(headings: &mut Headings, known: &[bool; 256], lengths: &[bool; 256], cell: u16) {
-    for (row, known) in headings.chunks_exact_mut(256).zip(known) {
-        for (entry, legal) in row.iter_mut().zip(lengths).filter(|_| !known) {
-            *entry = if *legal { cell } else { BAD_LENGTH };
+fn fill_unknown(headings: &mut Headings, known: &Set, lengths: &Set, cell: u16) {
+    for (id, row) in (0..=u16::MAX).zip(headings.chunks_exact_mut(256)) {
+        if known.has(id) {
+            continue;
         }
-    }
-}
-
-fn mark(set: &mut [bool; 256], index: usize) {
-    if let Some(entry) = set.get_mut(index) {
-        *entry = true;
+        for (length, entry) in (0..=u16::MAX).zip(row) {
+            *entry = if lengths.has(length) {
+                cell
+            } else {
+                BAD_LENGTH
+            };
+        }
     }
 }

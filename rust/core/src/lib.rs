@@ -7,7 +7,9 @@
 
 mod bulk;
 mod check;
+mod crc;
 mod decode;
+mod direction;
 mod encode;
 mod field;
 mod frame;
@@ -28,15 +30,17 @@ mod write;
 pub use bulk::{
     Advise, Cells, ColumnReader, Columns, Numbers, OffsetReader, Offsets, Plans, Rows, Spans,
 };
-pub use check::{Check, crc16_modbus};
+pub use check::{Algorithm, Check, Computed};
+pub use crc::{Crc, CrcParameters};
 pub use decode::{DecodeError, Decoded, decode, read};
+pub use direction::{Direction, Listening};
 pub use encode::{Choice, encode};
 pub use field::{Case, Field, Shape};
-pub use frame::{Frame, FrameFormat, OwnedFrame};
+pub use frame::{Frame, FrameFormat, Layout, OwnedFrame, Part};
 pub use framer::{Event, Framer};
 pub use given::{Given, Row, Unread, ValueFault};
 pub use judge::{Rules, Verdict};
-pub use message::{Command, Direction, Listening, Variant, VariantId};
+pub use message::{Command, Variant, VariantId};
 pub use number::{Bits, Encoding, Misfit, Number, Order, Value};
 pub use read::BadRaw;
 pub use reason::Reason;

@@ -1,26 +1,12 @@
 //! Messages: their directions, their variants, and the commands that they belong to.
 
+use crate::direction::Direction;
 use crate::field::Field;
 use crate::frame::FrameFormat;
 use crate::number::{Misfit, Number};
 
-/// The direction of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Direction {
-    /// To the arm.
-    Request,
-    /// From the arm.
-    Reply,
-}
-
-/// The directions whose frames a framer accepts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Listening {
-    /// Only one direction.
-    To(Direction),
-    /// Both directions, as when sniffing a transport.
-    Both,
-}
+/// The highest LEN of two bytes that is supported.
+const LONGEST: usize = 0x4000;
 
 /// The data bytes of one variant of a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,13 +67,22 @@ impl Variant {
         self.starts.get(field).copied().unwrap_or_default()
     }
 
-    pub(crate) fn check(&self, frame: &FrameFormat) -> Result<(), Misfit> {
+    pub(crate) fn check(&self, frame: &FrameFormat, direction: Direction) -> Result<(), Misfit> {
         self.fields
             .iter()
             .try_for_each(|field| field.check(&self.fields))?;
-        u8::try_from(frame.length(self.size))
-            .map(|_| ())
-            .map_err(|_| Misfit::Length)
+        let length = frame.length(self.size, direction);
+        let most = if frame.layout.length.wide {
+            LONGEST
+        } else {
+            255
+        };
+        let id = frame.layout.id;
+        let holds_id = frame.has_id(direction) || self.size >= id.end() - id.at;
+        if length > most || !holds_id {
+            return Err(Misfit::Length);
+        }
+        Ok(())
     }
 }
 
@@ -95,7 +90,7 @@ impl Variant {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Command {
     /// The id on the wire.
-    pub id: u8,
+    pub id: u16,
     /// The variants of the request.
     pub request: Vec<Variant>,
     /// The variants of the reply.

@@ -30,7 +30,7 @@ pub(crate) fn scan<'a>(
     at_end: bool,
     sink: &mut impl Sink<'a>,
 ) -> usize {
-    let [header, _] = rules.frame().header;
+    let header = rules.frame().header.first().copied().unwrap_or_default();
     let mut run = (at, Reason::NoHeader);
     while at < stop {
         let reason = match rules.judge(data.get(at..).unwrap_or_default()) {

@@ -3,9 +3,10 @@
 //! Names, texts and units stay in Python. [`Table::new`] checks every property on which the codecs
 //! rely.
 
+use crate::direction::{Direction, Listening};
 use crate::frame::FrameFormat;
 use crate::judge::Rules;
-use crate::message::{Command, Direction, Listening, Variant, VariantId};
+use crate::message::{Command, Variant, VariantId};
 use crate::number::Misfit;
 
 /// Why a table was rejected: a mistake in the table, not in any data.
@@ -34,12 +35,14 @@ impl Table {
     /// A command has a part that they cannot interpret, which is a mistake in the table.
     pub fn new(frame: FrameFormat, commands: Vec<Command>) -> Result<Self, TableError> {
         for (index, command) in commands.iter().enumerate() {
-            let variants = command.request.iter().chain(&command.reply);
-            for variant in variants {
-                variant.check(&frame).map_err(|misfit| TableError {
-                    command: index,
-                    misfit,
-                })?;
+            for direction in [Direction::Request, Direction::Reply] {
+                for variant in command.variants(direction) {
+                    let checked = variant.check(&frame, direction);
+                    checked.map_err(|misfit| TableError {
+                        command: index,
+                        misfit,
+                    })?;
+                }
             }
         }
         let rules = |directions: &[Direction]| Rules::new(&frame, &commands, directions);

@@ -1,5 +1,7 @@
 //! Counts of what a framer has received.
 
+use std::collections::BTreeMap;
+
 use crate::reason::Reason;
 
 /// Counts from the start of a stream. They depend on its bytes alone, not on its chunks.
@@ -7,8 +9,10 @@ use crate::reason::Reason;
 pub struct Tally {
     /// Bytes fed.
     pub bytes: u64,
-    /// Frames, by id.
+    /// Frames, by ids of one byte.
     pub frames: [u64; 256],
+    /// Frames, by larger ids.
+    pub wide: BTreeMap<u16, u64>,
     /// Bytes of noise, by reason; in the order of [`Reason::ALL`].
     pub noise: [u64; Reason::ALL.len()],
     /// The number of frames directly after noise.
@@ -20,6 +24,7 @@ impl Default for Tally {
         Self {
             bytes: 0,
             frames: [0; 256],
+            wide: BTreeMap::new(),
             noise: [0; Reason::ALL.len()],
             resyncs: 0,
         }
@@ -29,9 +34,10 @@ impl Default for Tally {
 impl Tally {
     /// Count frames of that id.
     #[inline]
-    pub(crate) fn add_frames(&mut self, id: u8, count: u64) {
-        if let Some(frames) = self.frames.get_mut(usize::from(id)) {
-            *frames += count;
+    pub(crate) fn add_frames(&mut self, id: u16, count: u64) {
+        match self.frames.get_mut(usize::from(id)) {
+            Some(frames) => *frames += count,
+            None => *self.wide.entry(id).or_default() += count,
         }
     }
 

@@ -1,10 +1,12 @@
 //! Other frame formats: with a CRC, or with an address byte and a sum; and variants that share an
 //! id and a size.
 
-use crate::common::{Sample, Samples, events, field, frame_format, number, table, table_of};
+use crate::common::{
+    Sample, Samples, computed, crc16_modbus, events, field, frame_format, number, table, table_of,
+};
 use cobotwire_core::{
-    Check, Choice, DecodeError, Decoded, Direction, EncodeError, Field, FrameFormat, Framer,
-    Listening, Reason, Table, Value, crc16_modbus, decode, encode,
+    Algorithm, Choice, DecodeError, Decoded, Direction, EncodeError, Field, FrameFormat, Framer,
+    Layout, Listening, Reason, Table, Value, decode, encode,
 };
 
 const CRC_FRAME: [u8; 7] = [0xFE, 0xFE, 0x04, 0x58, 0x01, 0xFD, 0x87]; // of a real arm
@@ -17,7 +19,7 @@ fn byte() -> Field {
 /// 0x20 to 0x58, each of one byte.
 fn with_crc() -> Table {
     let frame = FrameFormat {
-        check: Check::Crc16Modbus,
+        check: crc16_modbus(),
         ..frame_format()
     };
     table_of(frame, vec![vec![byte()]; 0x39])
@@ -26,8 +28,9 @@ fn with_crc() -> Table {
 /// 0x20: one byte, to one of three addresses.
 fn with_sum() -> Table {
     let frame = FrameFormat {
-        check: Check::Sum,
+        check: computed(Algorithm::Sum, 1, 4),
         addresses: vec![1, 0, 2],
+        layout: Layout::usual(2, true),
         ..frame_format()
     };
     table_of(frame, vec![vec![byte()]])
@@ -65,8 +68,11 @@ fn changed<const N: usize>(mut frame: [u8; N], place: usize) -> [u8; N] {
 
 #[test]
 fn crc16_modbus_has_the_published_check_value() {
-    assert_eq!(crc16_modbus(b"123456789"), 0x4B37);
-    assert_eq!(crc16_modbus(b""), 0xFFFF);
+    for (data, crc) in [(&b"123456789"[..], [0x4B, 0x37]), (b"", [0xFF, 0xFF])] {
+        let mut frame = data.to_vec();
+        crc16_modbus().end(&mut frame);
+        assert_eq!(frame[data.len()..], crc);
+    }
 }
 
 #[test]
@@ -141,7 +147,7 @@ fn an_unknown_id_has_at_least_room_for_its_check() {
         .clone()
         .accepting_unknown();
     let mut frame = vec![0xFE, 0xFE, 0x03, 0x99];
-    frame.extend(crc16_modbus(&frame).to_be_bytes());
+    crc16_modbus().end(&mut frame);
     let mut found = events(&mut Framer::new(rules.clone()), [&frame[..]]);
     assert_eq!(found, [(0, frame, None)]);
     found = events(

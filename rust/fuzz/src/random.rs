@@ -1,6 +1,9 @@
 //! Makes tables from fuzz bytes: most are nearly valid, some are nonsense.
 
-use cobotwire_core::{Case, Check, Command, Field, FrameFormat, Number, Order, Shape, Variant};
+use cobotwire_core::{
+    Algorithm, Case, Check, Command, Computed, Crc, CrcParameters, Field, FrameFormat, Layout,
+    Number, Order, Part, Shape, Variant,
+};
 
 use crate::bytes::Bytes;
 
@@ -20,30 +23,135 @@ fn many<T>(bytes: &mut Bytes<'_>, count: usize, make: impl Fn(&mut Bytes<'_>) ->
 
 fn format(bytes: &mut Bytes<'_>) -> FrameFormat {
     let flags = bytes.byte();
-    let header = if flags & 1 == 0 {
-        [0xFE, 0xFE]
+    let header = match flags & 7 {
+        0 => vec![bytes.byte()],
+        1 => bytes.take(3).to_vec(),
+        2 => vec![0xFF, 0xFF, 0xFD, 0x00],
+        3 => vec![bytes.byte(), bytes.byte()],
+        _ => vec![0xFE, 0xFE],
+    };
+    let header = if header.is_empty() {
+        vec![0xFE]
     } else {
-        [bytes.byte(), bytes.byte()]
+        header
     };
-    let check = match flags >> 1 & 3 {
-        0 => Check::Crc16Modbus,
-        1 => Check::Sum,
-        2 => Check::Footer(0xFA),
-        _ => Check::Footer(bytes.byte()),
+    let addresses = bytes.take(usize::from(flags >> 3 & 3)).to_vec();
+    let layout = if flags & 0x20 == 0 {
+        Layout::usual(header.len(), !addresses.is_empty())
+    } else {
+        layout(bytes, header.len(), !addresses.is_empty())
     };
-    let addresses = usize::from(flags >> 3 & 3);
     FrameFormat {
+        check: check(bytes, &layout),
         header,
-        check,
-        addresses: bytes.take(addresses).to_vec(),
+        addresses,
         maximum_length: integer(bytes, 20),
+        layout,
     }
+}
+
+/// Return a layout with its parts in any order, and a LEN that counts from none of them to all.
+fn layout(bytes: &mut Bytes<'_>, header: usize, address: bool) -> Layout {
+    let flags = bytes.byte();
+    let order = |bit: u8| match flags >> bit & 1 {
+        0 => Order::Big,
+        _ => Order::Little,
+    };
+    let mut length = Part {
+        at: 0,
+        wide: flags & 1 == 1,
+        order: order(1),
+    };
+    let mut id = Part {
+        at: 0,
+        wide: flags & 4 == 4,
+        order: order(3),
+    };
+    let mut at = header;
+    let mut address_at = None;
+    let places: &[u8] = match flags >> 4 & 3 {
+        0 => b"ali",
+        1 => b"lai",
+        2 => b"ial",
+        _ => b"ail",
+    };
+    for place in places {
+        match place {
+            b'l' => {
+                length.at = at;
+                at = length.end();
+            }
+            b'i' => {
+                id.at = at;
+                at = id.end();
+            }
+            _ if address => {
+                address_at = Some(at);
+                at += 1;
+            }
+            _ => {}
+        }
+    }
+    Layout {
+        address_at,
+        length,
+        id,
+        data_at: at,
+        overhead: usize::from(bytes.byte()) % (at + 1),
+        reply_has_id: flags & 0x40 == 0 || id.end() < at,
+    }
+}
+
+fn check(bytes: &mut Bytes<'_>, layout: &Layout) -> Check {
+    let flags = bytes.byte();
+    let algorithm = match flags & 7 {
+        0 => Algorithm::Sum,
+        1 => Algorithm::InvertedSum,
+        2 => Algorithm::NegatedSum,
+        3 => Algorithm::Xor,
+        4 => Algorithm::Fletcher(if flags & 8 == 0 { 256 } else { 255 }),
+        5 => Algorithm::Crc(crc(bytes)),
+        6 => return Check::Footer(0xFA),
+        _ => return Check::Footer(bytes.byte()),
+    };
+    let width = match &algorithm {
+        Algorithm::Crc(crc) => crc.size(),
+        Algorithm::Fletcher(_) => 2,
+        _ => 1 + usize::from(flags >> 4 & 1),
+    };
+    Check::Computed(Box::new(Computed {
+        algorithm: Some(algorithm),
+        width,
+        order: if flags & 0x20 == 0 {
+            Order::Big
+        } else {
+            Order::Little
+        },
+        from: usize::from(bytes.byte()) % (layout.data_at + 1),
+        footer: bytes.take(usize::from(flags >> 6)).to_vec(),
+    }))
+}
+
+fn crc(bytes: &mut Bytes<'_>) -> Crc {
+    let width = 1 + u32::from(bytes.byte()) % 120;
+    let mut number =
+        || (0..16).fold(0, |all, _| all << 8 | u128::from(bytes.byte())) >> (128 - width);
+    let (poly, init, xorout, flags) = (number(), number(), number(), number());
+    Crc::new(CrcParameters {
+        width,
+        poly,
+        init,
+        refin: flags & 1 == 1,
+        refout: flags & 2 == 2,
+        xorout,
+    })
+    .expect("the width is legal")
 }
 
 fn command(bytes: &mut Bytes<'_>) -> Command {
     let flags = bytes.byte();
     Command {
-        id: bytes.byte(),
+        id: u16::from(bytes.byte()),
         request: many(bytes, usize::from(flags & 3), variant),
         reply: many(bytes, usize::from(flags >> 2 & 3), variant),
     }

@@ -4,6 +4,8 @@ use cobotwire_core::{
     BadRaw, Decoded, Direction, Field, Listening, Number, Order, Table, Value, Variant, VariantId,
 };
 
+use crate::oracle::number;
+
 /// A number of a frame: the index of its field, its raw value and its physical value.
 pub type Read = (usize, i64, Value);
 
@@ -41,7 +43,7 @@ pub fn decoded(table: &Table, (variant, read): (VariantId, Vec<Read>), frame: &[
     Decoded {
         variant,
         values: values(table, variant, &read),
-        address: (!table.frame().addresses.is_empty()).then(|| frame[2]),
+        address: table.frame().layout.address_at.map(|at| frame[at]),
     }
 }
 
@@ -53,11 +55,19 @@ pub fn numbers(
     of: Option<usize>,
 ) -> Option<Result<(VariantId, Vec<Read>), BadRaw>> {
     let format = table.frame();
-    let start = format.overhead() + 1;
-    let data = &frame[start..frame.len() - format.check.size()];
+    let has_id = format.has_id(direction);
+    let start = if has_id {
+        format.layout.data_at
+    } else {
+        format.layout.id.at
+    };
+    let end = frame.len() - format.check.size();
+    // A frame of the other direction may be too short for data.
+    let data = frame.get(start..end)?;
+    let id = number(format.layout.id, frame);
     let mut first = None;
     for (command, record) in table.commands().iter().enumerate() {
-        if record.id != frame[start - 1] || of.is_some_and(|of| of != command) {
+        if has_id && id != Some(record.id) || of.is_some_and(|of| of != command) {
             continue;
         }
         for (variant, fields) in record.variants(direction).iter().enumerate() {

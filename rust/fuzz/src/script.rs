@@ -4,11 +4,11 @@
 //! of a few bytes produces both, so the fuzzer reaches the code that handles them.
 
 use cobotwire_core::{
-    Command, Direction, Field, FrameFormat, Number, Order, Table, Variant, VariantId,
+    Command, Direction, Field, FrameFormat, Number, Order, Part, Table, Variant, VariantId,
 };
 
 use crate::bytes::Bytes;
-use crate::oracle::check_of;
+use crate::oracle::{check_of, length_of};
 
 /// The largest stream, in bytes: a script can repeat its own output.
 const LIMIT: usize = 1024;
@@ -45,12 +45,13 @@ fn step(table: &Table, variants: &[VariantId], script: &mut Bytes<'_>, stream: &
         }
         7 => {
             let claim = [script.byte(), script.byte()];
-            stream.extend(head(format, claim[0], claim[1]));
+            let [length, id] = claim.map(u16::from);
+            stream.extend(head(format, length, Some(id)));
             stream.extend(script.take(usize::from(claim[0] & 7)));
         }
         8 => {
             let frame = any_data(table, variants, &mut Bytes(script.take(2)));
-            stream.extend(&frame[..frame.len().min(format.overhead() + 1)]);
+            stream.extend(&frame[..frame.len().min(format.layout.data_at)]);
         }
         9 => stream.extend(vec![format.header[0]; 1 + script.pick(40)]),
         10 => stream.extend(&SERVO[..=script.pick(SERVO.len())]),
@@ -106,23 +107,40 @@ fn build(
     let variant = &command.variants(direction)[variant.variant];
     let mut data = fill(variant, script);
     data.resize(variant.size(), 0);
-    finished(table.frame(), command.id, &data)
+    finished(table.frame(), command.id, direction, &data)
 }
 
 /// Return a whole frame around data bytes.
-pub fn finished(format: &FrameFormat, id: u8, data: &[u8]) -> Vec<u8> {
+pub fn finished(format: &FrameFormat, id: u16, direction: Direction, data: &[u8]) -> Vec<u8> {
     // Tables with longer frames are rejected.
-    let mut frame = head(format, format.length(data.len()) as u8, id);
+    let length = length_of(format, direction, data.len()) as u16;
+    let mut frame = head(format, length, format.has_id(direction).then_some(id));
     frame.extend(data);
     frame.extend(check_of(format, &frame));
     frame
 }
 
-fn head(format: &FrameFormat, length: u8, id: u8) -> Vec<u8> {
-    let mut head = format.header.to_vec();
-    head.extend(format.addresses.first());
-    head.extend([length, id]);
+fn head(format: &FrameFormat, length: u16, id: Option<u16>) -> Vec<u8> {
+    let mut head = format.header.clone();
+    head.resize(format.layout.data_at, 0);
+    if let (Some(at), Some(address)) = (format.layout.address_at, format.addresses.first()) {
+        head[at] = *address;
+    }
+    put(&mut head, format.layout.length, length);
+    match id {
+        Some(id) => put(&mut head, format.layout.id, id),
+        None => head.truncate(format.layout.id.at),
+    }
     head
+}
+
+fn put(head: &mut [u8], part: Part, number: u16) {
+    let [low, high] = number.to_le_bytes();
+    match (part.wide, part.order) {
+        (false, _) => head[part.at] = low,
+        (true, Order::Little) => head[part.at..part.end()].copy_from_slice(&[low, high]),
+        (true, Order::Big) => head[part.at..part.end()].copy_from_slice(&[high, low]),
+    }
 }
 
 /// Return data bytes that the variant allows, if its table is consistent.

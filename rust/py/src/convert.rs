@@ -1,8 +1,8 @@
 //! Converts a Python `Table`, attribute by attribute, to the core's.
 
 use cobotwire_core::{
-    Bits, Case, Check, Command, Encoding, Field, FrameFormat, Misfit, Number, Order, Shape, Table,
-    Variant,
+    Algorithm, Bits, Case, Check, Command, Computed, Crc, CrcParameters, Encoding, Field,
+    FrameFormat, Layout, Misfit, Number, Order, Part, Shape, Table, Variant,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -50,7 +50,7 @@ struct VariantRecord {
 
 #[derive(FromPyObject)]
 struct CommandRecord {
-    id: u8,
+    id: u16,
     name: String,
     request: Vec<VariantRecord>,
     reply: Vec<VariantRecord>,
@@ -61,8 +61,41 @@ struct FrameRecord {
     header: Vec<u8>,
     footer: Vec<u8>,
     maximum_length: i64,
-    check: String,
+    check: Option<CheckRecord>,
+    check_from: usize,
     addresses: Vec<u8>,
+    address_at: Option<usize>,
+    length_at: usize,
+    length_number: UnsignedRecord,
+    id_at: usize,
+    id_number: UnsignedRecord,
+    data_at: usize,
+    overhead: usize,
+    reply_has_id: bool,
+}
+
+#[derive(FromPyObject)]
+struct UnsignedRecord {
+    width: usize,
+    order: String,
+}
+
+#[derive(FromPyObject)]
+struct CheckRecord {
+    algorithm: String,
+    width: usize,
+    order: String,
+    crc: Option<CrcRecord>,
+}
+
+#[derive(FromPyObject)]
+struct CrcRecord {
+    width: u32,
+    poly: u128,
+    init: u128,
+    refin: bool,
+    refout: bool,
+    xorout: u128,
 }
 
 #[derive(FromPyObject)]
@@ -84,22 +117,88 @@ pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
 }
 
 fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
-    let rejected = |what: &str| Err(PyValueError::new_err(format!("table: {what}")));
-    let &[first, second] = record.header.as_slice() else {
-        return rejected("the header must have two bytes");
+    let layout = Layout {
+        address_at: record.address_at,
+        length: part(record.length_at, &record.length_number)?,
+        id: part(record.id_at, &record.id_number)?,
+        data_at: record.data_at,
+        overhead: record.overhead,
+        reply_has_id: record.reply_has_id,
     };
-    let check = match (record.check.as_str(), record.footer.as_slice()) {
-        ("footer", &[footer]) => Check::Footer(footer),
-        ("crc16-modbus", []) => Check::Crc16Modbus,
-        ("sum", []) => Check::Sum,
-        _ => return rejected("the check must be a footer of one byte, crc16-modbus or sum"),
+    let check = match (record.check, record.footer.as_slice()) {
+        (None, &[footer]) => Check::Footer(footer),
+        (check, _) => Check::Computed(Box::new(Computed {
+            width: check.as_ref().map_or(0, |check| check.width),
+            order: order(check.as_ref().map_or("big", |check| &check.order)),
+            algorithm: check.map(algorithm).transpose()?,
+            from: record.check_from,
+            footer: record.footer,
+        })),
     };
     Ok(FrameFormat {
-        header: [first, second],
+        header: record.header,
         addresses: record.addresses,
         check,
         maximum_length: record.maximum_length,
+        layout,
     })
+}
+
+fn part(at: usize, number: &UnsignedRecord) -> PyResult<Part> {
+    match number.width {
+        1 | 2 => Ok(Part {
+            at,
+            wide: number.width == 2,
+            order: order(&number.order),
+        }),
+        _ => Err(rejected("LEN and the id must have one or two bytes")),
+    }
+}
+
+fn algorithm(record: CheckRecord) -> PyResult<Algorithm> {
+    if let Some(CrcRecord {
+        width,
+        poly,
+        init,
+        refin,
+        refout,
+        xorout,
+    }) = record.crc
+    {
+        let crc = Crc::new(CrcParameters {
+            width,
+            poly,
+            init,
+            refin,
+            refout,
+            xorout,
+        });
+        let crc = crc.filter(|crc| crc.size() == record.width);
+        return crc
+            .map(Algorithm::Crc)
+            .ok_or_else(|| rejected("a CRC must have 1 to 120 bits, and the check its bytes"));
+    }
+    Ok(match record.algorithm.as_str() {
+        "sum" => Algorithm::Sum,
+        "inverted-sum" => Algorithm::InvertedSum,
+        "negated-sum" => Algorithm::NegatedSum,
+        "xor" => Algorithm::Xor,
+        "fletcher" => Algorithm::Fletcher(256),
+        "fletcher-16" => Algorithm::Fletcher(255),
+        _ => return Err(rejected("the algorithm of the check is unknown")),
+    })
+}
+
+fn rejected(what: &str) -> PyErr {
+    PyValueError::new_err(format!("table: {what}"))
+}
+
+fn order(word: &str) -> Order {
+    if word == "little" {
+        Order::Little
+    } else {
+        Order::Big
+    }
 }
 
 fn command(record: CommandRecord) -> Command {
@@ -151,11 +250,7 @@ fn case(record: CaseRecord) -> Case {
 fn number(record: NumberRecord) -> Number {
     Number {
         width: record.width,
-        order: if record.order == "little" {
-            Order::Little
-        } else {
-            Order::Big
-        },
+        order: order(&record.order),
         signed_at: record.signed_at,
         multiply: record.multiply,
         divide: record.divide,
@@ -181,6 +276,8 @@ fn misfit(misfit: Misfit) -> &'static str {
             "all cases of a field must have one size, and one number unless it has many"
         }
         Misfit::Selector => "a selector must be the index of a field with one number",
-        Misfit::Length => "a variant is longer than LEN can express",
+        Misfit::Length => {
+            "a variant is longer than LEN can express, or a reply without an id is shorter than an id"
+        }
     }
 }

@@ -90,7 +90,7 @@ impl NativeFrame {
 
     /// Its command id.
     #[getter]
-    fn command(&self) -> u8 {
+    fn command(&self) -> u16 {
         self.frame().id()
     }
 

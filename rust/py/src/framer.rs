@@ -76,6 +76,9 @@ pub fn counters<'py>(py: Python<'py>, tally: &Tally) -> PyResult<Bound<'py, PyAn
     {
         frames.set_item(id, count)?;
     }
+    for (id, count) in &tally.wide {
+        frames.set_item(id, count)?;
+    }
     for (reason, bytes) in Reason::ALL.into_iter().zip(tally.noise) {
         if bytes > 0 {
             noise.set_item(names.reason(py, reason), bytes)?;

@@ -74,9 +74,9 @@ def _encoding(change: Callable[[bytes], bytes]) -> Make:
 
 
 def _right_footer(table: Table, data: bytes) -> bytes:
-    at = table.frame.length_at
-    end = table.frame.overhead + data[at] if len(data) > at else 0
-    if 0 < end <= len(data) and table.frame.check == "footer":
+    frame = table.frame
+    end = frame.overhead + frame.read_length(data) if len(data) > frame.length_at else 0
+    if 0 < end <= len(data) and frame.check is None:
         return data[: end - 1] + table.frame.footer + data[end:]
     return data
 

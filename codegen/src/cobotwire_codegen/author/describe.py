@@ -9,7 +9,9 @@ from textwrap import fill, indent
 from cobotwire_codegen import lower
 from cobotwire_codegen.author.codes import Explanation
 from cobotwire_codegen.model import Command, Edition, Evidence, Field, Quantity, Variant, Vector
+from cobotwire_codegen.model.frame import Direction
 from cobotwire_codegen.render import markdown, words
+from cobotwire_codegen.render.byte_table import byte_rows
 from cobotwire_codegen.wire import encode_variant
 
 _WIDTH = 96
@@ -90,10 +92,12 @@ def _paragraph(text: str) -> str:
     return fill(text, _WIDTH, initial_indent="  ", subsequent_indent="    ")
 
 
-def _message(edition: Edition, command: Command, direction: str, variant: Variant) -> Iterator[str]:
+def _message(
+    edition: Edition, command: Command, direction: Direction, variant: Variant
+) -> Iterator[str]:
     yield ""
     yield f"{direction.capitalize()}, byte by byte:"
-    for position, content, value in markdown.byte_rows(edition, command, variant):
+    for position, content, value in byte_rows(edition, command, direction, variant):
         yield f"  {position:<6} {content.replace('`', ''):<24} {value}"
 
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cobotwire_codegen.lower import maximum_length
 from cobotwire_codegen.model import Edition, Frame
 from cobotwire_codegen.wire import check_of
 
@@ -57,28 +56,27 @@ def scan(edition: Edition, line: bytes, known: set[tuple[int, int]]) -> Iterator
 def _frame_at(edition: Edition, line: bytes, start: int) -> Seen | None:
     """Return the frame that starts at an offset, or None."""
     frame = edition.frame
-    if not line.startswith(frame.header, start):
+    data_at = start + frame.offset("data")
+    if not line.startswith(frame.header, start) or len(line) < data_at:
         return None
-    at = start + len(frame.header)
-    if frame.addresses:
-        legal = {member.value for member in frame.addresses}
-        if at >= len(line) or line[at] not in legal:
-            return None
-        at += 1
-    if at >= len(line) or not 1 + frame.check_size <= line[at] <= maximum_length(edition):
+    legal = frame.address_values
+    if legal and line[start + frame.offset("address")] not in legal:
         return None
-    end = at + 1 + line[at]
+    length = _number(frame, line, start, "length")
+    if not frame.length(0) <= length <= frame.maximum_length:
+        return None
+    end = data_at + length - frame.length(0) + frame.check_size
     whole = line[start:end]
-    if end > len(line) or not _checks(frame, whole):
+    body = whole[: len(whole) - frame.check_size]
+    if end > len(line) or check_of(frame, body) != whole[len(body) :]:
         return None
-    data = whole[at - start + 2 : len(whole) - frame.check_size]
-    return Seen(start, line[at + 1], data, whole)
+    return Seen(start, _number(frame, line, start, "command"), body[data_at - start :], whole)
 
 
-def _checks(frame: Frame, whole: bytes) -> bool:
-    body, check = whole[: -frame.check_size], whole[-frame.check_size :]
-    start = len(frame.header) + bool(frame.addresses) + 1
-    return check_of(frame, body, len(body) - start - 1) == check
+def _number(frame: Frame, line: bytes, start: int, part: str) -> int:
+    form = frame.length_number if part == "length" else frame.command_number
+    at = start + frame.offset(part)
+    return int.from_bytes(line[at : at + form.width], form.order)
 
 
 def _hides(edition: Edition, line: bytes, seen: Seen, known: set[tuple[int, int]]) -> bool:

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from cobotwire_codegen import language
+from cobotwire_codegen.build.frame_rules import mistakes
 from cobotwire_codegen.build.parts import Parts
+from cobotwire_codegen.catalogue import CRCS, WIDTHS
 from cobotwire_codegen.errors import Place, Problem
+from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.load import Node
-from cobotwire_codegen.model import Address, Frame
+from cobotwire_codegen.model import Address, Frame, FrameCheck, FrameNumber
+from cobotwire_codegen.model.frame import Order
 from cobotwire_codegen.reader import Reader
 
-_FOOTED = ("command", "data", "footer")
-_CHECKED = ("command", "data", "check")
+_ORDERS: dict[str, Order] = {"big": "big", "little": "little"}
 
 
 def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> Frame:
     """Return the frame format of an edition; a stand-in if the edition lacks it."""
     if parts.frame is None or parts.transport is None:
-        return Frame(place, b"\xfe\xfe", "footer", b"\xfa", (), 0, "", 1, 1)
+        return Frame(place, b"\xfe\xfe", None, b"\xfa", (), 0, "", 1, 1)
     spec, port = language.Frame, language.Transport
     frame = Reader(parts.frame, spec, "the frame", problems)
     transport = Reader(parts.transport, port, "the transport", problems)
@@ -26,34 +29,56 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
     transport.get(port.parity)
     transport.get(port.source)
     frame.get(spec.source)
-    word = frame.get(spec.check)
+    check = _check(frame)
     built = Frame(
         place=frame.place,
         header=frame.get(spec.header) or b"",
-        check="sum" if word == "sum" else "footer" if word == "footer" else "crc16-modbus",
+        check=check,
         footer=frame.get(spec.footer) or b"",
         addresses=_addresses(frame),
+        address_range=_address_range(frame),
+        layout=frame.get(spec.layout),
+        counted=frame.get(spec.length_counts),
+        length_number=_number(frame, spec.length_bytes, spec.length_order),
+        command_number=_number(frame, spec.command_bytes, spec.command_order),
+        replies_have_command=frame.get(spec.replies_have_command),
         maximum_data=frame.get(spec.maximum_data),
         doc=frame.get(spec.doc),
         baudrate=transport.get(port.baudrate),
         deadline_ms=transport.get(port.deadline_ms),
     )
-    _compare(frame, built)
+    for message in mistakes(built):
+        frame.problem("bad-frame", message)
     return built
 
 
-def _compare(frame: Reader, built: Frame) -> None:
-    """Report keys of the frame that contradict each other."""
-    wanted = _FOOTED if built.check == "footer" else _CHECKED
-    if frame.get(language.Frame.length_counts) != wanted:
-        frame.problem("bad-frame", f"length_counts must be [{', '.join(wanted)}]")
-    if len(built.header) != 2 or len(built.footer) != (1 if built.check == "footer" else 0):
-        message = "the header must have two bytes; the footer one if `check` is footer, else none"
-        frame.problem("bad-frame", message)
-    most = 254 - built.check_size
-    if built.maximum_data > most:
-        message = f"maximum_data of the frame is {built.maximum_data}; allowed: 0..{most}"
-        frame.problem("bad-frame", message)
+def _check(frame: Reader) -> FrameCheck | None:
+    """Return the check that is computed; None if there is only a footer."""
+    spec = language.Frame
+    word, order = frame.get(spec.check), _ORDERS[frame.get(spec.check_order)]
+    crc = CRCS.get(word)
+    covers_from = frame.get(spec.check_from) or ("header" if crc else "command")
+    width = frame.get(spec.check_bytes)
+    if word == "footer":
+        return None
+    if crc:
+        return FrameCheck(word, covers_from, width or -(-crc.width // 8), order, crc)
+    return FrameCheck(word, covers_from, width or WIDTHS[word][0], order, None)
+
+
+def _number(frame: Reader, width: Key[int], order: Key[str]) -> FrameNumber:
+    return FrameNumber(frame.get(width), _ORDERS[frame.get(order)])
+
+
+def _address_range(frame: Reader) -> tuple[int, ...]:
+    bounds = frame.get(language.Frame.address_range)
+    if bounds is None:
+        return ()
+    low, high = bounds
+    if low.denominator * high.denominator != 1 or not 0 <= low <= high <= 255:
+        frame.problem("bad-frame", "address_range must be two bytes: [lowest, highest]")
+        return ()
+    return tuple(range(int(low), int(high) + 1))
 
 
 def _addresses(frame: Reader) -> tuple[Address, ...]:

@@ -53,9 +53,9 @@ def carried(
         return own
     try:
         values, data = _adapted(vector, before, after)
+        built = enclose(frame, after.id, data, vector.direction)
     except (ValueError, Underivable):
         return own
-    built = enclose(frame, after.id, data)
     if built == vector.frame:
         return own
     origin = vector.derived or Derivation(base.name, vector.frame, vector.values)

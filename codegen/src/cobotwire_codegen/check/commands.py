@@ -14,12 +14,22 @@ _DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
 
 
 def ids_fit(edition: Edition) -> Iterator[Problem]:
-    """Report ids that are not a byte."""
+    """Report ids that are larger than CMD."""
+    most = 256**edition.frame.command_number.width - 1
     for command in edition.commands:
-        if not 0 <= command.id <= 0xFF:
-            yield Problem(
-                command.place, "bad-id", f"the id {command.id} ({command.id:#x}) is not a byte"
-            )
+        if not 0 <= command.id <= most:
+            message = f"the id {command.id} ({command.id:#x}) is not in 0..{most:#x}"
+            yield Problem(command.place, "bad-id", message)
+
+
+def replies_cover_command(edition: Edition) -> Iterator[Problem]:
+    """Report replies that have no data in the place of CMD, in a format without it."""
+    frame = edition.frame
+    for command in edition.commands if not frame.replies_have_command else ():
+        for variant in command.replies:
+            if sum(field.type.size for field in variant) < frame.sizes["command"]:
+                message = f"a reply of {command.name} has no data in the place of CMD"
+                yield Problem(command.place, "bad-frame", message)
 
 
 def payload_fits(edition: Edition) -> Iterator[Problem]:
@@ -139,6 +149,7 @@ def queries_not_acked(edition: Edition) -> Iterator[Problem]:
 
 RULES = (
     ids_fit,
+    replies_cover_command,
     payload_fits,
     ids_apart,
     shared_ids_exist,

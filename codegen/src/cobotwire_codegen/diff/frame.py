@@ -15,13 +15,17 @@ def frame_changes(old: Frame, new: Frame) -> Iterator[Finding]:
     numbers = ("maximum-data", old.maximum_data, new.maximum_data)
     rates = ("baudrate", old.baudrate, new.baudrate)
     deadlines = ("deadline", old.deadline_ms, new.deadline_ms)
-    checks = ("check", old.check, new.check)
+    checks = ("check", words.frame_check(old), words.frame_check(new))
     footers = ("footer", words.hexed(old.footer), words.hexed(new.footer))
     headers = ("header", words.hexed(old.header), words.hexed(new.header))
-    for what, before, after in (headers, checks, footers, numbers, rates, deadlines):
+    layouts = ("layout", words.layout(old), words.layout(new))
+    for what, before, after in (headers, layouts, checks, footers, numbers, rates, deadlines):
         if before != after:
             yield finding(f"{what}-changed", "frame", before, after)
     yield from _addresses(old.addresses, new.addresses)
+    ranges = [words.address_range(side) for side in (old, new)]
+    if ranges[0] != ranges[1]:
+        yield finding("addresses-changed", "frame/address_range", *ranges)
     yield from prose.doc("frame", old.doc, new.doc)
 
 

@@ -45,6 +45,7 @@ _WIRE = {
     "enum-member-removed": "the member {old} was removed: frames that carry it are rejected",
     "enum-member-renumbered": "{old} became {new}: the member has another raw value",
     "footer-changed": "the footer was {old}, is {new}: each side rejects the other's frames",
+    "layout-changed": "the layout was {old}, is {new}: each side rejects the other's frames",
     "header-changed": "the header was {old}, is {new}: neither side finds the other's frames",
     "id-changed": "the id was {old}, is {new}: the request reaches another command, or none",
     "items-changed": "the parts were {old}, are {new}: numbers are misread or rejected",

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 
-from cobotwire_codegen.model import Address, Command, Member, Quantity, Text, Variant, Wire
+from cobotwire_codegen.model import Address, Command, Frame, Member, Quantity, Text, Variant, Wire
 from cobotwire_codegen.render.words import decimal, lines
 
 LONGEST = 60
 
 __all__ = [
+    "address_range",
     "choices",
+    "frame_check",
+    "layout",
     "lines",
     "member",
     "names",
@@ -29,6 +32,34 @@ __all__ = [
 def short(text: str) -> str:
     """Return a text, cut to its first characters if it is long; the spec has the full text."""
     return text if len(text) <= LONGEST else text[: LONGEST - 3].rstrip() + "..."
+
+
+def frame_check(frame: Frame) -> str:
+    """Return the check of a frame format."""
+    check = frame.check
+    if check is None:
+        return "footer"
+    crc = f" {tuple(check.crc)}" if check.crc else ""
+    return f"{check.word}{crc} from {check.covers_from} ({check.width}, {check.order})"
+
+
+def layout(frame: Frame) -> str:
+    """Return the fixed parts of a frame format, and what LEN counts."""
+    numbers = {"length": frame.length_number, "command": frame.command_number}
+    parts = [
+        f"{part} ({numbers[part].width}, {numbers[part].order})" if part in numbers else part
+        for part in frame.layout
+    ]
+    replies = "" if frame.replies_have_command else ", replies without command"
+    # Another end is reported as a change of the check or of the footer.
+    counted = {{"check": "end", "footer": "end"}.get(part, part) for part in frame.counted}
+    return f"{' '.join(parts)}, LEN of {' '.join(sorted(counted))}{replies}"
+
+
+def address_range(frame: Frame) -> str:
+    """Return the further addresses of a frame format."""
+    found = frame.address_range
+    return f"{found[0]}..{found[-1]}" if found else "none"
 
 
 def yes(value: bool) -> str:

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+from cobotwire_codegen.catalogue import CRCS
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.names import ADDRESS
 from cobotwire_codegen.language.records import Named, Part, Record, optional, required
-from cobotwire_codegen.language.shapes import Hex, Text, Texts, Whole, Word
+from cobotwire_codegen.language.shapes import (
+    Catalogued,
+    Hex,
+    Range,
+    Text,
+    Texts,
+    Whole,
+    Word,
+    YesNo,
+)
 from cobotwire_codegen.language.words import CHECKS, REPLIES
+
+_ORDER = Word(("big", "little"))
 
 
 class Address(Record):
@@ -23,22 +35,61 @@ class Address(Record):
 
 
 class Frame(Record):
-    """The frame format: header, optional address, LEN, CMD, data, then a footer or a check."""
+    """The frame format: header, fixed parts (address, LEN, CMD), data, check and footer."""
 
-    header = required(Hex(), "The two bytes that start a frame.")
+    header = required(Hex(), "The one to four bytes that start a frame.")
     length_counts = required(
-        Texts(), "What LEN counts: `[command, data, footer]`, or `[command, data, check]`."
+        Texts(),
+        "The parts whose bytes LEN counts, of `header`, `address`, `length`, `command`, `data`, "
+        "`check` and `footer`; for instance `[command, data, footer]`.",
     )
     maximum_data = required(
-        Whole(0, 253, "bad-frame"), "The largest number of data bytes in a message."
+        Whole(0, 4096, "bad-frame"), "The largest number of data bytes in a message."
     )
     doc = required(Text(), "What a reader of the reference should know about the frame.")
-    footer = optional(Hex(), "The byte that ends a frame. Only if `check` is `footer`.")
-    check = optional(Word(CHECKS, CHECKS.values()), "How a damaged frame is detected.", "footer")
+    footer = optional(Hex(), "The bytes that end a frame. Left out: it ends with its check.")
+    check = optional(
+        Catalogued((*CHECKS, *CRCS), CHECKS.values()),
+        "How a damaged frame is detected: by a number after the data, or by the footer alone.",
+        "footer",
+    )
+    check_from = optional(
+        Word(("header", "address", "length", "command", "data")),
+        "The first part that the check covers; it covers all bytes from there to the end of the "
+        "data. Left out: `header` for a CRC, `command` for others.",
+        "",
+    )
+    check_bytes = optional(
+        Whole(1, 16, "bad-frame"),
+        "The size of a sum: 1, 2 or 4. Left out: 1. Others have one size.",
+        0,
+    )
+    check_order = optional(
+        _ORDER, "Which byte of the check is first: the high one if `big`.", "big"
+    )
+    layout = optional(
+        Texts(),
+        "The order of address, LEN and CMD between header and data; an address is not the last. "
+        "Left out: `[address, length, command]`.",
+        ("address", "length", "command"),
+    )
+    length_bytes = optional(Whole(1, 2, "bad-frame"), "The size of LEN. Left out: 1.", 1)
+    length_order = optional(_ORDER, "The byte order of LEN.", "big")
+    command_bytes = optional(Whole(1, 2, "bad-frame"), "The size of CMD. Left out: 1.", 1)
+    command_order = optional(_ORDER, "The byte order of CMD.", "big")
+    replies_have_command = optional(
+        YesNo(),
+        "Whether replies carry CMD. If not, their data starts in its place, each reply has at "
+        "least its size, and a client matches replies by address and size. Left out: true.",
+        True,
+    )
     addresses = optional(
         Named(Address, ADDRESS),
-        "The values of the address byte before LEN; a client sends the first unless it is given "
+        "The named values of the address byte; a client sends the first unless it is given "
         "another. Left out: frames have no address byte.",
+    )
+    address_range = optional(
+        Range(), "Further addresses, from the lowest to the highest; each is named by its number."
     )
     source = facts.source()
     EXAMPLE = """\

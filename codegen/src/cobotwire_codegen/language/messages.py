@@ -164,7 +164,7 @@ def _read_by() -> Schema:
 class Command(Record):
     """A command: its id, its request and its reply. The key in `commands` names its method."""
 
-    id = required(Whole(0, 255, "bad-id"), "CMD, the byte that identifies the command.")
+    id = required(Whole(0, 0xFFFF, "bad-id"), "CMD, the number that identifies the command.")
     title = required(Text(), "A heading.")
     doc = required(Text(), "One or two sentences about what it does.")
     safety = required(

@@ -172,6 +172,21 @@ class Word(Shape[str]):
         return {"enum": list(self.known), **beside}
 
 
+class Catalogued(Word):
+    """A word of a list that is too long to show; the first words have descriptions."""
+
+    def __init__(self, known: Iterable[str], docs: Iterable[str]) -> None:
+        super().__init__(known)
+        self.docs = tuple(docs)
+        first, last = self.known[: len(self.docs)], self.known[-1]
+        shown = ", ".join(f"`{word}`" for word in first)
+        self.words = f"one of {shown}, or a name of the catalogue such as `{last}`"
+
+    def schema(self) -> Schema:
+        """Return the list of words; only the first ones have descriptions."""
+        return {"enum": list(self.known)}
+
+
 class Exact(Shape[Fraction]):
     """A positive number with an exact value: 1/100, 0.01 or 3."""
 

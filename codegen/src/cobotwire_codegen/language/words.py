@@ -10,9 +10,13 @@ SAFETY = {
     "persistent write": "Changes something that survives a power cycle.",
 }
 CHECKS = {
-    "footer": "Every frame ends with the same byte.",
-    "crc16-modbus": "A CRC-16/MODBUS over everything before it, high byte first.",
-    "sum": "The low byte of the sum of CMD and data.",
+    "footer": "Every frame ends with the same bytes, and no number is computed.",
+    "sum": "The sum of the bytes, cut to the size of the check.",
+    "inverted-sum": "The sum with all bits inverted, as on the bus of Dynamixel servos.",
+    "negated-sum": "The number that gives zero when it is added to the sum, as in Intel HEX.",
+    "xor": "The exclusive or of the bytes.",
+    "fletcher": "Two running sums modulo 256 (RFC 1145, u-blox); the second is the high byte.",
+    "fletcher-16": "Two running sums modulo 255; the second is the high byte.",
 }
 REPLIES = {
     "own": "From this address: one device has it.",

@@ -14,16 +14,15 @@ from cobotwire_codegen.model.commands import (
     named_fields,
 )
 from cobotwire_codegen.model.edition import (
-    Address,
     Derivation,
     Edition,
     Erratum,
-    Frame,
     Geometry,
     Link,
     Vector,
 )
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
+from cobotwire_codegen.model.frame import Address, Frame, FrameCheck, FrameNumber
 from cobotwire_codegen.model.types import (
     Enum,
     Flag,
@@ -49,6 +48,8 @@ __all__ = [
     "Field",
     "Flag",
     "Frame",
+    "FrameCheck",
+    "FrameNumber",
     "Geometry",
     "Lines",
     "Link",

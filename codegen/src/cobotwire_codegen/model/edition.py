@@ -1,4 +1,4 @@
-"""An edition with its frame, its errata and its vectors."""
+"""An edition with its errata and its vectors."""
 
 from __future__ import annotations
 
@@ -9,43 +9,8 @@ from typing import Literal
 from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.model.commands import Command, Family
 from cobotwire_codegen.model.facts import Change, Lines
+from cobotwire_codegen.model.frame import Frame
 from cobotwire_codegen.model.types import Type, Wire
-
-
-@dataclass(frozen=True, slots=True)
-class Address:
-    """A value of the address byte, and from which address the replies to it come."""
-
-    place: Place
-    name: str
-    value: int
-    doc: str
-    replies: str
-
-    @property
-    def attribute(self) -> str:
-        """The attribute of clients that is the client for this address."""
-        return self.name.lower()
-
-
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """The frame format, ``header [address] LEN CMD DATA check``, and the transport."""
-
-    place: Place
-    header: bytes
-    check: Literal["footer", "crc16-modbus", "sum"]
-    footer: bytes
-    addresses: tuple[Address, ...]
-    maximum_data: int
-    doc: str
-    baudrate: int
-    deadline_ms: int
-
-    @property
-    def check_size(self) -> int:
-        """Bytes of the check."""
-        return len(self.footer) if self.check == "footer" else 2 if self.check != "sum" else 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ from cobotwire_codegen import lower
 from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import layout, markdown, parameters, python_api, words
+from cobotwire_codegen.render.byte_table import byte_rows
 from cobotwire_codegen.render.diagram import byte_diagram
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.literal import literal, quoted
@@ -154,6 +155,7 @@ def environment(templates: Path | None = None) -> Environment:
         params=parameters,
         words=words,
         md=markdown,
+        byte_rows=byte_rows,
         lower=lower,
         local_imports=local_imports,
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Literal
 
@@ -12,7 +11,6 @@ from cobotwire_codegen.model import (
     Edition,
     Erratum,
     Field,
-    Frame,
     Quantity,
     Text,
     Type,
@@ -22,58 +20,8 @@ from cobotwire_codegen.model import (
 from cobotwire_codegen.render.arguments import constant_in_words, default_in_words
 from cobotwire_codegen.render.escape_markdown import code as code
 from cobotwire_codegen.render.words import decimal
-from cobotwire_codegen.wire import size
 
 Direction = Literal["request", "reply"]
-
-
-def byte_rows(
-    edition: Edition, command: Command, variant: tuple[Field, ...]
-) -> Iterator[tuple[str, str, str]]:
-    """Yield the rows of a message's byte table: position, content, value."""
-    frame = edition.frame
-    length = 1 + sum(size(field.type) for field in variant) + frame.check_size
-    position = len(frame.header)
-    yield f"0-{position - 1}", "header", frame.header.hex(" ").upper()
-    if frame.addresses:
-        legal = ", ".join(f"{member.value:02X} {member.name}" for member in frame.addresses)
-        yield str(position), "address", legal
-        position += 1
-    yield str(position), "LEN", f"{length:02X}"
-    yield str(position + 1), "CMD", f"{command.id:02X}"
-    position += 2
-    for field in variant:
-        for name, width, content in _parts(field):
-            last = position + width - 1
-            yield (str(position) if width == 1 else f"{position}-{last}"), name, content
-            position += width
-    last = position + frame.check_size - 1
-    place = str(position) if last == position else f"{position}-{last}"
-    yield place, *CHECKS[frame.check](frame)
-
-
-CHECKS: dict[str, Callable[[Frame], tuple[str, str]]] = {
-    "footer": lambda frame: ("footer", frame.footer.hex().upper()),
-    "crc16-modbus": lambda frame: (
-        "check",
-        "CRC-16/MODBUS over all bytes before it, high byte first",
-    ),
-    "sum": lambda frame: ("check", "low byte of the sum of CMD and DATA"),
-}
-
-
-def _parts(field: Field) -> Iterator[tuple[str, int, str]]:
-    types = [type for _, type in lower.cases(field)]
-    first = types[0]
-    if not isinstance(first, Value):
-        yield f"`{field.name}`", size(first), " or ".join(wire_variant(type) for type in types)
-        return
-    for index, (label, item) in enumerate(first.items):
-        kinds = dict.fromkeys(
-            wire_variant(type.items[index][1]) for type in types if isinstance(type, Value)
-        )
-        names = dict.fromkeys(type.items[index][0] for type in types if isinstance(type, Value))
-        yield f"`{field.name}` {'/'.join(names) or label}", item.wire.width, " or ".join(kinds)
 
 
 def wire_variant(type: Type) -> str:

@@ -1,4 +1,4 @@
-"""Refuses editions with types that an output target cannot express yet."""
+"""Refuses editions with frames or types that an output target cannot express yet."""
 
 from __future__ import annotations
 
@@ -10,14 +10,25 @@ from cobotwire_codegen.model import Edition, Quantity, Type, Value
 
 
 def require_plain(edition: Edition, target: str) -> None:
-    """Raise an error unless every message has only integers, enums, flags and values of them.
+    """Raise an error unless frames are the usual ones, of integers, enums, flags and their values.
 
     Raises:
-        SpecError: a field has another type; the text names the command, the field and the type.
+        SpecError: the frame format is another one, or a field has another type; the text names the
+            command, the field and the type.
     """
-    problems = list(_unsupported(edition, target))
+    problems = [*_unusual_frames(edition, target), *_unsupported(edition, target)]
     if problems:
         raise SpecError(problems)
+
+
+def _unusual_frames(edition: Edition, target: str) -> Iterator[Problem]:
+    if not edition.frame.usual:
+        message = (
+            f"the {target} target cannot express the frames of {edition.name}: it needs a header "
+            "of two bytes, LEN and CMD of one byte each, LEN over all bytes after itself, and a "
+            "footer, crc16-modbus or sum"
+        )
+        yield Problem(edition.frame.place, "bad-frame", message)
 
 
 def _unsupported(edition: Edition, target: str) -> Iterator[Problem]:

@@ -15,13 +15,13 @@ Paint = Callable[[bytes], str]
 
 def frame_colours(frame: FrameFormat) -> Paint:
     """Return a function that colours a frame: id cyan, payload plain, everything around dim."""
-    start = frame.length_at + 1
+    start, after = frame.id_at, frame.id_at + frame.id_number.width
 
     def paint(data: bytes) -> str:
         end = len(data) - frame.check_size
         parts = [click.style(as_hex(data[:start]), dim=True)]
-        parts.append(click.style(as_hex(data[start : start + 1]), fg="cyan", bold=True))
-        if payload := data[start + 1 : end]:
+        parts.append(click.style(as_hex(data[start:after]), fg="cyan", bold=True))
+        if payload := data[after:end]:
             parts.append(as_hex(payload))
         parts.append(click.style(as_hex(data[end:]), dim=True))
         return " ".join(parts)

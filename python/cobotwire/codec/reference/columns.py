@@ -9,7 +9,7 @@ from threading import RLock
 from typing import Any
 
 from cobotwire.codec.columns import Columns, Rows, Scan
-from cobotwire.codec.events import Event, Frame, Noise
+from cobotwire.codec.events import DecodedMessage, Event, Frame, Noise
 from cobotwire.codec.interface import Data
 from cobotwire.codec.reference.framer import ReferenceFramer
 from cobotwire.protocol.errors import ProtocolError
@@ -91,7 +91,7 @@ class ReferenceColumnReader:
             key = (self._table.commands.index(message.command), message.direction, index)
             offset, columns = rows.setdefault(key, (array("Q"), self._empty(message.variant)))
             offset.append(event.offset)
-            values = self._values(event, message.variant, message.values)
+            values = self._values(event, message)
             for column, value in zip(columns, values):
                 column.extend(value)
         return Columns(
@@ -102,8 +102,9 @@ class ReferenceColumnReader:
             self._framer.counters,
         )
 
-    def _values(self, frame: Frame, variant: Variant, values: Sequence[Any]) -> Sequence[Any]:
-        rows = variant.unpack(self._table.frame.data(frame.data))
+    def _values(self, frame: Frame, message: DecodedMessage) -> Sequence[Any]:
+        variant, values = message.variant, message.values
+        rows = variant.unpack(self._table.frame.data(frame.data, message.direction))
         if self._raw:
             return rows
         return [

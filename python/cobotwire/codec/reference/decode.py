@@ -29,7 +29,8 @@ def read(judge: Judge, data: bytes, of: Command | None = None) -> DecodedMessage
     rejection: ProtocolError | None = None
     for message in judge.messages(heading, of):
         try:
-            values = _values(judge.overhead + 1, message, data)
+            start = judge.frame.data_start(message.direction)
+            values = _values(start, message, data)
         except ProtocolError as error:
             rejection = rejection or error
             continue
@@ -60,18 +61,17 @@ def _rejection(judge: Judge, reason: NoiseReason, data: bytes) -> ProtocolError:
 
 def _refuted_at(frame: FrameFormat, reason: FrameFault, data: bytes) -> int:
     """Return the offset of the byte that refutes a frame at the start of ``data``."""
-    at = frame.length_at
     if reason == "no-header":
         return next(i for i, byte in enumerate(frame.header) if data[i] != byte)
-    if reason == "bad-address":
-        return at - 1
-    if reason == "bad-length":
-        return at
-    if reason == "unknown-id":
-        return at + 1
     if reason == "bad-check":
-        return frame.overhead + data[at] - frame.check_size
-    return len(data)
+        return frame.overhead + frame.read_length(data) - frame.check_size
+    places = {
+        "bad-address": frame.address_at,
+        "bad-length": frame.length_at,
+        "unknown-id": frame.id_at,
+    }
+    at = places.get(reason)
+    return len(data) if at is None else at
 
 
 def _values(start: int, message: MessageVariant, data: bytes) -> tuple[object, ...]:

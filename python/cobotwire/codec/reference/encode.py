@@ -41,18 +41,10 @@ def encode(
 ) -> bytes:
     """Build one whole frame; see :meth:`cobotwire.codec.interface.Codec.encode`."""
     values = tuple(values)
-    start = frame.header + _address(frame, address)
-    data = _first_that_fits(command, direction, values, variant)
-    body = start + bytes([frame.length(len(data)), command.id]) + data
-    return body + frame.end(body)
-
-
-def _address(frame: FrameFormat, address: int | None) -> bytes:
-    if address is None:
-        return bytes(frame.addresses[:1])
-    if address not in frame.addresses:
+    if address is not None and address not in frame.addresses:
         raise reject_address(address, frame.addresses)
-    return bytes([address])
+    data = _first_that_fits(command, direction, values, variant)
+    return frame.enclose(command.id, data, address, direction)
 
 
 def _first_that_fits(

@@ -68,7 +68,7 @@ class ReferenceFramer:
             verdict = self._judge.judge(data, start)
             if isinstance(verdict, int):
                 frame = data[start : start + verdict]
-                id = frame[self._judge.frame.overhead]
+                id = self._judge.frame.read_id(frame)
                 events.append(Frame(before.offset + start, frame, id, self._read))
                 start += verdict
             elif verdict == "truncated" and not at_end:

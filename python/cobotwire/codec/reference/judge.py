@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from cobotwire.codec.events import NoiseReason
-from cobotwire.protocol.frame_format import FrameFormat
+from cobotwire.protocol.frame_format import FixedPart, FrameFormat
 from cobotwire.protocol.frame_index import FrameIndex, MessageVariant
 from cobotwire.protocol.table import Command
 
@@ -30,11 +30,12 @@ class Judge:
         self.frame = frame
         self.indexes = indexes
         self.accept_unknown = accept_unknown
-        # Computed once: every frame needs them several times.
-        self.overhead, self.length_at = frame.overhead, frame.length_at
         self._lengths = set().union(*(index.lengths for index in indexes))
         if accept_unknown:
             self._lengths |= set(range(frame.length(0), frame.maximum_length + 1))
+        # Computed once: every frame needs them.
+        self._addresses = frozenset(frame.addresses)
+        self._longest = frame.overhead + max(self._lengths, default=0)
 
     def judge(self, data: bytes, start: int = 0) -> int | NoiseReason:
         """Return the size of the frame at ``start``, or the reason why no frame is there.
@@ -42,33 +43,49 @@ class Judge:
         ``truncated`` means that more bytes could complete a frame.
         """
         frame = self.frame
-        rest = data[start : start + self.overhead + 256]
+        rest = data[start : start + max(self._longest, frame.head_size)]
         heading = self.heading(rest)
         if isinstance(heading, str):
             return heading
         reason = self.refute(heading)
         if reason is not None:
             return reason
-        size = self.overhead + heading.length
+        size = frame.overhead + heading.length
         if len(rest) < size:
             return "truncated"
         end = size - frame.check_size
         return size if rest[end:size] == frame.end(rest[:end]) else "bad-check"
 
     def heading(self, rest: bytes) -> Heading | NoiseReason:
-        """Return the heading of a candidate at the start of ``rest``, or why it is refuted."""
+        """Return the heading of a candidate at the start of ``rest``, or why it is refuted.
+
+        The parts are judged in their order on the wire, each when its last byte has come.
+        """
         frame = self.frame
         if not frame.header.startswith(rest[: len(frame.header)]):
             return "no-header"
-        address = rest[len(frame.header) : self.length_at]
-        if address and address[0] not in frame.addresses:
-            return "bad-address"
-        if len(rest) < self.overhead:
-            return "truncated"
-        length = rest[self.length_at]
-        if length not in self._lengths:
-            return "bad-length"
-        return Heading(rest[self.overhead], length) if len(rest) > self.overhead else "truncated"
+        for part in frame.layout:
+            reason = self._refute_part(part, rest)
+            if reason is not None:
+                return reason
+        return self.heading_of(rest) if len(rest) >= frame.head_size else "truncated"
+
+    def _refute_part(self, part: FixedPart, rest: bytes) -> NoiseReason | None:
+        """Return why a part, by itself, is in no frame; None if it is, or if it has not come."""
+        frame, size = self.frame, len(rest)
+        if part == "address":
+            at = frame.address_at
+            bad = at is not None and at < size and rest[at] not in self._addresses
+            return "bad-address" if bad else None
+        if part == "length":
+            come = frame.length_at + frame.length_number.width <= size
+            return "bad-length" if come and frame.read_length(rest) not in self._lengths else None
+        if self.accept_unknown or frame.id_at + frame.id_number.width > size:
+            return None
+        # After LEN, the two are judged together.
+        alone = frame.id_at < frame.length_at
+        known = not alone or any(index.has(frame.read_id(rest)) for index in self.indexes)
+        return None if known else "unknown-id"
 
     def messages(self, heading: Heading, of: Command | None = None) -> list[MessageVariant]:
         """Return the messages that a frame can be; only those of the command ``of``, if given."""
@@ -83,7 +100,8 @@ class Judge:
         """Return why a heading cannot belong to the command ``of``; None if it can."""
         if of is None or self.messages(heading, of):
             return None
-        return "bad-length" if heading.id == of.id else "unknown-id"
+        has_id = any(self.frame.has_id(index.direction) for index in self.indexes)
+        return "bad-length" if heading.id == of.id or not has_id else "unknown-id"
 
     def refute(self, heading: Heading) -> NoiseReason | None:
         """Return why no legal frame has that heading; None if a frame can have it."""
@@ -95,4 +113,4 @@ class Judge:
 
     def heading_of(self, frame: bytes) -> Heading:
         """Return the heading of a frame that is known to be legal."""
-        return Heading(frame[self.overhead], frame[self.length_at])
+        return Heading(self.frame.read_id(frame), self.frame.read_length(frame))

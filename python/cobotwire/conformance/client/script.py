@@ -90,8 +90,9 @@ class Script:
         self._at = len(self._lines)
 
     def _same_id(self, data: bytes) -> bool:
-        at = self._codec.table.frame.overhead
-        return data[at] == self._frames[self._at][at] and data not in self._frames[self._at :]
+        read_id = self._codec.table.frame.read_id
+        same = read_id(data) == read_id(self._frames[self._at])
+        return same and data not in self._frames[self._at :]
 
     def _again(self) -> Iterator[Observation]:
         """Judge a repetition. A query may be repeated, because its reply may have been lost."""
@@ -121,7 +122,7 @@ def difference(codec: Codec, line: ScriptLine, right: bytes, given: bytes) -> tu
     frames = f"expected {right.hex(' ').upper()}, got {given.hex(' ').upper()}"
     if len(right) != len(given):
         return VARIANT, frames
-    data, sent = right[codec.table.frame.overhead + 1 :], given[codec.table.frame.overhead + 1 :]
+    data, sent = codec.table.frame.data(right), codec.table.frame.data(given)
     wrong = [
         (place, place.bytes_of(data), place.bytes_of(sent))
         for place in _places(codec, line, right)
@@ -154,7 +155,7 @@ def _of_number(expected: int, got: int) -> TestCase:
 def _places(codec: Codec, line: ScriptLine, frame: bytes) -> Iterator[Place]:
     """Yield every number of the right frame of a line."""
     variant = codec.decode("request", frame, of=line.command.name).variant
-    rows = variant.unpack(frame[codec.table.frame.overhead + 1 :])
+    rows = variant.unpack(codec.table.frame.data(frame))
     return places(variant, {index: row[0] for index, row in enumerate(rows)})
 
 

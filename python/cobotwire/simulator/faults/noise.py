@@ -198,7 +198,9 @@ def _false_header(random: Random, table: Table) -> bytes:
     """Draw header, LEN and id of a legal reply, without the rest of the frame."""
     return random.choice(
         [
-            table.frame.header + bytes([table.frame.length(variant.size), command.id])
+            table.frame.start(
+                command.id, table.frame.length(variant.size, "reply"), direction="reply"
+            )
             for command in table.commands
             for variant in command.reply
         ]

@@ -67,12 +67,14 @@ impl<'a> Quick<'a> {
         let Check::Footer(footer) = rules.frame().check else {
             return None;
         };
+        let header = rules.plain_header()?;
         let (least, most) = rules.legal().lengths()?;
-        rules.plain().then(|| Self {
-            header: rules.frame().header,
+        let (least, most) = (u8::try_from(least).ok()?, u8::try_from(most).ok()?);
+        Some(Self {
+            header,
             footer,
             headings: rules.legal().headings(),
-            pattern: Pattern::new(rules.frame().header, least, most),
+            pattern: Pattern::new(header, least, most),
         })
     }
 

@@ -87,11 +87,11 @@ impl Job<'_> {
 
     /// Append one frame to the first variant that allows its values; return whether there is one.
     fn row(&self, plan: &Plan, at: u16, all: &mut [Rows]) -> bool {
-        let data = self.table.frame().overhead() + 1;
         for (id, rows) in plan.variants.iter().zip(all.iter_mut().skip(plan.rows)) {
             let Some(variant) = self.table.variant(*id) else {
                 continue;
             };
+            let data = self.table.frame().data_start(id.direction);
             let start = usize::from(at) + data;
             let reader = Reader {
                 id: *id,

@@ -5,6 +5,7 @@ use super::cells::{Advise, reserve};
 use super::sample::expected;
 use super::spans::Spans;
 use super::stream::{Collect, Stream};
+use crate::frame::Part;
 use crate::judge::Rules;
 use crate::tally::Tally;
 
@@ -28,15 +29,15 @@ pub struct OffsetReader {
 struct Collected {
     frames: Vec<u64>,
     counts: Counts,
-    /// The index of the id in a frame.
-    id_at: usize,
+    /// The id in a frame.
+    id: Part,
 }
 
 impl OffsetReader {
     /// Return a reader for a new stream; it reuses the memory of `old` offsets.
     #[must_use]
     pub fn new(rules: Rules, old: Option<Offsets>) -> Self {
-        let id_at = rules.frame().overhead();
+        let id = rules.frame().layout.id;
         let mut frames = old.map(|old| old.frames).unwrap_or_default();
         frames.clear();
         Self {
@@ -44,7 +45,7 @@ impl OffsetReader {
             collected: Collected {
                 frames,
                 counts: Counts::default(),
-                id_at,
+                id,
             },
         }
     }
@@ -94,7 +95,14 @@ impl Collect for Collected {
             let offsets = lane.iter().map(|frame| offset + u64::from(frame.at()));
             self.frames.extend(offsets);
         }
-        self.counts.add(block, found, self.id_at, tally);
+        if self.id.wide {
+            for frame in found.into_iter().flatten() {
+                let bytes = block.get(usize::from(frame.at())..).unwrap_or_default();
+                tally.add_frames(self.id.read(bytes).unwrap_or_default(), 1);
+            }
+        } else {
+            self.counts.add(block, found, self.id.at, tally);
+        }
     }
 }
 

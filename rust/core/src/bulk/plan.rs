@@ -1,8 +1,9 @@
 //! Plans how to read the frames of each group, once for each table.
 
 use super::words::Words;
+use crate::direction::Listening;
 use crate::field::{Field, Shape};
-use crate::message::{Listening, Variant, VariantId};
+use crate::message::{Variant, VariantId};
 use crate::number::Number;
 use crate::table::Table;
 
@@ -36,7 +37,7 @@ impl Plans {
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     /// The id of its frames.
-    pub(crate) id: u8,
+    pub(crate) id: u16,
     /// The variants that a frame can be, in order of precedence.
     pub(crate) variants: Vec<VariantId>,
     /// The index of the first one's rows among those of all variants.
@@ -62,19 +63,19 @@ impl Plan {
     fn new(table: &Table, variants: &[VariantId], rows: usize) -> Self {
         let first = variants.first();
         let id = first.and_then(|variant| table.commands().get(variant.command));
-        let variant = first.and_then(|variant| table.variant(*variant));
+        let variant = first.and_then(|id| Some((*id, table.variant(*id)?)));
         Self {
             id: id.map_or(0, |command| command.id),
             variants: variants.to_vec(),
             rows,
-            fields: variant.and_then(|variant| plain_fields(table, variant)),
+            fields: variant.and_then(|(id, variant)| plain_fields(table, id, variant)),
         }
     }
 }
 
 /// Return the fields of a variant, if it has no selector.
-fn plain_fields(table: &Table, variant: &Variant) -> Option<Vec<FieldPlan>> {
-    let data = table.frame().overhead() + 1;
+fn plain_fields(table: &Table, id: VariantId, variant: &Variant) -> Option<Vec<FieldPlan>> {
+    let data = table.frame().data_start(id.direction);
     let plan = |(index, field): (usize, &Field)| {
         let start = u16::try_from(data + variant.start(index)).ok()?;
         (field.selector.is_none() && !matches!(field.shape, Shape::Text(..)))

@@ -133,7 +133,8 @@ impl Stream {
         at_end: bool,
         collect: &mut impl Collect,
     ) -> usize {
-        let stop = stop.min(BLOCK);
+        // What starts before the stop ends in the block; kept bytes are always scanned whole.
+        let stop = stop.min(BLOCK.min((BLOCK + MARGIN).saturating_sub(self.rules.longest())));
         if stop == 0 {
             return 0;
         }
@@ -165,7 +166,7 @@ struct Finds<'a> {
 
 impl<'a> Sink<'a> for Finds<'_> {
     fn frame(&mut self, at: usize, frame: Frame<'a>) {
-        let group = match self.rules.legal().heading(frame.length(), frame.id()) {
+        let group = match self.rules.legal().wide_heading(frame.length(), frame.id()) {
             Heading::Group(group) => group,
             _ => BELIEVED,
         };

@@ -1,8 +1,9 @@
 //! Helpers of the tests: values to encode, and small tables.
 
 use cobotwire_core::{
-    Case, Check, Command, Encoding, Event, Field, FrameFormat, Framer, Given, Number, Order,
-    Reason, Row, Shape, Table, Unread, ValueFault, Variant,
+    Algorithm, Case, Check, Command, Computed, Crc, CrcParameters, Encoding, Event, Field,
+    FrameFormat, Framer, Given, Layout, Number, Order, Reason, Row, Shape, Table, Unread,
+    ValueFault, Variant,
 };
 
 /// A value as a caller may have it.
@@ -129,10 +130,11 @@ pub fn field(numbers: Vec<Number>, many: bool) -> Field {
 
 pub fn frame_format() -> FrameFormat {
     FrameFormat {
-        header: [0xFE, 0xFE],
+        header: vec![0xFE, 0xFE],
         addresses: vec![],
         check: Check::Footer(0xFA),
         maximum_length: 16,
+        layout: Layout::usual(2, false),
     }
 }
 
@@ -144,7 +146,7 @@ pub fn table(variants: Vec<Vec<Field>>) -> Table {
 
 /// Return the same table with another frame format.
 pub fn table_of(frame: FrameFormat, variants: Vec<Vec<Field>>) -> Table {
-    let command = |(id, fields): (u8, Vec<Field>)| Command {
+    let command = |(id, fields): (u16, Vec<Field>)| Command {
         id,
         request: vec![Variant::new(fields.clone())],
         reply: vec![Variant::new(fields)],
@@ -228,4 +230,28 @@ impl Dice {
         }
         all
     }
+}
+
+/// Return a CRC-16/MODBUS over everything before it, high byte first.
+pub fn crc16_modbus() -> Check {
+    let crc = Crc::new(CrcParameters {
+        width: 16,
+        poly: 0x8005,
+        init: 0xFFFF,
+        refin: true,
+        refout: true,
+        xorout: 0,
+    });
+    computed(Algorithm::Crc(crc.unwrap()), 2, 0)
+}
+
+/// Return a number of `width` bytes computed from the bytes after `from`.
+pub fn computed(algorithm: Algorithm, width: usize, from: usize) -> Check {
+    Check::Computed(Box::new(Computed {
+        algorithm: Some(algorithm),
+        width,
+        order: Order::Big,
+        from,
+        footer: vec![],
+    }))
 }

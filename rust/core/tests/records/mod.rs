@@ -1,11 +1,12 @@
 //! Reads the generator's JSON: the records of Python's `cobotwire.protocol.table` by attribute.
 
 use cobotwire_core::{
-    Case, Check, Command, Direction, Field, FrameFormat, Number, Order, Shape, Table, Variant,
+    Algorithm, Case, Check, Command, Direction, Field, FrameFormat, Layout, Number, Order, Shape,
+    Table, Variant,
 };
 use serde_json::Value;
 
-use crate::common::Sample;
+use crate::common::{self, Sample};
 
 /// A table, the names of its commands, and its vectors.
 pub struct Edition {
@@ -90,23 +91,24 @@ fn frame(json: &Value) -> FrameFormat {
             .map(|value| u8::try_from(value).expect("a byte"))
             .collect()
     };
+    let header = bytes(&json["header"]);
+    let addresses = &json["addresses"];
+    let addresses = if addresses.is_null() {
+        vec![]
+    } else {
+        bytes(addresses)
+    };
     // Files from before other checks existed do not name the footer check.
     let check = match json["check"].as_str().unwrap_or("footer") {
         "footer" => Check::Footer(bytes(&json["footer"])[0]),
-        "crc16-modbus" => Check::Crc16Modbus,
-        "sum" => Check::Sum,
+        "crc16-modbus" => common::crc16_modbus(),
+        "sum" => common::computed(Algorithm::Sum, 1, header.len() + 1 + addresses.len().min(1)),
         other => panic!("{other} is not a check"),
     };
-    let addresses = &json["addresses"];
     FrameFormat {
-        header: bytes(&json["header"])
-            .try_into()
-            .expect("the header is two bytes"),
-        addresses: if addresses.is_null() {
-            vec![]
-        } else {
-            bytes(addresses)
-        },
+        layout: Layout::usual(header.len(), !addresses.is_empty()),
+        header,
+        addresses,
         check,
         maximum_length: integer(&json["maximum_length"]),
     }
@@ -114,7 +116,7 @@ fn frame(json: &Value) -> FrameFormat {
 
 fn command(json: &Value) -> Command {
     Command {
-        id: u8::try_from(integer(&json["id"])).expect("a byte"),
+        id: u16::try_from(integer(&json["id"])).expect("an id"),
         request: all(&json["request"], variant),
         reply: all(&json["reply"], variant),
     }

@@ -7,7 +7,7 @@ use cobotwire_core::{
 
 use crate::common::{Sample, Samples};
 use crate::input::Input;
-use crate::oracle::{Found, Oracle};
+use crate::oracle::{Found, Oracle, number};
 use crate::reading;
 use crate::subjects::LISTENING;
 
@@ -45,7 +45,7 @@ fn as_received(table: &Table, rules: &Rules, listening: Listening, frame: Frame<
         Some(Err(bad)) => Err(DecodeError::Raw(bad)),
         None => Err(DecodeError::Frame {
             reason: Reason::UnknownId,
-            offset: table.frame().overhead(),
+            offset: table.frame().layout.id.at,
         }),
     };
     assert_eq!(read(table, rules, frame, None), expected);
@@ -93,10 +93,11 @@ pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
 /// Check that a frame that is decoded as a given command has the command's first variant that
 /// allows the values.
 fn each_call(table: &Table, direction: Direction, data: &[u8]) {
-    let id = data[table.frame().overhead()];
+    let id = number(table.frame().layout.id, data);
+    let named = table.frame().has_id(direction);
     for (of, command) in table.commands().iter().enumerate() {
         // One command with another id represents all commands with other ids.
-        if command.id == id || of == data.len() {
+        if !named || Some(command.id) == id || of == data.len() {
             one_call(table, direction, data, of);
         }
     }

@@ -5,7 +5,7 @@ use cobotwire_core::{Event, Framer, OwnedFrame, Rules};
 use super::tally::Count;
 use crate::common::{Owned, owned};
 use crate::input::{Chunk, Cutting, Input};
-use crate::oracle::Oracle;
+use crate::oracle::{Oracle, number};
 
 /// Check after each chunk that the framer has the oracle's events and offsets, and keeps the same
 /// bytes.
@@ -92,9 +92,10 @@ fn check_frame(oracle: &Oracle, rules: &Rules, event: Event<'_>) {
         return;
     };
     let bytes = frame.bytes();
-    let size = bytes.len() - usize::from(frame.length());
-    assert_eq!(bytes[size], frame.id());
-    assert_eq!(bytes[size - 1], frame.length());
+    let layout = oracle.format().layout;
+    assert_eq!(number(layout.id, bytes), Some(frame.id()));
+    assert_eq!(number(layout.length, bytes), Some(frame.length()));
+    assert_eq!(layout.overhead + usize::from(frame.length()), bytes.len());
     assert!(bytes.len() <= rules.longest());
     assert_eq!(OwnedFrame::from(frame).get(oracle.format()), frame);
 }

@@ -7,17 +7,19 @@ from cobotwire_codegen.author.codes.explanation import Explanation
 EXPLANATIONS = (
     Explanation(
         "bad-frame",
-        "The codecs do not support the frame format.",
-        "A frame has two header bytes, an optional address, LEN (one byte), CMD, data, "
-        "and one footer byte or a check.",
+        "The codecs or an output target lack the frame format, or a reply does not fit it.",
+        "A frame has one to four header bytes, then LEN, CMD and an optional address in any order "
+        "that does not end with the address, then data, and a check, a footer or both. C, "
+        "Wireshark, construct and the decoder page support only two header bytes, one byte of LEN "
+        "and of CMD after them, and a footer, crc16-modbus or sum.",
         "Correct what the message names; docs/reference/language.md describes the frame.",
         "maximum_data: 300",
         "maximum_data: 16",
     ),
     Explanation(
         "bad-id",
-        "A command's id is not in 0..255.",
-        "CMD is one byte.",
+        "A command's id is larger than CMD.",
+        "CMD is one byte, or two with `command_bytes: 2` in the frame.",
         "Correct the id.",
         "id: 0x120",
         "id: 0x20",

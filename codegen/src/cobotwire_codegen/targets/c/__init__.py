@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.model import Edition, Enum, Quantity
 from cobotwire_codegen.render import Files, environment
 from cobotwire_codegen.targets.c import names
@@ -18,11 +15,7 @@ from cobotwire_codegen.targets.support import require_plain
 
 
 def render_c(edition: Edition, templates: Path | None = None) -> Files:
-    """Return the edition's header and source; ``templates`` replace the shipped ones.
-
-    Raises:
-        SpecError: the edition has what C does not support, or two names are one constant in C.
-    """
+    """Return the edition's header and source; ``templates`` replace the shipped ones."""
     require_plain(edition, "C")
     jinja = environment(templates)
     jinja.filters.update(comment=names.comment, c_string=names.string, rows=names.rows)
@@ -38,27 +31,10 @@ def render_c(edition: Edition, templates: Path | None = None) -> Files:
         "maximum_length": lower.maximum_length(edition),
         "overhead": overhead(edition),
     }
-    files = {
+    return {
         PurePosixPath(f"{edition.name}.{end}"): jinja.get_template(f"c/{name}.j2").render(common)
         for end, name in (("h", "header.h"), ("c", "source.c"))
     }
-    _compare_constants(edition, files[PurePosixPath(f"{edition.name}.h")])
-    return files
-
-
-def _compare_constants(edition: Edition, header: str) -> None:
-    """Report constants that two names of the spec share in upper case."""
-    found = Counter(re.findall(rf"^(?:#define |    )({edition.name.upper()}_\w+)", header, re.M))
-    twice = [name for name, count in found.items() if count > 1]
-    if twice:
-        raise SpecError(
-            Problem(
-                edition.place,
-                "reserved-name",
-                f"the constant {name} of the C header would stand for two things; rename one",
-            )
-            for name in twice
-        )
 
 
 def overhead(edition: Edition) -> int:

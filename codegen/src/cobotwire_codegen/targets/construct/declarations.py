@@ -30,7 +30,7 @@ class Declarations:
     """The messages and their numbers; equal numbers are declared once, by their type's name."""
 
     def __init__(self, edition: Edition) -> None:
-        if edition.frame.check != "footer" or edition.frame.addresses:
+        if edition.frame.check is not None or edition.frame.addresses:
             raise ValueError(
                 f"{edition.name}: construct needs frames with a footer and without an address"
             )

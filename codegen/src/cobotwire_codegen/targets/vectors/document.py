@@ -62,12 +62,25 @@ def document(edition: Edition) -> str:
 
 def _frame(edition: Edition) -> dict[str, Any]:
     frame = edition.frame
-    return {
+    record: dict[str, Any] = {
         "header": _hex(frame.header),
-        "check": frame.check,
+        "check": frame.check_word,
         "footer": _hex(frame.footer),
-        "addresses": [member.value for member in frame.addresses],
+        "addresses": list(frame.address_values),
     }
+    if not frame.usual:
+        numbers = {"length": frame.length_number, "command": frame.command_number}
+        record["layout"] = [
+            [part, numbers[part].width, numbers[part].order] if part in numbers else [part]
+            for part in frame.layout
+        ]
+        record["counted"] = list(frame.counted)
+        record["replies_have_command"] = frame.replies_have_command
+        if frame.check is not None:
+            record["check_from"] = frame.check.covers_from
+            record["check_bytes"] = [frame.check.width, frame.check.order]
+            record["crc"] = frame.check.crc and frame.check.crc._asdict()
+    return record
 
 
 def _message(example: Example, laws: dict[Direction, Law]) -> dict[str, Any]:

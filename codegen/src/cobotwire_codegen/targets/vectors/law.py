@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
-from cobotwire_codegen.model import Command, Edition, Variant
+from cobotwire_codegen.model import Command, Edition, FrameNumber, Variant
 from cobotwire_codegen.targets.vectors.slots import RawValues, slots
 from cobotwire_codegen.wire import check_of, size
 
@@ -43,15 +43,17 @@ class Law:
     """The frames that are legal in one direction of an edition."""
 
     def __init__(self, edition: Edition, direction: Direction) -> None:
-        self._frame = edition.frame
-        self._addresses = {member.value for member in edition.frame.addresses}
-        self._variants: dict[int, list[tuple[Command, Variant]]] = {}
+        self._frame, self._direction = edition.frame, direction
+        # By id; without ids, all under None.
+        self._variants: dict[int | None, list[tuple[Command, Variant]]] = {}
         for command in edition.commands:
             for variant in command.variants(direction):
-                self._variants.setdefault(command.id, []).append((command, variant))
-        # The index of LEN; CMD follows it, then the data.
-        self._at = len(edition.frame.header) + bool(self._addresses)
-        self._lengths = {length for id in self._variants for length in self._lengths_of(id)}
+                self._variants.setdefault(self._key(command.id), []).append((command, variant))
+        self._data_at = self._frame.data_at(direction)
+        self._lengths = {length for key in self._variants for length in self._lengths_of(key)}
+
+    def _key(self, id: int) -> int | None:
+        return id if self._frame.has_command(self._direction) else None
 
     def frame_fault(self, data: bytes) -> Fault | None:
         """Return why ``data`` does not begin with a frame; None if it does.
@@ -63,41 +65,74 @@ class Law:
                 return Fault("truncated", index)
             if data[index] != byte:
                 return Fault("no-header", index)
-        if self._addresses and len(data) >= self._at and data[self._at - 1] not in self._addresses:
-            return Fault("bad-address", self._at - 1)
-        if len(data) <= self._at:
-            return Fault("truncated", len(data))
-        if data[self._at] not in self._lengths:
-            return Fault("bad-length", self._at)
-        if len(data) == self._at + 1:
-            return Fault("truncated", len(data))
-        return self._end_fault(data, data[self._at], data[self._at + 1])
+        for part in self._frame.layout:
+            fault = self._part_fault(data, part)
+            if fault is not None:
+                return fault
+        return self._end_fault(data)
 
-    def _end_fault(self, data: bytes, length: int, id: int) -> Fault | None:
-        if id not in self._variants:
-            return Fault("unknown-id", self._at + 1)
-        if length not in self._lengths_of(id):
-            return Fault("bad-length", self._at)
-        end = self._at + 1 + length
+    def _part_fault(self, data: bytes, part: str) -> Fault | None:
+        """Return why a part, with those before it, refutes a frame; None if it does not."""
+        frame, at = self._frame, self._frame.offset(part)
+        if len(data) < at + frame.sizes[part]:
+            return Fault("truncated", len(data))
+        if part == "address":
+            legal = not frame.address_values or data[at] in frame.address_values
+            return None if legal else Fault("bad-address", at)
+        if part == "length" and self._length(data) not in self._lengths:
+            known = frame.layout.index("command") > frame.layout.index("length")
+            if known or self._key(self._id(data)) in self._variants:
+                return Fault("bad-length", at)
+        if part == "command" and frame.layout.index("length") > frame.layout.index("command"):
+            known = self._key(self._id(data)) in self._variants
+            return None if known else Fault("unknown-id", at)
+        return self._pair_fault(data) if part == frame.layout[-1] else None
+
+    def _pair_fault(self, data: bytes) -> Fault | None:
+        key = self._key(self._id(data))
+        if key not in self._variants:
+            return Fault("unknown-id", self._frame.offset("command"))
+        if self._length(data) not in self._lengths_of(key):
+            return Fault("bad-length", self._frame.offset("length"))
+        return None
+
+    def _end_fault(self, data: bytes) -> Fault | None:
+        end = self._size(data)
         if len(data) < end:
             return Fault("truncated", len(data))
         check = end - self._frame.check_size
-        right = check_of(self._frame, data[:check], check - self._at - 2)
+        right = check_of(self._frame, data[:check])
         return None if data[check:end] == right else Fault("bad-check", check)
+
+    def _length(self, data: bytes) -> int:
+        return self._number(data, "length", self._frame.length_number)
+
+    def _id(self, data: bytes) -> int:
+        return self._number(data, "command", self._frame.command_number)
+
+    def _number(self, data: bytes, part: str, form: FrameNumber) -> int:
+        at = self._frame.offset(part)
+        return int.from_bytes(data[at : at + form.width], form.order)
+
+    def _size(self, data: bytes) -> int:
+        """Return the size of a frame, which its LEN states."""
+        least = self._data_at + self._frame.check_size
+        return least + self._length(data) - self._frame.length(0, self._direction)
 
     def read(self, data: bytes) -> Reading | Fault:
         """Return one complete frame decoded as the first message that allows its values."""
         fault = self.frame_fault(data)
         if fault is not None:
             return fault
-        end = self._at + 1 + data[self._at]
+        end = self._size(data)
         if len(data) > end:
             return Fault("trailing", end)
-        return self._read(data[self._at + 1], data[self._at + 2 : end - self._frame.check_size])
+        payload = data[self._data_at : end - self._frame.check_size]
+        return self._read(self._key(self._id(data)), payload)
 
-    def _read(self, id: int, data: bytes) -> Reading | Fault:
+    def _read(self, key: int | None, data: bytes) -> Reading | Fault:
         first = None
-        for command, variant in self._variants[id]:
+        for command, variant in self._variants[key]:
             if _size(variant) != len(data):
                 continue
             found = self._raw_values(variant, data)
@@ -114,13 +149,13 @@ class Law:
         for field in variant:
             parts = slots(field, variant, picked)
             if parts is None:
-                return Fault("bad-value", self._at + 2 + starts[field.selector])
+                return Fault("bad-value", self._data_at + starts[field.selector])
             at = starts[field.name]
             numbers = []
             for slot in parts:
                 raw = slot.read(data[at : at + slot.wire.width])
                 if not slot.allows(raw):
-                    return Fault("bad-value", self._at + 2 + at)
+                    return Fault("bad-value", self._data_at + at)
                 numbers.append(raw)
                 at += slot.wire.width
             found[field.name] = tuple(numbers)
@@ -138,9 +173,9 @@ class Law:
             if fault is None:
                 if noise:
                     yield noise
-                noise, length = None, self._at + 1 + stream[at + self._at]
-                yield Span(at, length, stream[at + self._at + 1], "")
-                at += length
+                noise, size = None, self._size(stream[at:])
+                yield Span(at, size, self._id(stream[at:]), "")
+                at += size
                 continue
             if noise and noise.reason == fault.reason:
                 noise = noise._replace(size=noise.size + 1)
@@ -152,9 +187,9 @@ class Law:
         if noise:
             yield noise
 
-    def _lengths_of(self, id: int) -> set[int]:
-        overhead = 1 + self._frame.check_size
-        return {overhead + _size(variant) for _, variant in self._variants[id]}
+    def _lengths_of(self, key: int | None) -> set[int]:
+        sizes = (_size(variant) for _, variant in self._variants[key])
+        return {self._frame.length(size, self._direction) for size in sizes}
 
 
 def _starts(variant: Variant) -> list[int]:

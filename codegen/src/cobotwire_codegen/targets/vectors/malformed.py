@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
 
-from cobotwire_codegen.model import Edition
+from cobotwire_codegen.model import Edition, Frame
 from cobotwire_codegen.targets.vectors.law import Direction, Fault, Law
 from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, beyond, examples
 
@@ -46,26 +46,34 @@ def _broken(edition: Edition) -> Iterator[tuple[Direction, str, bytes]]:
 
 
 def _damaged(edition: Edition, data: bytes) -> Iterator[tuple[str, bytes]]:
-    length = len(edition.frame.header) + bool(edition.frame.addresses)
+    frame = edition.frame
+    after = frame.offset("length") + frame.length_number.width
     yield "header", bytes([data[0] ^ 1]) + data[1:]
-    yield "LEN one less", _with(data, length, data[length] - 1)
-    yield "LEN one more", _with(data, length, data[length] + 1)
-    yield "check", _with(data, len(data) - 1, data[-1] ^ 1)
+    yield "LEN one less", _with(frame, data, "length", -1)
+    yield "LEN one more", _with(frame, data, "length", 1)
+    yield "check", data[:-1] + bytes([data[-1] ^ 1])
     yield "last byte missing", data[:-1]
-    yield "cut after LEN", data[: length + 1]
+    yield "cut after LEN", data[:after]
     yield "a byte too many", data + b"\x00"
-    if edition.frame.addresses:
-        yield "address", _with(data, length - 1, 0xFE)
+    other = next((byte for byte in range(254, -1, -1) if byte not in frame.address_values), None)
+    if frame.address_values and other is not None:
+        at = frame.offset("address")
+        yield "address", data[:at] + bytes([other]) + data[at + 1 :]
 
 
-def _with(data: bytes, at: int, byte: int) -> bytes:
-    return data[:at] + bytes([byte % 256]) + data[at + 1 :]
+def _with(frame: Frame, data: bytes, part: str, change: int) -> bytes:
+    """Return a frame in which LEN or CMD is larger by ``change``."""
+    form = frame.length_number if part == "length" else frame.command_number
+    at, most = frame.offset(part), 1 << 8 * form.width
+    number = int.from_bytes(data[at : at + form.width], form.order) + change
+    changed = (number % most).to_bytes(form.width, form.order)
+    return data[:at] + changed + data[at + form.width :]
 
 
 def _unknown(edition: Edition, direction: Direction) -> Iterator[bytes]:
     """Yield a message with an id that the edition lacks; none if the direction has no messages."""
     ids = {command.id for command in edition.commands if command.variants(direction)}
     free = next(id for id in range(255, -1, -1) if id not in ids and id not in (0xFE, 0xFA))
-    at = len(edition.frame.header) + bool(edition.frame.addresses) + 1
     for example in islice((e for e in examples(edition) if e.direction == direction), 1):
-        yield _with(example.data, at, free)
+        if edition.frame.has_command(direction):
+            yield _with(edition.frame, example.data, "command", free - example.command.id)

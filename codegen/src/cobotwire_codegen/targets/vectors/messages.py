@@ -45,7 +45,7 @@ def examples(edition: Edition) -> Iterator[Example]:
     for command, direction, variant in variants(edition):
         seen: set[bytes] = set()
         for what, raw_values in _raw_values(variant):
-            data = encode(edition, command, variant, raw_values)
+            data = encode(edition, command, direction, variant, raw_values)
             # If a variant has few legal values, its bounds and its choices give the same messages.
             if data not in seen:
                 seen.add(data)
@@ -72,20 +72,26 @@ def beyond(edition: Edition, example: Example) -> Iterator[Beyond]:
                 raw_values = example.raw_values | {field.name: tuple(numbers)}
                 encodable = slot.encodable(raw) and not _picks(field, example.variant)
                 data = (
-                    encode(edition, example.command, example.variant, raw_values)
+                    encode(edition, example.command, example.direction, example.variant, raw_values)
                     if encodable
                     else None
                 )
                 yield Beyond(example, field, element, raw, data)
 
 
-def encode(edition: Edition, command: Command, variant: Variant, raw_values: RawValues) -> bytes:
+def encode(
+    edition: Edition,
+    command: Command,
+    direction: Direction,
+    variant: Variant,
+    raw_values: RawValues,
+) -> bytes:
     """Return the frame with these raw values, legal or not."""
     data = b""
     for field in variant:
         for slot, raw in zip(slots(field, variant, raw_values) or (), raw_values[field.name]):
             data += slot.encode(raw)
-    return enclose(edition.frame, command.id, data)
+    return enclose(edition.frame, command.id, data, direction)
 
 
 def _picks(field: Field, variant: Variant) -> bool:

@@ -62,7 +62,7 @@ def _nested(edition: Edition, one: bytes, other: bytes) -> bytes:
 
 def _body(edition: Edition) -> int:
     """Return the number of bytes before the data."""
-    return len(edition.frame.header) + bool(edition.frame.addresses) + 2
+    return edition.frame.offset("data")
 
 
 RECIPES: tuple[tuple[str, Recipe], ...] = (

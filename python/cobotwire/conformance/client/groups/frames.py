@@ -81,10 +81,10 @@ def _pairs(codec: Codec, data: bytes) -> Iterator[tuple[bytes, bytes]]:
     frame = codec.table.frame
     if not data.startswith(frame.header):
         return
-    for at in range(1, len(data) - frame.overhead):
+    for at in range(1, len(data) - frame.head_size + 1):
         if data[at : at + len(frame.header)] != frame.header:
             continue
-        end = at + frame.overhead + data[at + frame.length_at]
+        end = at + frame.overhead + frame.read_length(data, at)
         outer, inner = data[:at] + data[end:], data[at:end]
         if end < len(data) and _legal(codec, inner) and _legal(codec, outer):
             yield outer, inner

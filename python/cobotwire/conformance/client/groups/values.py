@@ -28,11 +28,11 @@ def _values(history: History, now: Received) -> Iterator[Observation]:
 def _field_at(table: Table, data: bytes, offset: int) -> Field | None:
     """Return the field at an offset of a frame."""
     frame = table.frame
-    size = len(data) - frame.overhead - 1 - frame.check_size
+    size = len(frame.data(data))
     for command in table.commands:
-        for variant in command.request if command.id == data[frame.overhead] else ():
+        for variant in command.request if command.id == frame.read_id(data) else ():
             for place in places(variant) if variant.size == size else ():
-                if 0 <= offset - frame.overhead - 1 - place.start < place.number.width:
+                if 0 <= offset - frame.data_at - place.start < place.number.width:
                     return place.field
     return None
 

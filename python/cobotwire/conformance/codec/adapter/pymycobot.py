@@ -136,7 +136,7 @@ class Pymycobot:
         result = _without_output(call, arguments)
         if result is None or result == -1:
             return {"error": f"it returns {result}"}
-        size = len(data) - self._table.frame.overhead - 1 - self._table.frame.check_size
+        size = len(self._table.frame.data(data, "reply"))
         variants = [variant for variant in command.reply if variant.size == size] or list(
             command.reply
         )

@@ -58,18 +58,15 @@ def variants_of(table: Table) -> Iterator[CommandVariant]:
                 )
 
 
-def frame_of(table: Table, id: int, data: bytes) -> bytes:
+def frame_of(table: Table, id: int, data: bytes, direction: Direction = "request") -> bytes:
     """Return a whole frame around data bytes, legal or not."""
-    frame = table.frame
-    body = frame.header + bytes(frame.addresses[:1]) + bytes([frame.length(len(data)), id]) + data
-    return body + frame.end(body)
+    return table.frame.enclose(id, data, direction=direction)
 
 
 def ordinary_frame(table: Table, variant: CommandVariant, turn: int = 0) -> bytes:
     """Return the frame of a variant with ordinary values, which differ by ``turn``."""
-    return frame_of(
-        table, variant.command.id, variant.variant.pack(ordinary(variant.variant, turn=turn))
-    )
+    data = variant.variant.pack(ordinary(variant.variant, turn=turn))
+    return frame_of(table, variant.command.id, data, variant.direction)
 
 
 def _encoding(codec: Codec) -> Iterator[Question]:
@@ -151,7 +148,9 @@ def _rejected_numbers(codec: Codec) -> Iterator[Question]:
 
 
 def _of_sample(codec: Codec, variant: CommandVariant, sample: Sample) -> Question:
-    data = frame_of(codec.table, variant.command.id, variant.variant.pack(sample.raw_values))
+    data = frame_of(
+        codec.table, variant.command.id, variant.variant.pack(sample.raw_values), variant.direction
+    )
     return decode(
         codec, variant.direction, variant.command.name, f"{variant.label}/{sample.name}", data
     )

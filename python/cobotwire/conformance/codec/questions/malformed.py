@@ -31,11 +31,11 @@ def _damaged(codec: Codec) -> Iterator[Question]:
 
 def damages(table: Table, whole: bytes) -> Iterator[tuple[str, bytes]]:
     """Yield the ways in which a frame can be broken, except for its values."""
-    at, end = table.frame.length_at, len(whole) - table.frame.check_size
+    frame, end = table.frame, len(whole) - table.frame.check_size
     for index in range(len(table.frame.header)):
         yield f"header-{index}", _with(whole, index, whole[index] ^ 1)
     for step in (-2, -1, 1, 2):
-        yield f"length{step:+d}", _with(whole, at, (whole[at] + step) & 0xFF)
+        yield f"length{step:+d}", frame.with_length(whole, frame.read_length(whole) + step)
     for index in range(end, len(whole)):
         for byte in (whole[index] ^ 1, 0, 0xFE, 0xFF):
             if byte != whole[index]:
@@ -47,12 +47,13 @@ def damages(table: Table, whole: bytes) -> Iterator[tuple[str, bytes]]:
     yield "twice", whole + whole
     yield "byte-in-front", b"\x00" + whole
     yield "header-byte-in-front", whole[:1] + whole
-    if table.frame.addresses:
-        yield "address", _with(whole, at - 1, _other_byte(table.frame.addresses))
+    other = _other_byte(frame.addresses)
+    if frame.address_at is not None and other is not None:
+        yield "address", _with(whole, frame.address_at, other)
 
 
-def _other_byte(taken: tuple[int, ...]) -> int:
-    return next(byte for byte in range(256) if byte not in taken)
+def _other_byte(taken: tuple[int, ...]) -> int | None:
+    return next((byte for byte in range(256) if byte not in taken), None)
 
 
 def _with(data: bytes, index: int, byte: int) -> bytes:

@@ -115,7 +115,7 @@ def _inside_each_other(
     """Yield false headers before true frames; some are completed by the bytes that follow."""
     table = codec.table
     short = min((ordinary_frame(table, variant) for variant in variants), key=len)
-    heads = {ordinary_frame(table, variant)[: table.frame.overhead + 1] for variant in variants}
+    heads = {ordinary_frame(table, variant)[: table.frame.head_size] for variant in variants}
     longest = table.frame.overhead + table.frame.maximum_length
     for head in sorted(heads):
         for name, following in (

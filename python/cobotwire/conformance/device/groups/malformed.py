@@ -55,17 +55,17 @@ def _sample(probe: Probe) -> EncodedRequest:
 
 def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, bytes]]:
     """Yield a request damaged in each way: the test case, what it is, its bytes."""
-    at = frame.length_at
-    longer = data[:at] + bytes([data[at] + 1]) + data[at + 1 :]
+    length = frame.read_length(data)
+    longer = frame.with_length(data, length + 1)
     yield WRONG_LENGTH, "LEN one too large", longer
-    yield WRONG_LENGTH, "LEN one too small", data[:at] + bytes([data[at] - 1]) + data[at + 1 :]
+    yield WRONG_LENGTH, "LEN one too small", frame.with_length(data, length - 1)
     end = len(data) - frame.check_size
     more = longer[:end] + b"\x00" + longer[end:]
-    if frame.check == "footer":
+    if frame.check is None:
         yield WRONG_LENGTH, "one data byte too many, and LEN with it", more
     yield WRONG_FOOTER, "a wrong footer", data[:-1] + bytes([data[-1] ^ 0xFF])
     yield CUT, "broken off before the footer", data[:-1]
-    yield CUT, "broken off after LEN", data[: at + 1]
+    yield CUT, "broken off after LEN", data[: frame.length_at + frame.length_number.width]
 
 
 def _expect_no_reply(
@@ -73,8 +73,8 @@ def _expect_no_reply(
 ) -> None:
     """Send a malformed request; the firmware may send an error text, but no reply."""
     device = probe.device
-    at = device.table.frame.length_at
-    half = data[at] + at + 1 > len(data)
+    frame = device.table.frame
+    half = frame.read_length(data) + frame.overhead > len(data)
     seconds = device.timing.idle if half else device.timing.silence
     response = device.requester.send_bytes(request, data, what, seconds)
     silent = not response.replies and not response.unexpected
@@ -106,10 +106,10 @@ def _out_of_range(probe: Probe) -> None:
 
 def _wrong_values(table: Table, command: Command, data: bytes) -> Iterator[tuple[str, bytes]]:
     """Yield a request with a number outside each field's range or list, if bytes can hold it."""
-    if table.frame.check != "footer":
+    if table.frame.check is not None:
         return
     for place in places(command.request[0]):
-        at, width = table.frame.overhead + 1 + place.start, place.number.width
+        at, width = table.frame.data_at + place.start, place.number.width
         for value in _forbidden(place):
             wrong = value.to_bytes(width, place.number.order)
             yield f"{place.name} = {value}", data[:at] + wrong + data[at + width :]
@@ -171,13 +171,11 @@ def _unknown_ids(probe: Probe) -> None:
         c for c in table.commands if _is_framed_query(table, c) and not c.request[0].fields
     )
     request = probe.device.requester.prepare(carrier.request_type())
-    if table.frame.check != "footer":
+    if table.frame.check is not None:
         return
     for id in _free_ids(table):
         for data in (b"", b"\x01"):
-            length = bytes([table.frame.length(len(data))])
-            address = bytes(table.frame.addresses[:1])
-            frame = table.frame.header + address + length + bytes([id]) + data + table.frame.footer
+            frame = table.frame.enclose(id, data)
             _expect_no_reply(probe, UNKNOWN_ID, request, f"the unknown id {id:02X}", frame)
     _expect_recovery(probe, request, "unknown ids")
 

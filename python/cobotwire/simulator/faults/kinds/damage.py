@@ -51,12 +51,13 @@ class WrongLength(Damage):
 
     def spoil(self, data: bytes, moment: Moment) -> bytes:
         """Change LEN of the first frame."""
-        at = moment.frame.length_at
-        if not data.startswith(moment.frame.header) or len(data) <= at:
+        frame = moment.frame
+        if not data.startswith(frame.header) or len(data) < frame.head_size:
             return data
-        wrong = (data[at] + self.by) & 0xFF
-        moment.report(f"LEN {wrong} in place of {data[at]}")
-        return data[:at] + bytes([wrong]) + data[at + 1 :]
+        right = frame.read_length(data)
+        spoilt = frame.with_length(data, right + self.by)
+        moment.report(f"LEN {frame.read_length(spoilt)} in place of {right}")
+        return spoilt
 
 
 @kind("wrong-id")
@@ -68,17 +69,18 @@ class WrongId(Damage):
         id: which id; None: any other, at random.
     """
 
-    id: int | None = ruled(optional(integer(0, 0xFF)), None)
+    id: int | None = ruled(optional(integer(0, 0xFFFF)), None)
 
     def spoil(self, data: bytes, moment: Moment) -> bytes:
         """Change the id of the first frame."""
-        at = moment.frame.overhead
-        if not data.startswith(moment.frame.header) or len(data) <= at:
+        frame = moment.frame
+        if not data.startswith(frame.header) or len(data) < frame.head_size:
             return data
-        other = (data[at] + moment.random.randrange(1, 0x100)) & 0xFF
-        wrong = other if self.id is None else self.id
-        moment.report(f"id 0x{wrong:02X} in place of 0x{data[at]:02X}")
-        return data[:at] + bytes([wrong]) + data[at + 1 :]
+        right = frame.read_id(data)
+        other = right + moment.random.randrange(1, 256**frame.id_number.width)
+        spoilt = frame.with_id(data, other if self.id is None else self.id)
+        moment.report(f"id 0x{frame.read_id(spoilt):02X} in place of 0x{right:02X}")
+        return spoilt
 
 
 @kind("replaced")

@@ -1,0 +1,63 @@
+"""Rules for frame formats: their keys agree with each other, and the codecs support them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire_codegen.catalogue import WIDTHS
+from cobotwire_codegen.model import Frame
+
+_PARTS = ("header", "address", "length", "command", "data", "check", "footer")
+# The longest LEN of two bytes that the codecs support.
+_LONGEST = 0x4000
+
+
+def mistakes(frame: Frame) -> Iterator[str]:
+    """Yield what is wrong with a frame format, as sentences."""
+    if not 1 <= len(frame.header) <= 4:
+        yield "the header must have one to four bytes"
+    if frame.check is None and len(frame.footer) != 1:
+        yield "the footer must have one byte, since `check` is footer"
+    if len(frame.footer) > 2:
+        yield "the footer must have at most two bytes"
+    yield from _layout(frame)
+    yield from _counted(frame)
+    yield from _check(frame)
+    most = _LONGEST if frame.length_number.width == 2 else 255
+    room = most - frame.length(0)
+    if frame.maximum_data > room:
+        yield f"maximum_data of the frame is {frame.maximum_data}; allowed: 0..{room}"
+
+
+def _layout(frame: Frame) -> Iterator[str]:
+    given = sorted(frame.layout)
+    wanted = ["address", "command", "length"] if frame.address_values else ["command", "length"]
+    if given not in (wanted, ["address", "command", "length"]):
+        yield f"layout must have each of {', '.join(wanted)} once"
+    elif frame.layout[-1] == "address":
+        yield "layout must end with length or command"
+    elif not frame.replies_have_command and frame.layout[-1] != "command":
+        yield "layout must end with command, since replies have data in its place"
+
+
+def _counted(frame: Frame) -> Iterator[str]:
+    """Report parts that LEN cannot count."""
+    for part in frame.counted:
+        if part not in _PARTS:
+            yield f"length_counts cannot have {part}; allowed: {', '.join(_PARTS)}"
+        elif part != "data" and not frame.sizes[part]:
+            yield f"length_counts has {part}, but frames have none"
+    if "data" not in frame.counted or len(set(frame.counted)) < len(frame.counted):
+        yield "length_counts must have data, and no part twice"
+
+
+def _check(frame: Frame) -> Iterator[str]:
+    check = frame.check
+    if check is None:
+        return
+    widths = (-(-check.crc.width // 8),) if check.crc else WIDTHS[check.word]
+    if check.width not in widths:
+        allowed = " or ".join(map(str, widths))
+        yield f"check_bytes is {check.width}; allowed for {check.word}: {allowed}"
+    if check.covers_from == "address" and not frame.address_values:
+        yield "check_from is address, but frames have none"

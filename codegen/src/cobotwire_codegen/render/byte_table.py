@@ -1,0 +1,90 @@
+"""Prepares the byte table of a message: its fixed parts, its fields and its check."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cobotwire_codegen import lower
+from cobotwire_codegen.model import Command, Edition, Field, Frame, FrameNumber, Value
+from cobotwire_codegen.model.frame import Direction
+from cobotwire_codegen.render.markdown import wire_variant
+from cobotwire_codegen.wire import size
+
+Row = tuple[str, str, str]
+_SHOWN = 8
+
+
+def byte_rows(
+    edition: Edition, command: Command, direction: Direction, variant: tuple[Field, ...]
+) -> Iterator[Row]:
+    """Yield the rows of a message's byte table: position, content, value."""
+    frame = edition.frame
+    data = sum(size(field.type) for field in variant)
+    yield _place(0, len(frame.header)), "header", frame.header.hex(" ").upper()
+    for part in frame.layout:
+        place = _place(frame.offset(part), frame.sizes[part])
+        if part == "length":
+            yield place, "LEN", _digits(frame.length_number, frame.length(data, direction))
+        elif part == "command" and frame.has_command(direction):
+            yield place, "CMD", _digits(frame.command_number, command.id)
+        elif part == "address" and frame.address_values:
+            yield place, "address", _addresses(frame)
+    position = frame.data_at(direction)
+    for field in variant:
+        for name, width, content in _parts(field):
+            yield _place(position, width), name, content
+            position += width
+    yield from _ending(frame, position)
+
+
+def _place(position: int, width: int) -> str:
+    return str(position) if width == 1 else f"{position}-{position + width - 1}"
+
+
+def _digits(form: FrameNumber, number: int) -> str:
+    return number.to_bytes(form.width, form.order).hex(" ").upper()
+
+
+def _addresses(frame: Frame) -> str:
+    shown = [f"{member.value:02X} {member.name}" for member in frame.addresses[:_SHOWN]]
+    if frame.address_range:
+        shown.append(f"{frame.address_range[0]:02X}..{frame.address_range[-1]:02X}")
+    return ", ".join(shown)
+
+
+def _ending(frame: Frame, position: int) -> Iterator[Row]:
+    if frame.check is not None:
+        yield _place(position, frame.check.width), "check", check_words(frame)
+        position += frame.check.width
+    if frame.footer:
+        yield _place(position, len(frame.footer)), "footer", frame.footer.hex(" ").upper()
+
+
+def check_words(frame: Frame) -> str:
+    """Return what the check is, in words."""
+    check = frame.check
+    if check is None:
+        return ""
+    start = {"header": "all bytes before it", "data": "the data", "command": "CMD and DATA"}
+    if frame.layout[-1] != "command":
+        del start["command"]
+    part = {"length": "LEN", "command": "CMD"}.get(check.covers_from, check.covers_from)
+    order = "" if check.width == 1 else f", {_FIRST[check.order]} byte first"
+    return f"{check.word} over {start.get(check.covers_from, f'the bytes from {part} on')}{order}"
+
+
+_FIRST = {"big": "high", "little": "low"}
+
+
+def _parts(field: Field) -> Iterator[tuple[str, int, str]]:
+    types = [type for _, type in lower.cases(field)]
+    first = types[0]
+    if not isinstance(first, Value):
+        yield f"`{field.name}`", size(first), " or ".join(wire_variant(type) for type in types)
+        return
+    for index, (label, item) in enumerate(first.items):
+        kinds = dict.fromkeys(
+            wire_variant(type.items[index][1]) for type in types if isinstance(type, Value)
+        )
+        names = dict.fromkeys(type.items[index][0] for type in types if isinstance(type, Value))
+        yield f"`{field.name}` {'/'.join(names) or label}", item.wire.width, " or ".join(kinds)

@@ -1,0 +1,19 @@
+//! The directions of messages.
+
+/// The direction of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// To the arm.
+    Request,
+    /// From the arm.
+    Reply,
+}
+
+/// The directions whose frames a framer accepts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Listening {
+    /// Only one direction.
+    To(Direction),
+    /// Both directions, as when sniffing a transport.
+    Both,
+}
