@@ -87,3 +87,15 @@ def test_existing_file_is_not_overwritten_and_nothing_is_sent(
     assert "the file exists already" in result.stderr
     assert path.read_bytes() == b"precious"
     assert not simulated.state.powered
+
+
+def test_times_count_from_the_first_packet_even_if_it_is_at_0_ns(tmp_path: Path) -> None:
+    path = tmp_path / "arm.pcapng"
+    with path.open("wb") as file:
+        writer = CaptureWriter(file)
+        writer.interface(Interface("port", "mycobot", 115200))
+        writer.packet(Packet(0, "sent", QUERY, "frame"))
+        writer.packet(Packet(1_500_000_000, "received", ANGLES, "frame"))
+        writer.finish()
+    result = run("decode", path)
+    assert [line.split()[0] for line in result.stdout.splitlines()] == ["0.000000", "1.500000"]

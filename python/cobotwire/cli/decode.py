@@ -210,12 +210,13 @@ def _decode_bytes(source: ByteSource, options: Options, counts: StreamCounts) ->
 def _decode_recording(capture: CaptureReader, options: Options, counts: StreamCounts) -> None:
     """Decode each direction of each interface on its own, with times."""
     printers: dict[DirectionStream, _TimedStreamPrinter] = {}
-    start_ns = 0
+    start_ns: int | None = None
     with capture:
         for stream, items in diagnose_capture(
             capture, options.edition, options.direction, accept_unknown=options.accept_unknown
         ):
-            start_ns = start_ns or stream.start_ns
+            if start_ns is None:
+                start_ns = stream.start_ns
             if stream not in printers:
                 printers[stream] = _TimedStreamPrinter(stream, capture, start_ns, options, counts)
             printers[stream].print(items)
