@@ -23,6 +23,8 @@ from cobotwire_codegen.model import Edition
 
 HERE = Path(__file__).parent
 PLACE = Place("test", 1, 1)
+# Fields that say where something stands or stood in the spec.
+PLACES = ("place", "gone")
 RECORDS = [
     item
     for item in vars(model).values()
@@ -33,7 +35,10 @@ RECORDS = [
     and item is not model.FrameCheck
 ]
 FIELDS = [
-    (record, field.name) for record in RECORDS for field in fields(record) if field.name != "place"
+    (record, field.name)
+    for record in RECORDS
+    for field in fields(record)
+    if field.name not in PLACES
 ]
 # Words from closed lists become other words of the same list.
 OTHER = {"big": "little", "little": "big", "request": "reply", "reply": "request"}
@@ -102,7 +107,7 @@ def _spots(value: Any, path: tuple[str | int, ...]) -> Iterator[Any]:
         for field in fields(value):
             part = getattr(value, field.name)
             # A selector without cases, or cases without a selector, is not a valid model.
-            if field.name != "place" and not (field.name in ("selector", "cases") and not part):
+            if field.name not in PLACES and not (field.name in ("selector", "cases") and not part):
                 yield type(value), field.name, (*path, field.name)
                 yield from _spots(part, (*path, field.name))
 
@@ -130,7 +135,7 @@ def other(value: Any, field: str) -> Any:
         return value + b"\x01"
     if isinstance(value, tuple):
         return (other(value[0], field), *value[1:])
-    first = next(part.name for part in fields(value) if part.name != "place")
+    first = next(part.name for part in fields(value) if part.name not in PLACES)
     return replace(value, **{first: other(getattr(value, first), first)})
 
 
@@ -140,7 +145,7 @@ def content(value: Any) -> Any:
         return [content(part) for part in value]
     if is_dataclass(value) and not isinstance(value, type):
         parts = {
-            f.name: content(getattr(value, f.name)) for f in fields(value) if f.name != "place"
+            f.name: content(getattr(value, f.name)) for f in fields(value) if f.name not in PLACES
         }
         return {"record": type(value).__name__, **parts}
     return value
