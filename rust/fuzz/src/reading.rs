@@ -167,7 +167,9 @@ fn raw_value(number: &Number, data: &[u8]) -> i64 {
     if number.float {
         let negative = bytes[0] >= 0x80;
         bytes[0] &= 0x7F;
-        let rank = bytes.iter().fold(0, |word, byte| word << 8 | i64::from(*byte));
+        let rank = bytes
+            .iter()
+            .fold(0, |word, byte| word << 8 | i64::from(*byte));
         return if negative { -1 - rank } else { rank };
     }
     let word = bytes
