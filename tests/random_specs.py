@@ -23,6 +23,7 @@ from cobotwire_codegen.model import (
     Variant,
 )
 from cobotwire_codegen.wire import build_frame
+from random_variants import constant, draw_arguments, several_variants, sharing_queries
 
 # Scales with finite decimals as multiples, so that a vector can state them exactly.
 SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
@@ -48,7 +49,10 @@ def frames(draw: st.DrawFn) -> dict[str, Any]:
 @st.composite
 def types(draw: st.DrawFn, plain: bool) -> dict[str, Any]:
     """Draw wire types, quantities, flags, enums and values; ``plain``: none that a target lacks."""
-    wires: dict[str, Any] = {"byte": {"bytes": 1, "doc": "A byte."}}
+    wires: dict[str, Any] = {
+        "byte": {"bytes": 1, "doc": "A byte."},
+        "double": {"bytes": 2, "doc": "Two bytes."},
+    }
     for index in range(draw(st.integers(1, 3))):
         width = draw(st.integers(1, 4))
         top = 256**width - 1
@@ -70,7 +74,12 @@ def types(draw: st.DrawFn, plain: bool) -> dict[str, Any]:
     items = draw(st.lists(names, min_size=1, max_size=4))
     return {
         "wire": wires,
-        "quantities": {"joint": {"wire": "byte", "range": [1, 3], "doc": "A joint."}, **quantities},
+        "quantities": {
+            "joint": {"wire": "byte", "range": [1, 3], "doc": "A joint."},
+            "wide": {"wire": "double", "range": [1, 3], "doc": "Two bytes."},
+            "tag": {"wire": "byte", "scale": "1/10", "doc": "A tag."},
+            **quantities,
+        },
         "flags": {"flag": {"wire": "byte", "doc": "Yes or no."}},
         "enums": {
             "mode": {
@@ -161,7 +170,16 @@ def commands(draw: st.DrawFn) -> dict[str, Any]:
                 echo = draw(st.sampled_from(["required", "optional"]))
                 reply.insert(0, {"name": "f0", "type": "joint", "echo": echo})
             command["reply"] = reply
+        if draw(st.booleans()):
+            command.pop("request", None)
+            command["request_variants"] = draw(several_variants("request"))
+            if "reply" in command:
+                command.pop("reply")
+                command["reply_variants"] = draw(several_variants("reply"))
         made[f"call{index}"] = command
+    if draw(st.integers(0, 2)) == 0:
+        free = st.integers(0, 255).filter(lambda id: id not in ids)
+        made |= draw(sharing_queries(draw(free)))
     for command in made.values():
         _read_by(draw, command, made)
     return made
@@ -175,7 +193,7 @@ def _read_by(draw: st.DrawFn, command: dict[str, Any], made: dict[str, Any]) -> 
         name
         for name, query in made.items()
         if command["safety"] == "setting"
-        and query["safety"] == "query"
+        and "reply" in query
         and query["reply"][-1].get("type") in own
     ]
     query = draw(st.sampled_from(["", *fitting]))
@@ -203,12 +221,14 @@ def specs(
     }
     path = folder / f"{name}.yaml"
     _write(path, data)
+    draw_arguments(draw, data, build_edition(path, folder), _text_of)
+    _write(path, data)
     edition = build_edition(path, folder)
     data["vectors"] = [
-        vector
+        {**vector, "name": f"{command.name} {direction} {index}"}
         for command in edition.commands
         for direction in ("request", "reply")
-        for variant in command.variants("request" if direction == "request" else "reply")
+        for index, variant in enumerate(command.variants(direction))
         for vector in [draw(vectors(edition, command, direction, variant))]
     ]
     _write(path, data)
@@ -238,7 +258,6 @@ def vectors(
     exact = {field.name: values[field.name] for field in variant}
     frame = build_frame(edition.frame, command, direction, exact)
     return {
-        "name": f"{command.name} {direction} {len(variant)}",
         "command": command.name,
         "direction": direction,
         "frame": frame.hex(" "),
@@ -248,7 +267,7 @@ def vectors(
 
 def _value(field: Field, type: Type) -> st.SearchStrategy[Any]:
     if field.const is not None:
-        return st.just(bool(field.const) if isinstance(type, Flag) else field.const)
+        return st.just(constant(field, type))
     if isinstance(type, Flag):
         return st.booleans()
     if isinstance(type, Enum):
@@ -256,6 +275,10 @@ def _value(field: Field, type: Type) -> st.SearchStrategy[Any]:
     if isinstance(type, Quantity):
         return _number(type)
     return st.tuples(*(_number(item) for _, item in type.items))
+
+
+def _text_of(field: Field, type: Type) -> st.SearchStrategy[Any]:
+    return _value(field, type).map(_as_text)
 
 
 def _number(type: Quantity) -> st.SearchStrategy[Fraction]:

@@ -6,6 +6,7 @@ import importlib
 import itertools
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -17,12 +18,15 @@ from hypothesis import strategies as st
 import random_specs
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Frame, Noise
-from cobotwire.simulator import SimulatedArm
+from cobotwire.protocol.errors import ReplyTimeout, UsageError
+from cobotwire.session import RetryPolicy
+from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
-from cobotwire_codegen.model import Edition
+from cobotwire_codegen.model import Command, Edition, Field, Value, Variant, named_fields
 from cobotwire_codegen.render import render_python
 from cobotwire_codegen.render.vectors_json import plain
+from cobotwire_codegen.wire import build_frame
 
 NUMBERS = itertools.count()
 EXAMPLES = settings(
@@ -109,6 +113,90 @@ def _assert_remembered(
     query = table.command(back.query)
     asked = {f.name: given_values.get(f.name, 0) for v in query.request for f in v.fields}
     assert arm.state.remembered.recall(query, asked)[name] == given_values[argument]
+
+
+class Silent:
+    """A peer that keeps what it receives and never replies."""
+
+    wait = None
+
+    def __init__(self) -> None:
+        self.received = b""
+
+    def receive(self, data: bytes) -> bytes:
+        self.received += data
+        return b""
+
+    def flush(self) -> bytes:
+        return b""
+
+
+def _sent(package: ModuleType, name: str, given_values: dict[str, Any]) -> bytes:
+    """Return what a call sends; nothing if it raises the error of a wrong call."""
+    peer, clock = Silent(), SteppedClock()
+    with package.CLIENT(
+        MemoryTransport(peer, clock), on_error="leave", retry=RetryPolicy(attempts=1)
+    ) as arm:
+        with suppress(TypeError, UsageError, ReplyTimeout):
+            getattr(arm, name)(**given_values)
+    return peer.received
+
+
+def _chosen(command: Command, names: set[str]) -> list[Variant]:
+    """Return the variants that take exactly these arguments, by the rule of the language."""
+    return [
+        variant
+        for variant in command.requests
+        if {f.name for f in variant if f.const is None and f.default is None} <= names
+        and names <= {f.name for f in variant if f.const is None}
+    ]
+
+
+def _exact(field: Field, values: dict[str, object]) -> object:
+    if field.const is not None:
+        assert not isinstance(field.type, Value)
+        return field.type.from_raw(field.const)
+    if field.name in values:
+        return values[field.name]
+    found = [part.from_raw(raw) for raw, (_, part) in zip(field.default or (), field.type.parts)]
+    return tuple(found) if isinstance(field.type, Value) else found[0]
+
+
+@settings(EXAMPLES, max_examples=15)
+@given(st.data())
+def test_arguments_choose_a_variant_and_other_combinations_send_nothing(
+    tmp_path: Path, data: st.DataObject
+) -> None:
+    _, edition = data.draw(random_specs.specs(tmp_path))
+    check(edition)
+    package = _package(edition, tmp_path, f"rnd{next(NUMBERS)}")
+    codec = codecs.load(package.TABLE)
+    for command in edition.commands:
+        own = [v for v in edition.vectors if (v.command, v.direction) == (command.name, "request")]
+        known: dict[str, tuple[object, Any]] = {}
+        for vector in own:
+            for (name, exact), value in zip(vector.values, _values(edition, vector)):
+                known.setdefault(name, (exact, value))
+        arguments = [name for name in named_fields(command.requests) if name in known]
+        for size in range(len(arguments) + 1):
+            for names in itertools.combinations(arguments, size):
+                sent = _sent(package, command.name, {name: known[name][1] for name in names})
+                fitting = _chosen(command, set(names))
+                if not fitting:
+                    assert sent == b"", names
+                    continue
+                [variant] = fitting
+                values = {name: known[name][0] for name in names}
+                exact = {field.name: _exact(field, values) for field in variant}
+                try:
+                    frame = build_frame(edition.frame, command, "request", exact)
+                except ValueError:
+                    # The value of another variant, which this one does not allow.
+                    assert sent == b"", names
+                    continue
+                assert sent == frame, names
+                fields = codec.decode("request", frame, of=command.name).fields
+                assert all(fields[name] == known[name][1] for name in names)
 
 
 def test_generated_code_passes_mypy_strict(tmp_path: Path) -> None:

@@ -52,10 +52,10 @@ def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
 
 
 def keyword_only(command: Command) -> set[str]:
-    """Return the arguments without a position: if variants differ, those that one of them lacks."""
+    """Return the arguments without a position: of overloads, those that one of them may lack."""
     if not overloads(command):
         return set()
-    return {parameter.name for parameter in parameters(command) if parameter.optional}
+    return {parameter.name for parameter in parameters(command) if parameter.may_be_none}
 
 
 def default_in_words(field: Field) -> str:

@@ -17,6 +17,7 @@ from cobotwire_codegen.render.arguments import (
     python_value,
 )
 from cobotwire_codegen.render.layout import laid_out
+from cobotwire_codegen.render.literal import Name, literal
 from cobotwire_codegen.render.parameters import (
     Parameter,
     argument_type,
@@ -142,7 +143,9 @@ def _reply(command: Command) -> MessageClass:
 def _layout(rows: list[tuple[str, ...]], names: tuple[str, ...], plain: bool) -> list[str]:
     """Return the keywords that state the variants; ``plain`` if their lengths tell them apart."""
     if not plain:
-        return [f"variants={_row(map(_row, rows))}"]
+        texts = tuple(tuple(map(Name, row)) for row in rows)
+        # If it does not fit on a line of its own, it has a line for each variant.
+        return [f"variants={literal(texts, indent=4, before=len('variants='), after=1)}"]
     wire = tuple(_name_or_constant(part) for part in max(rows, key=len, default=()))
     return [f"wire={_row(wire)}"] if wire != tuple(map(_quoted, names)) else []
 
