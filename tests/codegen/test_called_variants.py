@@ -15,6 +15,7 @@ import pytest
 import small_specs
 from cobotwire import codec as codecs
 from cobotwire.cli.shared.call_arguments import parse, request_values, variant_of
+from cobotwire.conformance.samples import samples
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import MemoryTransport, RunningClock, SteppedClock
 from cobotwire_codegen.check import check
@@ -268,3 +269,10 @@ def _errors(folder: Path, checker: str) -> set[tuple[str, int]]:
     )
     errors = (e for e in json.loads(done.stdout)["generalDiagnostics"] if e["severity"] == "error")
     return {(Path(e["file"]).name, e["range"]["start"]["line"] + 1) for e in errors}
+
+
+def test_conformance_samples_contain_the_defaults(package: Any) -> None:
+    [variant] = package.TABLE.command("set_gripper").request
+    found = {sample.name: sample.raw_values for sample in samples(variant)}
+    gripper, unit, _, lean, _, limits = found["defaults"]
+    assert (gripper, unit, lean, limits) == ((14,), (15,), (900,), (-15, 20))

@@ -74,6 +74,7 @@ def samples(variant: Variant) -> Iterator[Sample]:
         found = [
             Sample(f"{name}ordinary", base),
             Sample(f"{name}ordinary-again", ordinary(variant, picked, turn=7)),
+            Sample(f"{name}defaults", _with_defaults(variant, base)),
         ]
         for place in places(variant, picked):
             if place.index not in picked:
@@ -91,6 +92,13 @@ def illegal_samples(variant: Variant) -> Iterator[Sample]:
         for place in places(variant, picked):
             for raw in beyond(place.field, place.number):
                 yield _with(base, place, raw, name)
+
+
+def _with_defaults(variant: Variant, base: RawValues) -> RawValues:
+    """Return the raw values of a call that leaves out every argument with a default."""
+    return tuple(
+        row if field.default is None else field.default for field, row in zip(variant.fields, base)
+    )
 
 
 def _with(base: RawValues, place: Place, raw: int, prefix: str) -> Sample:
