@@ -35,10 +35,10 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	$(BIN)/python -m mypy.stubtest cobotwire._native --mypy-config-file pyproject.toml
 	cargo fmt --all --check
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
-	cargo clippy --workspace --all-targets --quiet -- -D warnings
+	+cargo clippy --workspace --all-targets --quiet -- -D warnings
 
 rust-test: products ## run the Rust tests
-	cargo test --workspace --quiet
+	+cargo test --workspace --quiet
 
 python-test: .venv/.tools .venv/.native ## run the Python tests on both codecs, in four lanes
 	$(MAKE) --no-print-directory --jobs 4 $(IN_TURN) computing-tests simulating-tests calling-tests waiting-tests

@@ -121,7 +121,7 @@ def test_lost_transport_ends_the_stream(open_arm: Opener, peer_on: Any) -> None:
     ("requests", "words"),
     [
         ([], "needs a query: is_power_on"),
-        ([TABLE.request_type("stop")()], "a query: is_power_on"),
+        ([TABLE.request_type("stop")()], "stop, which is not a query"),
         ([TABLE_280.request_type("get_angles_plan")()], "get_angles_plan"),
         ([GET_ANGLES, get_encoder(1), GET_ANGLES], "each query once"),
         ([get_encoder(9)], "joint is 9"),
