@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 __all__ = [
+    "AsyncMechArm270",
     "AsyncMyCobot",
     "AsyncMyCobot280",
     "CaptureError",
@@ -21,6 +22,7 @@ __all__ = [
     "EditionUnknown",
     "Limits",
     "LinkError",
+    "MechArm270",
     "MotionTimeout",
     "MyCobot",
     "MyCobot280",
@@ -39,6 +41,7 @@ __all__ = [
 
 if TYPE_CHECKING:
     from cobotwire.codec import chosen as codec_in_use
+    from cobotwire.editions.mecharm270 import AsyncMechArm270, MechArm270
     from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
     from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
     from cobotwire.inspect.identification import connect, connect_async, identify
@@ -59,9 +62,11 @@ else:
     # Each name is imported when it is first used. So a program that uses another edition, or only
     # the codec, imports no client of this one. asyncio takes longer to import than all the rest.
     _PLACES = {
+        "AsyncMechArm270": "editions.mecharm270",
         "AsyncMyCobot": "editions.mycobot",
         "AsyncMyCobot280": "editions.mycobot280",
         "Limits": "protocol.limits",
+        "MechArm270": "editions.mecharm270",
         "MyCobot": "editions.mycobot",
         "MyCobot280": "editions.mycobot280",
         "RetryPolicy": "session.policy",

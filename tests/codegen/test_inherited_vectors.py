@@ -169,3 +169,8 @@ def test_unknown_base_of_a_package_is_reported_with_its_place(
     assert result.exit_code == 2
     assert "trial.yaml:5:7: " in result.output
     assert message in result.output
+
+
+def test_delta_with_unknown_geometry_inherits_none(file: Path) -> None:
+    assert built(file).geometry is not None
+    assert built(file, "geometry_unknown: No source gives the links.\n").geometry is None

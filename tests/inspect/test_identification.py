@@ -10,20 +10,27 @@ from contextlib import ExitStack
 import pytest
 
 import cobotwire
-from cobotwire import EditionUnknown, LinkError, MyCobot, MyCobot280, connect, identify
+from cobotwire import EditionUnknown, LinkError, MyCobot280, connect, identify
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.editions import load, names
-from cobotwire.inspect.identification import identify_on, own_query
+from cobotwire.inspect.evidence import own_query
+from cobotwire.inspect.identification import identify_on
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
 from cobotwire.transport import open_transport
 from command_line import run_program
 from scripted_peer import ScriptedPeer
 
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
-REQUESTS = {"mycobot280": "FEFE0212FA FEFE0202FA", "mycobot": "FEFE0212FA FEFE0202FA FEFE0240FA"}
+VERSION = bytes.fromhex("FE FE 03 02 49 FA")
+REQUESTS = {
+    "mycobot": "FEFE0212FA FEFE0202FA FEFE0240FA",
+    "mycobot280": "FEFE0212FA FEFE0202FA FEFE021BFA",
+}
+# Editions with a query that no other edition has; in the others a limit of a joint decides.
+OWN_QUERIES = {"mycobot": "get_speed", "mycobot280": "check_async_or_sync", "mecharm270": None}
 
 
-@pytest.fixture(params=[(e, t) for e in ("mycobot", "mycobot280") for t in ("pty", "tcp")])
+@pytest.fixture(params=[(e, "pty") for e in names()] + [("mycobot280", "tcp")])
 def arm(request: pytest.FixtureRequest) -> Iterator[tuple[str, str]]:
     """Serve a simulated arm; return its edition and its URL."""
     edition, transport = request.param
@@ -39,18 +46,19 @@ def test_root_package_exports_the_client_of_todays_arm() -> None:
 
 
 def test_own_query_of_each_edition_has_an_id_that_no_other_edition_has() -> None:
-    found = {name: own_query(load(name).TABLE) for name in names()}
-    assert {name: query and query.name for name, query in found.items()} == {
-        "mycobot": "get_speed",
-        "mycobot280": "get_system_version",
+    tables = {name: load(name).TABLE for name in names()}
+    found = {
+        name: own_query(table, [other for other in tables.values() if other is not table])
+        for name, table in tables.items()
     }
+    assert {name: query and query.name for name, query in found.items()} == OWN_QUERIES
 
 
 def test_identify_recognises_edition_and_firmware_of_a_simulated_arm(arm: tuple[str, str]) -> None:
     edition, url = arm
     found = identify(url, timeout=0.3)
-    assert (found.edition, found.url) == (edition, url)
-    assert bool(found.firmware) == (edition == "mycobot280")
+    assert (found.edition, found.candidates, found.url) == (edition, (edition,), url)
+    assert bool(found.firmware) == (edition != "mycobot")
     assert found.evidence[-1].replied
     assert found.evidence[-1].edition == edition
 
@@ -58,7 +66,7 @@ def test_identify_recognises_edition_and_firmware_of_a_simulated_arm(arm: tuple[
 def test_connect_returns_the_client_of_the_arms_edition(arm: tuple[str, str]) -> None:
     edition, url = arm
     with connect(url, timeout=0.3) as client:
-        assert type(client) is {"mycobot": MyCobot, "mycobot280": MyCobot280}[edition]
+        assert type(client) is load(edition).CLIENT
         client.set_tool_reference([100, 0, 0, 0, 0, 0])
         assert client.get_tool_reference().x == 100
     with connect(url, timeout=0.3) as again:
@@ -72,8 +80,7 @@ def test_connect_async_returns_an_open_asyncio_client(arm: tuple[str, str]) -> N
         async with await cobotwire.connect_async(url, timeout=0.3) as client:
             return type(client).__name__, await client.is_power_on()
 
-    name = {"mycobot": "AsyncMyCobot", "mycobot280": "AsyncMyCobot280"}[edition]
-    assert asyncio.run(use()) == (name, False)
+    assert asyncio.run(use()) == (load(edition).ASYNC_CLIENT.__name__, False)
 
 
 def test_connect_without_a_reply_or_a_decision_names_the_queries_and_closes_the_port() -> None:
@@ -90,9 +97,9 @@ def test_connect_without_a_reply_or_a_decision_names_the_queries_and_closes_the_
 
 @pytest.mark.parametrize("edition", ["mycobot", "mycobot280"])
 def test_identify_sends_nothing_but_its_harmless_queries(edition: str) -> None:
-    own = {"mycobot280": "FE FE 03 02 49 FA", "mycobot": "FE FE 03 40 32 FA"}[edition]
-    silent: list[list[bytes]] = [] if edition == "mycobot280" else [[]]
-    with ScriptedPeer([POWERED], *silent, [bytes.fromhex(own)]) as peer:
+    own = {"mycobot280": "FE FE 03 1B 01 FA", "mycobot": "FE FE 03 40 32 FA"}[edition]
+    version = [VERSION] if edition == "mycobot280" else []
+    with ScriptedPeer([POWERED], version, [bytes.fromhex(own)]) as peer:
         assert identify(peer.url, timeout=0.15).edition == edition
         received = {peer.received[at : at + 5] for at in range(0, len(peer.received), 5)}
         assert received == {bytes.fromhex(each) for each in REQUESTS[edition].split()}
@@ -104,15 +111,30 @@ def test_identify_verb_prints_edition_firmware_and_evidence(arm: tuple[str, str]
     assert (result.returncode, result.stderr) == (0, "")
     first, *evidence = result.stdout.splitlines()
     assert first.startswith(f"{url}: edition {edition}")
-    assert ("firmware" in first) == (edition == "mycobot280")
+    assert ("firmware" in first) == (edition != "mycobot")
     assert "is_power_on" in evidence[0]
-    assert f"only {edition} has this query" in evidence[-1]
+    decisive = f"only {edition} has this query" if OWN_QUERIES[edition] else f"in {edition}"
+    assert decisive in evidence[-1]
+
+
+def test_edition_without_a_query_of_its_own_is_known_by_a_limit_or_else_a_candidate() -> None:
+    silent: list[bytes] = []
+    for limit, edition in (
+        ("00 02 8A", "mecharm270"),
+        ("00 05 DC", "mycobot280"),
+        ("00 03 20", ""),
+    ):
+        reply = bytes.fromhex(f"FE FE 05 4B {limit} FA".replace("4B 00", "4B 03"))
+        with ScriptedPeer([POWERED], [VERSION], silent, [reply], [reply]) as peer:
+            found = identify(peer.url, timeout=0.15)
+        assert found.edition == edition
+        assert found.candidates == ((edition,) if edition else ("mecharm270", "mycobot280"))
 
 
 @pytest.mark.parametrize(
     ("replies", "edition", "code"),
     [
-        ([[POWERED], [bytes.fromhex("FE FE 03 02 49 FA")]], "mycobot280", 0),
+        ([[POWERED], [VERSION], [bytes.fromhex("FE FE 03 1B 01 FA")]], "mycobot280", 0),
         ([[POWERED]], "", 1),
         ([], "", 4),
     ],

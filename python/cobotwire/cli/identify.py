@@ -12,7 +12,8 @@ from cobotwire.cli.shared.arm_options import baudrate_option
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.exit_codes import NO_REPLY
 from cobotwire.cli.shared.output import as_json_value, format_result
-from cobotwire.inspect.identification import Evidence, Identification
+from cobotwire.inspect.evidence import Evidence
+from cobotwire.inspect.identification import Identification
 from cobotwire.inspect.identification import identify as identify_arm
 
 
@@ -26,8 +27,7 @@ from cobotwire.inspect.identification import identify as identify_arm
 def identify(port: str, baudrate: int | None, timeout: float, as_json: bool) -> None:
     """Find out which edition and firmware the arm at URL has, and by what evidence.
 
-    At most three harmless queries are sent, whatever --edition says: nothing moves, and nothing is
-    set.
+    A few harmless queries are sent, whatever --edition says: nothing moves, and nothing is set.
 
     Exit codes: 0 the edition is known; 1 an arm replied, but its edition is not known; 3 the port
     failed; 4 no reply.
@@ -40,16 +40,15 @@ def identify(port: str, baudrate: int | None, timeout: float, as_json: bool) -> 
 
 def _lines(found: Identification) -> list[str]:
     what = f"edition {found.edition}" if found.edition else "the edition is not known"
+    if not found.edition and found.candidates:
+        what += f"; its replies allow {', '.join(found.candidates)}"
     firmware = f", firmware {found.firmware}" if found.firmware else ""
     return [f"{found.url}: {what}{firmware}", *map(_line, found.evidence)]
 
 
 def _line(evidence: Evidence) -> str:
     text = f"replied {format_result(evidence.result)}" if evidence.replied else evidence.text
-    owner = (
-        f"only {evidence.edition} has this query" if evidence.edition else "every edition has it"
-    )
-    return f"  {evidence.query:<20} {text} ({owner})"
+    return f"  {evidence.query:<22} {text} ({evidence.shows})"
 
 
 def _as_json(found: Identification) -> dict[str, Any]:

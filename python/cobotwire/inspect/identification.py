@@ -1,7 +1,8 @@
 """Find out which edition an arm speaks, and connect to it with the client of that edition.
 
-First a query that every edition has, and for which every arm has a reply. Then, for one edition
-after another, one query that no other edition has. A legal reply to it decides.
+First a query that every edition has, and for which every arm has a reply. Then queries that only
+some editions have; each legal reply rules out the others. If several editions remain, a limit of a
+joint decides, as the arm reports it.
 """
 
 from __future__ import annotations
@@ -9,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
+from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cobotwire import editions
 from cobotwire.client.opening import open_port
-from cobotwire.protocol.errors import EditionUnknown, ProtocolError, ReplyTimeout
+from cobotwire.inspect.evidence import Candidates, Evidence, ask, limits_apart, own_query
+from cobotwire.protocol.errors import EditionUnknown
 from cobotwire.protocol.table import Command, Table
 from cobotwire.transport import Transport
 from cobotwire.transport.tapped import borrowed
@@ -24,36 +27,20 @@ if TYPE_CHECKING:
     from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 
 
-class Evidence(NamedTuple):
-    """A query that was sent, and what it shows.
-
-    Attributes:
-        query: the name of the command.
-        edition: the only edition that has the query; empty if all have it.
-        replied: whether a legal reply came.
-        result: the result of the query; None without a reply.
-        text: what happened, in words.
-    """
-
-    query: str
-    edition: str
-    replied: bool
-    result: Any
-    text: str
-
-
 class Identification(NamedTuple):
     """What an arm is, and by what evidence.
 
     Attributes:
         url: the port.
         edition: the edition that the arm speaks; empty if it is not known.
+        candidates: the editions that the replies allow; empty without a reply.
         firmware: the version of the firmware, such as ``7.3``; empty if the arm does not report it.
         evidence: the queries in the order in which they were sent.
     """
 
     url: str
     edition: str
+    candidates: tuple[str, ...]
     firmware: str
     evidence: tuple[Evidence, ...]
 
@@ -61,32 +48,6 @@ class Identification(NamedTuple):
     def replied(self) -> bool:
         """Whether the arm sent a legal reply to any query."""
         return any(each.replied for each in self.evidence)
-
-
-def own_query(table: Table) -> Command | None:
-    """Return a harmless query that only this edition has: that of its version, if it has one.
-
-    It has no arguments. None: each query of the edition exists in another edition, too.
-    """
-    others = [editions.load(n).TABLE for n in editions.names() if n != table.edition]
-    ids = {command.id for other in others for command in other.commands}
-    own = [c for c in _bare_queries(table) if c.id not in ids]
-    return min(own, key=lambda command: command.role != "version", default=None)
-
-
-def ask(client: Client, command: Command, edition: str = "") -> Evidence:
-    """Send a query; return what it shows.
-
-    Raises:
-        LinkError: the transport is gone.
-    """
-    try:
-        result = getattr(client, command.name)()
-    except ReplyTimeout:
-        return Evidence(command.name, edition, False, None, "no reply")
-    except ProtocolError as error:
-        return Evidence(command.name, edition, False, None, f"an illegal reply: {error}")
-    return Evidence(command.name, edition, True, result, f"replied {result}")
 
 
 def own_evidence(transport: Transport, names: list[str], **options: Any) -> Iterator[Evidence]:
@@ -97,7 +58,7 @@ def own_evidence(transport: Transport, names: list[str], **options: Any) -> Iter
     """
     for name in names:
         package = editions.load(name)
-        command = own_query(package.TABLE)
+        command = own_query(package.TABLE, _others(name))
         if command is not None:
             with closing(package.CLIENT(borrowed(transport), **options)) as client:
                 found = ask(client, command, name)
@@ -119,7 +80,7 @@ def other_edition(
     Raises:
         LinkError: the transport is gone.
     """
-    command = own_query(table)
+    command = own_query(table, _others(table.edition))
     own = Evidence("", table.edition, False, None, "the edition has no query of its own")
     if command is not None:
         own = ask(client, command, table.edition)
@@ -145,22 +106,54 @@ def identify_on(transport: Transport, *, timeout: float | None = None) -> Identi
     Raises:
         LinkError: the transport is gone.
     """
-    names = newest_first()
-    first = editions.load(names[0])
-    with closing(first.CLIENT(borrowed(transport), timeout=timeout)) as client:
-        evidence = [ask(client, first.TABLE.in_role("powered"))]
-    if evidence[0].text != "no reply":
-        evidence += own_evidence(transport, names, timeout=timeout)
-    last = evidence[-1]
-    edition = last.edition if last.replied else ""
-    firmware = str(last.result) if edition and _version(editions.load(edition).TABLE) else ""
-    return Identification(transport.url, edition, firmware, tuple(evidence))
+    first = editions.load(newest_first()[0])
+    names = [n for n in newest_first() if _same_frames(editions.load(n).TABLE, first.TABLE)]
+    found, evidence = Candidates(names), []
+    query: tuple[str, Command] | None = names[0], first.TABLE.in_role("powered")
+    firmware = ""
+    while query is not None and not found.known:
+        name, command = query
+        reply = _asked(transport, name, command, timeout=timeout)
+        evidence.append(found.evidence(reply, command))
+        if reply.text == "no reply" and len(evidence) == 1:
+            return Identification(transport.url, "", (), "", tuple(evidence))
+        found.note(command, reply.replied)
+        if command.role == "version" and reply.replied:
+            firmware = str(reply.result)
+        query = found.next_query()
+    edition = found.known
+    if not edition:
+        limits = list(_limit_evidence(transport, found.proven, timeout=timeout))
+        evidence += limits
+        edition = limits[-1].edition if limits else ""
+    candidates = (edition,) if edition else tuple(found.proven)
+    return Identification(transport.url, edition, candidates, firmware, tuple(evidence))
+
+
+def _limit_evidence(
+    transport: Transport, names: list[str], *, timeout: float | None
+) -> Iterator[Evidence]:
+    """Read limits of joints that differ between editions, until one decides; at most two."""
+    for limit in islice(limits_apart(names), 2):
+        found = _asked(transport, names[0], limit.command, limit.joint, timeout=timeout)
+        edition = limit.edition_of(found.result) if found.replied else ""
+        stated = ", ".join(f"{value:g} in {name}" for name, value in limit.editions.items())
+        yield found._replace(edition=edition, shows=f"the limit is {stated}")
+        if edition:
+            return
+
+
+def _asked(
+    transport: Transport, name: str, command: Command, *arguments: int, timeout: float | None
+) -> Evidence:
+    with closing(editions.load(name).CLIENT(borrowed(transport), timeout=timeout)) as client:
+        return ask(client, command, "", *arguments)
 
 
 def identify(
     port: str, *, baudrate: int | None = None, timeout: float | None = None
 ) -> Identification:
-    """Find out which edition an arm speaks, with at most three harmless queries; nothing moves.
+    """Find out which edition an arm speaks, with a few harmless queries; nothing moves.
 
     Args:
         port: a serial port or a URL; it is closed at the end.
@@ -184,7 +177,7 @@ def connect(port: str, *, baudrate: int | None = None, **options: Any) -> MyCobo
         with cobotwire.connect("/dev/ttyACM0") as arm:
             print(type(arm).__name__, arm.get_angles())
 
-    At most three harmless queries are sent; nothing moves. ``record`` does not record them, since
+    A few harmless queries are sent; nothing moves. ``record`` does not record them, since
     the edition of the recording is not known before.
 
     Args:
@@ -235,7 +228,8 @@ async def connect_async(
 
 def _known(found: Identification) -> str:
     if not found.edition:
-        raise EditionUnknown(found.url, tuple(f"{e.query}: {e.text}" for e in found.evidence))
+        evidence = tuple(f"{e.query}: {e.text}" for e in found.evidence)
+        raise EditionUnknown(found.url, evidence, found.candidates)
     return found.edition
 
 
@@ -244,14 +238,8 @@ def _open(port: str, baudrate: int | None) -> Transport:
     return open_port(port, usual if baudrate is None else baudrate)
 
 
-def _bare_queries(table: Table) -> list[Command]:
-    return [
-        command
-        for command in table.commands
-        if command.safety == "query"
-        and command.reply
-        and not any(v.fields for v in command.request)
-    ]
+def _others(name: str) -> list[Table]:
+    return [editions.load(other).TABLE for other in editions.names() if other != name]
 
 
 def _same_frames(one: Table, other: Table) -> bool:

@@ -136,14 +136,20 @@ class EditionUnknown(CobotwireError):
     Attributes:
         url: the port.
         evidence: each query that was sent, and what happened.
+        candidates: the editions that the replies allow; empty without a reply.
     """
 
-    def __init__(self, url: str, evidence: tuple[str, ...]) -> None:
+    def __init__(
+        self, url: str, evidence: tuple[str, ...], candidates: tuple[str, ...] = ()
+    ) -> None:
         self.url = url
         self.evidence = evidence
+        self.candidates = candidates
+        allowed = f" Its replies allow {', '.join(candidates)}." if candidates else ""
         super().__init__(
             f"{url}: the edition of the arm is not known ({'; '.join(evidence)}); check the port "
-            "with cobotwire doctor, or open it with the client of an edition, such as MyCobot280"
+            "with cobotwire doctor, or open it with the client of an edition, such as MyCobot280."
+            f"{allowed}"
         )
 
 

@@ -143,6 +143,8 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
         joints, parts.joints = parts.joints, reader.get(spec.joints)
         # An arm with another number of joints has another geometry.
         parts.geometry = parts.geometry if joints == parts.joints else None
+    if reader.get(spec.geometry_unknown):
+        parts.geometry = None
     parts.geometry = reader.get(spec.geometry) or parts.geometry
     parts.acks = reader.get(spec.acks) or parts.acks
     node = reader.get(spec.types)

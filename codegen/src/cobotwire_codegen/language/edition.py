@@ -71,6 +71,12 @@ class _Edition(Record):
         Part(Geometry),
         "The arm's geometry. A delta with as many joints inherits that of its base.",
     )
+    geometry_unknown = optional(
+        Text(),
+        "Why the geometry is not known. A delta with this key does not inherit the geometry of its "
+        "base: its simulated arm sends no coordinates instead of wrong ones. The key has no effect "
+        "beside `geometry`.",
+    )
 
 
 class WholeEdition(_Edition):

@@ -64,18 +64,22 @@ def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
     sharing: Sharing = common["sharing"]
     template = jinja.get_template("python/messages/family.py.j2")
     made: Files = {}
-    modules = []
+    modules: dict[str, list[str]] = {"own": [], "shared": []}
     for family in sharing.edition.families:
         module = sharing.messages_module(family)
-        modules.append(sharing.relative(module).replace(".messages", "", 1))
-        if sharing.is_own(module):
+        if not sharing.is_own(module):
+            modules["shared"].append(module)
+        else:
+            modules["own"].append(f".{family.name}")
             own = (c for c in family.commands if c.name not in sharing.shared_commands)
             classes = [found for command in own for found in message_classes(command)]
             made[PurePosixPath(f"messages/{family.name}.py")] = template.render(
                 common, family=family, classes=classes
             )
     index = jinja.get_template("python/messages/__init__.py.j2")
-    made[PurePosixPath("messages/__init__.py")] = index.render(common, modules=sorted(modules))
+    made[PurePosixPath("messages/__init__.py")] = index.render(
+        common, **{key: sorted(names) for key, names in modules.items()}
+    )
     return made
 
 

@@ -54,8 +54,9 @@ class Sharing:
         return self.base._package
 
     def shared_enums(self) -> list[str]:
-        """Return the enums that come from the base."""
-        return [n for n in python_api.enum_classes(self.edition) if n in self.shared_classes]
+        """Return the enums that come from the base, in the order in which ruff sorts imports."""
+        found = [n for n in python_api.enum_classes(self.edition) if n in self.shared_classes]
+        return sorted(found, key=str.lower)
 
     def value_imports(self) -> list[str]:
         """Return the imports of the module of named tuples."""
