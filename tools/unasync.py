@@ -19,6 +19,7 @@ from pathlib import Path
 CLIENT = Path(__file__).parents[1] / "python" / "cobotwire" / "client"
 FILES = {
     "aio.py": "blocking.py",
+    "aio_events.py": "event_streams.py",
     "aio_streaming.py": "streaming.py",
     "aio_moving.py": "moving.py",
 }
@@ -96,6 +97,14 @@ PASSAGES = [
     has no thread and no queue of its own. Leaving the loop needs no cleanup, nor does Ctrl-C, and
     iteration can continue. Other threads may use the arm meanwhile.""",
     ),
+    (
+        """It runs on the event loop: it must be quick. An exception that it raises goes to
+        ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call fails by it.""",
+        """It runs in the thread that reads the line: that of any call, or of a loop over ``events``,
+        or of :meth:`listen`. It must be quick, and may call the arm. An exception that it raises
+        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call fails by
+        it.""",
+    ),
     ("from any task.", "from any thread."),
     ("another task waits for", "another thread waits for"),
     (
@@ -109,8 +118,9 @@ RULES = [
     (r"\bawait ", ""),
     (r"\b__a(enter|exit|iter|next)__", r"__\1__"),
     (r"\bStopAsyncIteration\b", "StopIteration"),
-    (r"\bAsync(Client|Connection|MovingClient|Stream)\b", r"\1"),
+    (r"\bAsync(Client|Connection|EventStream|MovingClient|Stream)\b", r"\1"),
     (r"\bclient\.aio_(connection|streaming)\b", r"client.\1"),
+    (r"\bclient\.aio_events\b", "client.event_streams"),
     (r"\bclient\.aio\b", "client.blocking"),
     (r"\bimport asyncio\n", ""),
     (r"\basyncio\.CancelledError\b", "KeyboardInterrupt"),

@@ -28,6 +28,7 @@ __all__ = [
     "MyCobot280",
     "ProtocolError",
     "ReplyTimeout",
+    "RequestRefused",
     "RetryPolicy",
     "Sample",
     "StreamReport",
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
         MotionTimeout,
         ProtocolError,
         ReplyTimeout,
+        RequestRefused,
         UsageError,
     )
     from cobotwire.protocol.limits import Limits

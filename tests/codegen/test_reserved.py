@@ -14,7 +14,7 @@ from cobotwire_codegen.check.reserved import (
 )
 
 # Names that the clients will use.
-PLANNED = {"at", "events"}
+PLANNED: set[str] = set()
 
 
 def _public(*names: object) -> set[str]:

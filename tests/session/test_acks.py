@@ -93,5 +93,5 @@ def test_acknowledgement_at_the_end_of_a_motion_is_not_that_of_the_next_one(load
 def test_acknowledgement_of_0_is_an_error(loaded: Codec) -> None:
     arm = AckedArm(loaded, *SETTING)
     pending = arm.send(0.0, ack=loaded.encode("set_color", "reply", (0,)))
-    with pytest.raises(ProtocolError, match=r"acknowledged set_color\(.*\) with 0"):
+    with pytest.raises(ProtocolError, match=r"did not carry out set_color\(.*\): done is 0"):
         pending.result()

@@ -163,6 +163,8 @@ def _command(family: str, command: Command) -> dict[str, Any]:
         },
         "notes": list(notes(command)),
         "ack": command.ack,
+        "event": command.event,
+        "accepted": list(command.accepted),
         "request_text": command.request_text
         and {
             "prefixes": list(command.request_text.prefixes),

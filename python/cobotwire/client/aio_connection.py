@@ -55,6 +55,8 @@ class AsyncConnection:
         self._lost: LinkError | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._timer_at = 0.0
+        # Set when something was received.
+        self._news = asyncio.Event()
         forks.watch(self)
 
     async def open(self) -> None:
@@ -113,18 +115,22 @@ class AsyncConnection:
                 self._turn()
         return pending
 
-    async def listen(self, seconds: float) -> None:
+    async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Wait while the loop reads what comes without a request, and reports it to listeners.
+
+        Until then, ``done`` ends the wait as soon as it returns True after something has come.
 
         Raises:
             LinkError: the transport is gone.
         """
         self._transport()
         until = self.now() + seconds
-        while (left := until - self.now()) > 0:
+        while (left := until - self.now()) > 0 and not (done and done()):
             if self._lost is not None:
                 raise LinkError(self._lost.url, self._lost.detail)
-            await asyncio.sleep(min(left, 0.05))
+            self._news.clear()
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._news.wait(), min(left, 0.05))
 
     def close(self) -> None:
         """Close the transport; calls that wait get a LinkError. Closing twice is harmless.
@@ -213,6 +219,7 @@ class AsyncConnection:
             self._wake_at(now + idle)
         if events:
             self.listeners.received(events, now)
+            self._news.set()
 
     def _send_request(self, now: float, drained: bool) -> None:
         data = self._exchange.outgoing(now, drained)

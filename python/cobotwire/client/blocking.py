@@ -29,6 +29,8 @@ from cobotwire.session.request import RequestEncoder, check_acknowledged, result
 from cobotwire.transport import Transport
 
 if TYPE_CHECKING:
+    from cobotwire.client.event_streams import EventStream
+    from cobotwire.client.events import EventHandler, EventT
     from cobotwire.client.streaming import Stream
     from cobotwire.protocol.limits import Limits
 
@@ -200,6 +202,57 @@ class Client:
 
         settings = self._settings.for_stream(timeout)
         return Stream(self._connection, settings, self._encoder, requests, rate)
+
+    def events(
+        self, *types: type[EventT], timeout: float | None = None, capacity: int = 1000
+    ) -> EventStream[EventT]:
+        """Receive the messages that the device sends without a request.
+
+            for event in arm.events(MotionEnded, timeout=5):
+                print(event.status)
+
+        Events are queued from now on, whoever reads the line, until the stream is closed.
+
+        Args:
+            types: classes of events; none: all events of the edition.
+            timeout: the loop ends if no event comes for that many seconds; default: never.
+            capacity: how many events wait for the loop. If more come, the oldest is dropped, and
+                counted in the stream's ``lost``.
+
+        Returns:
+            The stream. Iterating raises LinkError when the transport is gone.
+
+        Raises:
+            UsageError: an argument is not allowed, or the edition has no such event.
+        """
+        check_seconds("timeout", timeout)
+        # Imported here: few editions have events, and all clients import this.
+        from cobotwire.client.event_streams import EventStream
+        from cobotwire.client.events import EventQueue, Wanted
+
+        queue = EventQueue(Wanted(self.table, types, self._address), capacity)
+        return EventStream(self._connection, queue, timeout)
+
+    def on(self, event: type[EventT], handler: Callable[[EventT], object]) -> EventHandler[EventT]:
+        """Call ``handler`` with each event of a class from now on, as it comes.
+
+        It runs in the thread that reads the line: that of any call, or of a loop over ``events``,
+        or of :meth:`listen`. It must be quick, and may call the arm. An exception that it raises
+        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call fails by
+        it.
+
+        Returns:
+            An object with a method ``remove``, which ends the calls.
+
+        Raises:
+            UsageError: the edition has no such event, or the handler is not a function.
+        """
+        # Imported here: few editions have events, and all clients import this.
+        from cobotwire.client.events import EventHandler, Wanted
+
+        made = EventHandler(Wanted(self.table, (event,), self._address), handler)
+        made.start(self._connection.listeners.add)
+        return made
 
     def _stop_for(self, error: BaseException) -> bool:
         """Send ``stop`` once for an error, unless the user chose to leave the arm alone.

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
@@ -104,14 +105,16 @@ class Connection:
         self._await(pending, 0.0, queued=False)
         return pending
 
-    def listen(self, seconds: float) -> None:
+    def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Read what comes without a request, and report it to the traffic listeners.
+
+        Until then, ``done`` ends the wait as soon as it returns True after something has come.
 
         Raises:
             LinkError: the transport is gone.
         """
         until = self.now() + seconds
-        while (left := until - self.now()) > 0:
+        while (left := until - self.now()) > 0 and not (done and done()):
             try:
                 leads = self._leads()
                 if leads:

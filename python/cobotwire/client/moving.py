@@ -3,22 +3,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from cobotwire.client.blocking import Client
+from cobotwire.client.events import CAPACITY, EventQueue, Wanted
 from cobotwire.client.opening import check_seconds
 from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.roles import ANGLES, COORDS, kinds_of, targets_request
+from cobotwire.session import EncodedRequest
 from cobotwire.session.motion import (
     MOTION_SECONDS,
     Goal,
+    Listen,
     Outcome,
     Pause,
     Step,
     Stop,
+    ack_seconds,
     goal_of,
     until_reached,
 )
@@ -103,11 +107,12 @@ class MovingClient(Client):
         """
         check_seconds("timeout", timeout)
         goal = goal_of(self.table, target, kind)
-        try:
-            self._wait(goal, timeout)
-        except KeyboardInterrupt as error:
-            self._stop_for(error)
-            raise
+        with self._motion_ended() as ended:
+            try:
+                self._wait(goal, timeout, ended)
+            except KeyboardInterrupt as error:
+                self._stop_for(error)
+                raise
 
     def _move(
         self,
@@ -121,26 +126,57 @@ class MovingClient(Client):
         # A bad target is reported as such, before it is waited for.
         encoded = self._encoder.encode_request(request)
         goal = goal_of(self.table, target, kinds_of(self.table)[label]) if wait else None
-        try:
-            self._connection.send(encoded, None)
-            if goal is not None:
-                self._wait(goal, timeout)
-        except KeyboardInterrupt as error:
-            self._stop_for(error)
-            raise
+        with self._motion_ended() as ended:
+            try:
+                self._send_motion(encoded, wait and ended is not None)
+                if goal is not None:
+                    self._wait(goal, timeout, ended)
+            except KeyboardInterrupt as error:
+                self._stop_for(error)
+                raise
 
-    def _wait(self, goal: Goal, timeout: float) -> None:
+    @contextmanager
+    def _motion_ended(self) -> Iterator[EventQueue | None]:
+        """Yield a queue for the event that ends a motion; None if the edition has none."""
+        command = self.table.find_role("motion ended")
+        if command is None:
+            yield None
+            return
+        event: Any = command.reply_type
+        queue = EventQueue(Wanted(self.table, (event,), self._address), CAPACITY)
+        remove = self._connection.listeners.add(queue.take)
+        try:
+            yield queue
+        finally:
+            remove()
+
+    def _send_motion(self, request: EncodedRequest, in_stages: bool) -> None:
+        """Send a motion; in an edition with two stages the arm accepts or refuses it first."""
+        within = ack_seconds(request) if in_stages else None
+        if within is None:
+            self._connection.send(request, None)
+            return
+        # The acceptance may be lost; the queries tell whether the arm moves.
+        with suppress(ReplyTimeout):
+            self._connection.send(request, within)
+
+    def _wait(self, goal: Goal, timeout: float, ended: EventQueue | None) -> None:
         steps = until_reached(self.table, goal, timeout, self._connection.now())
         step = next(steps)
         with suppress(StopIteration):
             while True:
-                outcome = self._take(step)
+                outcome = self._take(step, ended)
                 step = steps.send(outcome)
 
-    def _take(self, step: Step) -> Outcome:
+    def _take(self, step: Step, ended: EventQueue | None) -> Outcome:
         now, result = self._connection.now, None
         if isinstance(step, Pause):
             self._connection.sleep(max(0.0, step.until - now()))
+        elif isinstance(step, Listen):
+            assert ended is not None, "the edition has the event"
+            wait = max(0.0, step.until - now())
+            self._connection.listen(wait, lambda: ended.filled)
+            result = ended.next()
         elif isinstance(step, Stop):
             result = self._stop_for(TimeoutError())
         else:

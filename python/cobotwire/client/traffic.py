@@ -10,6 +10,7 @@ from cobotwire.protocol.errors import LinkError
 from cobotwire.session import (
     AckReceived,
     EchoReceived,
+    EventReceived,
     LateReply,
     ReplyMatched,
     ReplyRejected,
@@ -28,6 +29,7 @@ KINDS: dict[type, str] = {
     ReplyMatched: "reply",
     AckReceived: "acknowledgement",
     EchoReceived: "echo",
+    EventReceived: "event",
     UnexpectedFrame: "unexpected",
 }
 

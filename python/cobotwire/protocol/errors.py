@@ -79,6 +79,26 @@ class ProtocolError(CobotwireError):
         super().__init__(f"{detail} (at byte {offset} of {data.hex(' ').upper() or 'no bytes'})")
 
 
+class RequestRefused(ProtocolError):
+    """The device replied that it does not carry out a request, or that a motion has failed.
+
+    Attributes:
+        request: the call with its arguments.
+        field: the field of the reply that holds the status.
+        status: the status: its name in the edition with its number, such as ``NO_POWER (3)``.
+    """
+
+    def __init__(self, request: str, field: str, status: str, data: bytes) -> None:
+        self.request = request
+        self.field = field
+        self.status = status
+        detail = f"the arm did not carry out {request}: {field} is {status}"
+        super().__init__("rejected", 0, data, detail)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.request, self.field, self.status, self.data)
+
+
 class LinkError(CobotwireError, OSError):
     """An error of the transport: the port could not be opened, or it disappeared.
 

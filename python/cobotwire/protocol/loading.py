@@ -143,7 +143,7 @@ class _Reader:
             record["family"],
             record["safety"],
             record["deadline_ms"],
-            self._variants(get("request", ([],))),
+            self._variants(get("request", () if get("event") else ([],))),
             self._variants(get("reply", ())),
             text and TextReply(*_affixes(text), text.get("silence_ms", 0), text.get("suffix", "")),
             tuple(get("notes", ())),
@@ -154,6 +154,8 @@ class _Reader:
             _tuples(get("samples", ())),
             tuple(get("agrees_with", ())),
             tuple(get("arguments", ())),
+            get("event", False),
+            tuple(get("accepted", ())),
             self._package,
         )
 

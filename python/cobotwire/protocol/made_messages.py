@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.protocol.arguments import Row
 from cobotwire.protocol.fields import Field, Variant, named_fields
-from cobotwire.protocol.messages import Reply, Request
+from cobotwire.protocol.messages import Event, Reply, Request
 
 MessageTypes = tuple[type[Request[Any]], type[Reply[Any]] | None]
 
@@ -41,18 +41,25 @@ def class_name(command: str) -> str:
 @cache
 def generated_types(package: str, command: str) -> MessageTypes:
     """Return the message types that the generator wrote into an edition's package."""
-    request = getattr(import_module(f"{package}.messages"), class_name(command))
-    return request, request.reply_type
+    found = getattr(import_module(f"{package}.messages"), class_name(command))
+    # An event has no request.
+    return (Request, found) if issubclass(found, Event) else (found, found.reply_type)
 
 
 @lru_cache(maxsize=1024)
-def made_types(command: str, request: MessageShape, reply: MessageShape | None) -> MessageTypes:
+def made_types(
+    command: str, request: MessageShape, reply: MessageShape | None, is_event: bool = False
+) -> MessageTypes:
     """Make the message types of a command; equal shapes give the same types.
 
     A table has no enum classes, named tuples or radians, so the fields hold integers, tuples and
     the units of the wire.
     """
     name = class_name(command)
+    if is_event and reply is not None:
+        layout = {"event": command, **_layout(reply)}
+        event: Any = new_class(name, (Event,), layout, _body(reply, f"Event {command}."))
+        return Request, event
     keywords: dict[str, Any] = {"command": command, **_layout(request)}
     made: Any = new_class(name, (Request,), keywords, _body(request, f"Request {command}."))
     if reply is not None:

@@ -241,7 +241,7 @@ class Reply(Message, Generic[Result]):
     def __init_subclass__(
         cls,
         *,
-        to: type[Request[Any]],
+        to: type[Request[Any]] | None = None,
         result: Callable[..., Any] | None = None,
         results: tuple[str, ...] | None = None,
         **layout: Any,
@@ -249,11 +249,13 @@ class Reply(Message, Generic[Result]):
         """Record the request's class, and what every message declares.
 
         Args:
-            to: the class of the request.
+            to: the class of the request; None: the class is no message itself, like :class:`Event`.
             result: the named tuple of the results, if there are several.
             results: the fields that are results; None: those that every variant has.
             layout: arguments for :meth:`_declare`.
         """
+        if to is None:
+            return
         cls._declare(**layout)
         cls.command = to.command
         cls.request_type = to
@@ -280,6 +282,16 @@ class Reply(Message, Generic[Result]):
         if self._direct:
             return tuple(self.__dict__.values())
         return tuple([value for value in self._wire_values() if value is not None])
+
+
+class Event(Reply[Any]):
+    """A message that the device sends without a request."""
+
+    def __init_subclass__(cls, *, event: str, **layout: Any) -> None:
+        """Record the name of the event; pass ``layout`` to :meth:`_declare`."""
+        cls._declare(**layout)
+        cls.command = event
+        cls._results = tuple([name for name in cls._names if name not in cls.__dict__])
 
 
 def _arranged(

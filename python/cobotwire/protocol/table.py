@@ -8,6 +8,7 @@ a message and the rules for reading them.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
@@ -63,6 +64,7 @@ Role = Literal[
     "paused",
     "error",
     "version",
+    "motion ended",
 ]
 
 
@@ -134,6 +136,8 @@ class Command:
     samples: tuple[tuple[tuple[str, tuple[int, ...]], ...], ...] = ()
     agrees_with: tuple[str, ...] = ()
     arguments: tuple[str, ...] = ()
+    event: bool = False
+    accepted: tuple[int, ...] = ()
     package: str = field(default="", compare=False, repr=False)
     """The generated package that holds the message types; empty if there is none."""
     _types: list[MessageTypes] = field(default_factory=list, init=False, compare=False, repr=False)
@@ -165,7 +169,7 @@ class Command:
                 if self.reply or self.text:
                     texts = self.text.fields if self.text else ()
                     reply = reply_shape(self.reply, texts, self.ack)
-                found = made_types(self.name, request, reply)
+                found = made_types(self.name, request, reply, self.event)
             self._types.append(found)
         return self._types[0]
 
@@ -177,11 +181,41 @@ class Command:
     @property
     def requires_reply(self) -> bool:
         """Whether the protocol requires a reply."""
-        return (bool(self.reply) and not self.ack) or self.text is not None
+        return (bool(self.reply) and not self.ack and not self.event) or self.text is not None
+
+    def refusal(self, fields: Mapping[str, Any]) -> tuple[str, str] | None:
+        """Return the name and the word of the status by which a reply reports that it failed.
+
+        Without ``accepted``, each field that is 0 reports it; constants and repeated arguments do
+        not count. None: the reply reports success.
+        """
+        statuses: tuple[Field, ...] = ()
+        for variant in self.reply:
+            # A typed message lacks the constants.
+            own = tuple(f for f in variant.fields if len(f.choices) != 1 or f.labels)
+            if {f.name for f in own} <= set(fields) <= {f.name for f in variant.fields}:
+                statuses = own
+        if not statuses:
+            return None
+        last = statuses[-1]
+        if self.accepted:
+            value = fields[last.name]
+            return None if value in self.accepted else (last.name, _word(last, value))
+        for each in statuses:
+            if not each.echo and not each.many and fields[each.name] == 0:
+                return each.name, _word(each, 0)
+        return None
 
     def variants(self, direction: Direction) -> tuple[Variant, ...]:
         """Return the variants of this command's message in one direction."""
         return self.request if direction == "request" else self.reply
+
+
+def _word(field: Field, value: int) -> str:
+    """Return a status as a person reads it: ``NO_POWER (3)``."""
+    if value in field.choices and field.labels:
+        return f"{field.labels[field.choices.index(value)]} ({value})"
+    return str(value)
 
 
 class Dimensions(NamedTuple):

@@ -10,6 +10,7 @@ from cobotwire.session.device import (
 from cobotwire.session.events import (
     AckReceived,
     EchoReceived,
+    EventReceived,
     LateReply,
     ReplyMatched,
     ReplyRejected,
@@ -28,6 +29,7 @@ __all__ = [
     "DeviceSession",
     "EchoReceived",
     "EncodedRequest",
+    "EventReceived",
     "Exchange",
     "LateReply",
     "MalformedRequest",

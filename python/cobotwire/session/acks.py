@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.addresses import ANYBODY
-from cobotwire.protocol.errors import LinkError, ProtocolError
+from cobotwire.protocol.errors import LinkError, ProtocolError, RequestRefused
 from cobotwire.session.events import FrameEvent
 from cobotwire.session.matching import can_come_from, repliers_meet
 from cobotwire.session.pending import Pending
@@ -141,7 +141,8 @@ class Acks:
         self._commands: dict[int, _CommandAcks] = {}
         self.waiting: list[PendingAck] = []
         # Whether this firmware was seen to acknowledge a motion at its start.
-        self._motions_at_once = False
+        # It does if another message reports the end.
+        self._motions_at_once = codec.table.find_role("motion ended") is not None
 
     @property
     def next_end(self) -> float:
@@ -234,11 +235,11 @@ class Acks:
         self.drop_done()
 
     def _end(self, pending: PendingAck, message: DecodedMessage) -> None:
-        """End a wait with its acknowledgement; 0 says that the arm did not do it."""
-        if 0 in message.fields.values():
+        """End a wait with its acknowledgement, which may say that the arm did not do it."""
+        refusal = message.command.refusal(message.fields)
+        if refusal is not None:
             call = as_call(pending.request, self._codec)
-            detail = f"the arm acknowledged {call} with 0: it did not carry it out"
-            pending.fail(ProtocolError("rejected", 0, pending.request.frame, detail))
+            pending.fail(RequestRefused(call, *refusal, pending.request.frame))
         else:
             pending.succeed({})
 

@@ -45,6 +45,14 @@ class AckReceived(NamedTuple):
     frame: Frame
 
 
+class EventReceived(NamedTuple):
+    """A message that the device sends without a request."""
+
+    command: Command
+    message: DecodedMessage
+    frame: Frame
+
+
 class UnexpectedFrame(NamedTuple):
     """A legal frame that replies to nothing."""
 
@@ -68,7 +76,7 @@ class RequestExpired(NamedTuple):
     attempts: int = 1
 
 
-FrameEvent = AckReceived | LateReply | UnexpectedFrame | EchoReceived
+FrameEvent = AckReceived | EventReceived | LateReply | UnexpectedFrame | EchoReceived
 SessionEvent = ReplyMatched | ReplyRejected | AckReceived | RequestExpired | FrameEvent | Noise
 
 

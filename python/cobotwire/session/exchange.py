@@ -71,7 +71,7 @@ class Exchange:
         self._outstanding = OutstandingReplies()
         self._acks = Acks(codec)
         self._echo = EchoDetector()
-        self._others = OtherFrames(self._outstanding, self._acks, self._echo)
+        self._others = OtherFrames(codec.table, self._outstanding, self._acks, self._echo)
 
     # What callers want.
 

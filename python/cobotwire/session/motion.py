@@ -9,13 +9,17 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import Any, NamedTuple
 
-from cobotwire.protocol.errors import ArmState, MotionTimeout, UsageError
+from cobotwire.protocol.addresses import NOBODY
+from cobotwire.protocol.errors import ArmState, MotionTimeout, RequestRefused, UsageError
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.roles import COORDS, kinds_of, place_role, reached_query, row_index
 from cobotwire.protocol.table import Role, Table
+from cobotwire.session.request import EncodedRequest
 
 # Ten rounds a second of at most two requests: a moving arm replies to 10 to 20 a second.
 POLL_SECONDS = 0.1
+# If the device reports the end of a motion, the queries only make up for an event that was lost.
+CONFIRM_SECONDS = 1.0
 # How long a motion is waited for by default.
 MOTION_SECONDS = 30.0
 # An arm that stands still for this long does not continue by itself.
@@ -37,6 +41,12 @@ class Pause(NamedTuple):
     until: float
 
 
+class Listen(NamedTuple):
+    """Wait until then, or until the device reports the end of a motion; the result is its event."""
+
+    until: float
+
+
 class Stop(NamedTuple):
     """Send ``stop``, unless the user of the client chose to leave the arm alone."""
 
@@ -51,7 +61,7 @@ class Outcome(NamedTuple):
     result: Any = None
 
 
-Step = Query | Pause | Stop
+Step = Query | Pause | Listen | Stop
 Steps = Generator[Step, Outcome, None]
 
 
@@ -121,6 +131,12 @@ def goal_of(table: Table, target: Sequence[float], kind: int) -> Goal:
     )
 
 
+def ack_seconds(request: EncodedRequest) -> float | None:
+    """Return how long to wait for the acceptance of a motion; None: the device reports none."""
+    command = request.command
+    return command.deadline_ms / 1000 if command.ack and request.replier != NOBODY else None
+
+
 def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Steps:
     """Yield the steps of waiting until the arm is at a target.
 
@@ -130,8 +146,10 @@ def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Ste
     Raises:
         MotionTimeout: the target was not reached within ``limit`` seconds, or the arm has stood
             still for a second and is not there.
+        RequestRefused: the device reports that the motion has failed.
     """
     now, still_since, before = started, None, None
+    ended = table.find_role("motion ended")
     while True:
         begun = now
         now, found = yield Query(goal.query, _left(started, limit, now))
@@ -155,7 +173,17 @@ def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Ste
                 stopped = yield Stop()
                 state = yield from _state(table, goal)
             raise MotionTimeout(goal.target, waited, standing, bool(stopped.result), state)
-        now, _ = yield Pause(max(now, begun + POLL_SECONDS))
+        if ended is None:
+            now, _ = yield Pause(max(now, begun + POLL_SECONDS))
+            continue
+        # The event of an earlier motion looks the same, so a query confirms it.
+        until = min(max(now, begun + CONFIRM_SECONDS), max(now, started + limit))
+        now, event = yield Listen(until)
+        refusal = None if event is None else ended.refusal(event.fields)
+        if refusal is not None:
+            yield Stop()
+            what = f"the motion to {list(goal.target)}"
+            raise RequestRefused(what, *refusal, b"")
 
 
 def _moving(

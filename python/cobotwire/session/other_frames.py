@@ -5,13 +5,17 @@ They are late replies, acknowledgements, copies of requests, illegal replies, no
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 from cobotwire.codec.interface import DecodedMessage, Frame, Noise
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Command, Table
 from cobotwire.session.acks import Acks
 from cobotwire.session.echo import EchoDetector
 from cobotwire.session.events import (
     AckReceived,
     EchoReceived,
+    EventReceived,
     FrameEvent,
     LateReply,
     ReplyRejected,
@@ -29,8 +33,14 @@ class OtherFrames:
     In each method, ``waiting`` is the request that waits for its reply.
     """
 
-    def __init__(self, outstanding: OutstandingReplies, acks: Acks, echo: EchoDetector) -> None:
+    def __init__(
+        self, table: Table, outstanding: OutstandingReplies, acks: Acks, echo: EchoDetector
+    ) -> None:
         self._outstanding, self._acks, self._echo = outstanding, acks, echo
+        self._events: dict[int, list[Command]] = {}
+        for command in table.commands:
+            if command.event:
+                self._events.setdefault(command.id, []).append(command)
 
     def take_noise(self, noise: Noise, waiting: PendingRequest | None, now: float) -> None:
         """Take noise, which may be the text that a request waits for."""
@@ -68,8 +78,15 @@ class OtherFrames:
             return self._note(EchoReceived(frame), waiting)
         ack = self._acks.match(frame, now, began_at)
         if ack is None:
-            return self._note(UnexpectedFrame(frame), waiting)
+            return self._note(self._event(frame) or UnexpectedFrame(frame), waiting)
         return self._note(AckReceived(ack.request.command, ack.message, frame), waiting)
+
+    def _event(self, frame: Frame) -> EventReceived | None:
+        """Return a frame as an event that the device sends without a request; None: it is none."""
+        for command in self._events.get(frame.command, ()):
+            with suppress(ProtocolError):
+                return EventReceived(command, frame.decode("reply", of=command.name), frame)
+        return None
 
     def weigh_copy(
         self, frame: Frame, message: DecodedMessage, waiting: PendingRequest

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.protocol.table import Command
-from cobotwire.session.events import AckReceived, EchoReceived, FrameEvent, LateReply
+from cobotwire.session.events import AckReceived, EchoReceived, EventReceived, FrameEvent, LateReply
 
 # At most this many lines are kept, and this many bytes of each are shown.
 LINES = 20
@@ -110,6 +110,8 @@ def _noise_line(span: _NoiseSpan, diagnosis: str) -> str:
 def _kind(event: FrameEvent, request_id: int) -> str:
     if isinstance(event, LateReply):
         return f"late reply to {event.command.name}"
+    if isinstance(event, EventReceived):
+        return f"event {event.command.name}"
     if isinstance(event, AckReceived):
         # An acknowledgement has only the command's id, so an earlier request may have caused it.
         doubt = ", perhaps of an earlier request" if event.frame.command == request_id else ""

@@ -12,6 +12,7 @@ from cobotwire.codec.interface import DecodedMessage
 from cobotwire.protocol.addresses import devices_of, find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply
+from cobotwire.protocol.roles import row_index
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
@@ -21,6 +22,7 @@ from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.behaviour.registry import Unanswerable
 from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.motion.hand import checked
+from cobotwire.simulator.motion_ends import MotionEnds
 from cobotwire.simulator.peer import IDLE_SECONDS
 from cobotwire.simulator.replies import clamped, completed
 from cobotwire.simulator.state import ArmState
@@ -103,6 +105,7 @@ class SimulatedArm:
         if powered:
             for state in self._states.values():
                 state.power_on()
+        self.ends = MotionEnds(table, self.codec, clock, self._states)
         self._behaviours = installed(table.edition) if behaviours is None else behaviours
         self._own_connection = ArmConnection(self, on_event)
 
@@ -219,6 +222,7 @@ class SimulatedArm:
             state.remembered.store(self.table, command, fields)
             return self._perform_role(command, state, now, fields)
         finally:
+            self.ends.watch(command, address)
             for text in state.remarks:
                 self.note(command, text)
             state.remarks.clear()
@@ -273,15 +277,21 @@ class ArmConnection:
     @property
     def wait(self) -> float | None:
         """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
-        return IDLE_SECONDS if self.pending else None
+        return self._arm.ends.wait or (IDLE_SECONDS if self.pending else None)
 
     def receive(self, data: bytes) -> bytes:
-        """Receive ``data``; return the replies."""
-        return self._handle_all(self._session.receive(data))
+        """Receive ``data``; return the replies, after the events that are due."""
+        due = self._arm.ends.due()
+        self._idle_at = self._arm.clock() + IDLE_SECONDS
+        return due + self._handle_all(self._session.receive(data))
 
     def flush(self) -> bytes:
-        """Give up an incomplete request, because nothing more has come; return the replies."""
-        return self._handle_all(self._session.flush())
+        """Give up an incomplete request if nothing more has come; return replies and events."""
+        early = self._arm.ends.wait is not None and self._arm.clock() < self._idle_at
+        due = self._arm.ends.due()
+        if early:
+            return due
+        return due + self._handle_all(self._session.flush())
 
     def restart(self) -> None:
         """Restart the arm, and forget an incomplete request of this client."""
@@ -295,6 +305,7 @@ class ArmConnection:
     def reset(self) -> None:
         """Forget an incomplete request."""
         self._session = DeviceSession(self._arm.codec)
+        self._idle_at = 0.0
 
     def _handle_all(self, events: list[DeviceEvent]) -> bytes:
         replies = b""
@@ -352,7 +363,8 @@ def _joint_limits(table: Table) -> list[tuple[float, float]]:
     """Return the edition's limits of each joint; empty if it states only the wire's."""
     for command in table.commands:
         if command.role == "joint targets":
-            numbers = command.request[0].fields[0].cases[0].numbers
+            variant = command.request[0]
+            numbers = variant.fields[row_index(variant)].cases[0].numbers
             limits = [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
             return limits if all(high <= HALF_TURN for _, high in limits) else []
     return []

@@ -9,7 +9,10 @@ from cobotwire.protocol.table import Command, Field, Number, Variant
 
 
 def completed(
-    command: Command, request: Mapping[str, Any], result: Mapping[str, Any]
+    command: Command,
+    request: Mapping[str, Any],
+    result: Mapping[str, Any],
+    usual: int | None = None,
 ) -> dict[str, Any]:
     """Return all fields of a reply: the result, echoes of the request, and what is usual.
 
@@ -17,11 +20,14 @@ def completed(
         command: the command.
         request: the fields of the request.
         result: the fields of the reply that the behaviour states.
+        usual: the value of fields without another one; None: 1 for acknowledgements, else 0.
     """
     if command.text is not None:
         return {name: result.get(name, "") for name in command.text.fields}
     # An acknowledgement reports 1: done.
-    usual = 1 if command.ack else 0
+    usual = (1 if command.ack else 0) if usual is None else usual
+    if command.accepted:
+        usual = command.accepted[0]
     return {
         field.name: request[field.name]
         if field.echo

@@ -78,6 +78,7 @@ NEW: dict[str, Any] = {
     "shares_id": ("get_pose",),
     "notes": ("New.",),
     "choices": (3,),
+    "accepted": (3,),
     "printed": b"\xfe",
     "frame": b"\xfe",
     "const": 1,

@@ -9,7 +9,8 @@ from cobotwire_codegen.build.read_back import build_read_back, build_samples
 from cobotwire_codegen.build.text import build_reply_text, build_request_text
 from cobotwire_codegen.build.types import Types, disputes
 from cobotwire_codegen.errors import Place, Problem
-from cobotwire_codegen.load import Node
+from cobotwire_codegen.language.shapes import items_of
+from cobotwire_codegen.load import Node, Scalar
 from cobotwire_codegen.model import Command, Family, Variant
 from cobotwire_codegen.model.commands import NoId
 from cobotwire_codegen.reader import Reader
@@ -27,17 +28,43 @@ def build_family(
     return Family(family.place, family.name, family.title, family.doc, tuple(commands))
 
 
+def build_accepted(
+    node: Node | None, replies: tuple[Variant, ...], reader: Reader
+) -> tuple[int, ...]:
+    """Return the raw values of the last field of a reply that report success."""
+    if node is None:
+        return ()
+    subject = f"accepted of {reader.what}"
+    status = replies[0][-1] if replies and replies[0] else None
+    raws = {} if status is None else {m.name: m.value for m in status.type.members}
+    found = []
+    for item in items_of(node, subject, reader.problem):
+        value = item.value if isinstance(item, Scalar) else None
+        raw = raws.get(value) if isinstance(value, str) else value
+        if isinstance(raw, bool) or not isinstance(raw, int):
+            message = f"{subject} must list members or raw numbers of the last field of the reply"
+            reader.problem("wrong-kind", message, item.place)
+        else:
+            found.append(raw)
+    return tuple(found)
+
+
 class _Acks:
     """The edition's rule for commands that have no reply of their own."""
 
     def __init__(self, parts: Parts, types: Types, problems: list[Problem]) -> None:
         self.variants: tuple[Variant, ...] = ()
+        self.accepted: tuple[int, ...] = ()
         self._except: tuple[str, ...] = ()
         if parts.acks is None:
             return
         spec = language.Acks
         reader = Reader(parts.acks, spec, "the acks", problems)
-        field = reader.get(spec.field)
+        field, fields = reader.get(spec.field), reader.get(spec.fields)
+        if field is None and not fields:
+            reader.problem("missing-key", "the acks lack the key field or fields")
+        self._accepted = reader.get(spec.accepted)
+        self._reader = reader
         self._except = reader.get(spec.except_)
         reader.get(spec.why)
         known = set(parts.commands())
@@ -47,6 +74,10 @@ class _Acks:
         if field is not None:
             # Both a frame with one byte and a bare frame have been observed.
             self.variants = ((build_field(field, "reply", reader, types),), ())
+        elif fields:
+            full = tuple(build_field(node, "reply", reader, types) for node in fields)
+            self.variants = (full,)
+        self.accepted = build_accepted(self._accepted, self.variants, reader)
 
     def of(self, name: str) -> tuple[Variant, ...]:
         """Return the acknowledgement of a command that has no other reply."""
@@ -76,9 +107,13 @@ def _command(
     replies = build_variants(reader, "reply", types)
     text = build_reply_text(reader, spec.reply_text)
     ack = reader.get(spec.ack)
-    if not replies and text is None:
+    if not replies and text is None and not reader.get(spec.event):
         replies = acks.of(name)
         ack = bool(replies)
+        accepted = acks.accepted if ack else ()
+    else:
+        accepted = build_accepted(reader.get(spec.accepted), replies, reader)
+    event = reader.get(spec.event)
     return Command(
         place=place,
         id=_id(reader),
@@ -89,9 +124,11 @@ def _command(
         role=reader.get(spec.role),
         source=reader.get(spec.source),
         deadline_ms=reader.get(spec.deadline_ms) or deadline_ms,
-        requests=build_variants(reader, "request", types) or ((),),
+        requests=build_variants(reader, "request", types) or (() if event else ((),)),
         replies=replies,
         ack=ack,
+        event=event,
+        accepted=accepted,
         alias=reader.get(spec.alias),
         shares_id=reader.get(spec.shares_id),
         text=text,

@@ -147,6 +147,10 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             f"it must take no arguments and reply with a row of coordinates, {alike}",
             _reads_row(coordinates),
         ),
+        "motion ended": (
+            "it must be an event, and its last field a status",
+            lambda command: command.event and not _parts(command.replies[0][-1]),
+        ),
         "stop": ("it must take no arguments", lambda command: command.requests == ((),)),
     }
 
@@ -157,9 +161,18 @@ def roles_fit(edition: Edition) -> Iterator[Problem]:
     for command in edition.commands:
         if command.role:
             what, fits = needs[command.role]
-            if not fits(command):
+            if command.event != (command.role == "motion ended") or not fits(command):
                 message = f"{command.name} cannot have the role {command.role}: {what}"
                 yield Problem(command.place, "bad-role", message)
 
 
-RULES = (roles_fit,)
+def events_fit(edition: Edition) -> Iterator[Problem]:
+    """Report events with a request, an acknowledgement, or another safety class than query."""
+    for command in edition.commands:
+        sent = command.requests or command.ack or command.text or command.request_text
+        if command.event and (sent or not command.replies or command.safety != "query"):
+            message = f"{command.name} is an event: it must have a reply, no request, safety query"
+            yield Problem(command.place, "bad-event", message)
+
+
+RULES = (roles_fit, events_fit)

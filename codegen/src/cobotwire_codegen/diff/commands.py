@@ -72,6 +72,11 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
         yield finding("samples-changed", where, words.samples(old), words.samples(new))
     if old.ack != new.ack:
         yield finding("ack-changed", where, words.yes(old.ack), words.yes(new.ack))
+    if old.event != new.event:
+        yield finding("event-changed", where, words.yes(old.event), words.yes(new.event))
+    if old.accepted != new.accepted:
+        shown = [", ".join(map(str, side.accepted)) or "all but 0" for side in (old, new)]
+        yield finding("accepted-changed", where, *shown)
     if old.alias != new.alias:
         shown = [f"that of {side.alias}" if side.alias else "its own" for side in (old, new)]
         yield finding("alias-changed", where, *shown)
@@ -87,6 +92,10 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
 
 
 def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[Finding]:
+    if old.event != new.event:
+        # An event has no method and no request: this is reported as one change.
+        yield from message_changes(f"{where}/reply", old, new, "reply", known)
+        return
     found = list(message_changes(f"{where}/request", old, new, "request", known))
     yield from found
     # Report each difference once, by the more severe or more exact rule.

@@ -41,6 +41,8 @@ _WIRE = {
     "command-removed": "the command {old} was removed, with its frames and its method",
     "constant-changed": "the constant was {old}, is {new}: the other side's frame is rejected",
     "encoding-changed": "the bytes were {old}, are {new}: numbers are misread",
+    "accepted-changed": "the status of success was {old}, is {new}: refusals are misread",
+    "event-changed": "whether the device sends it without a request: was {old}, is {new}",
     "echo-changed": "the echo was {old}, is {new}: replies are matched to requests differently",
     "enum-member-removed": "the member {old} was removed: frames that carry it are rejected",
     "enum-member-renumbered": "{old} became {new}: the member has another raw value",

@@ -6,7 +6,7 @@ from cobotwire_codegen.language.changes import CHANGE, ChangesFile
 from cobotwire_codegen.language.frame import FrameFile
 from cobotwire_codegen.language.geometry import Geometry
 from cobotwire_codegen.language.json_schema import ref
-from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField
+from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField, accepted_key
 from cobotwire_codegen.language.names import BASE, CLASS, LOWER, METHOD
 from cobotwire_codegen.language.proof import VECTOR, ErrataFile, Erratum, VectorsFile
 from cobotwire_codegen.language.records import (
@@ -14,6 +14,7 @@ from cobotwire_codegen.language.records import (
     Described,
     InFile,
     InFiles,
+    Listed,
     Named,
     Part,
     Record,
@@ -31,9 +32,14 @@ _FRAME = "The frame format and the transport."
 class Acks(Record):
     """The acknowledgement of every command that has no other reply."""
 
-    field = required(Part(ReplyField), "The field of the reply; a bare frame is legal as well.")
+    field = optional(Part(ReplyField), "The field of the reply; a bare frame is legal as well.")
+    fields = optional(
+        Listed(ReplyField), "The fields of the reply, if it has several; a bare frame is not legal."
+    )
+    accepted = accepted_key()
     why = required(Text(), "The reason.")
     except_ = optional(Names(), "Commands that are not acknowledged.")
+    EXCLUSIVE = (("field", "fields"),)
     EXAMPLE = """\
 field: {name: done, type: flag}
 except: [set_ssid_pwd]

@@ -7,6 +7,7 @@ from cobotwire_codegen.language.json_schema import Schema, either
 from cobotwire_codegen.language.names import CASE, CLASS, LOWER, METHOD
 from cobotwire_codegen.language.records import (
     Choice,
+    Key,
     Listed,
     ListedTwice,
     Named,
@@ -29,6 +30,7 @@ from cobotwire_codegen.language.shapes import (
     YesNo,
 )
 from cobotwire_codegen.language.words import ROLES, SAFETY
+from cobotwire_codegen.load import Node
 
 _TYPE = Known("type_name", "the name of a type")
 
@@ -161,6 +163,18 @@ def _read_by() -> Schema:
     return either("object", {"type": "object", **query}, {"type": "string"})
 
 
+def accepted_key() -> Key[Node | None]:
+    """Return the key for the status values that mean success."""
+    return optional(
+        Anything(
+            "a list of members or raw numbers",
+            {"type": "array", "items": {"type": ["string", "integer"]}, "minItems": 1},
+        ),
+        "The values of the last field of the reply that report success; with any other one the "
+        "device has refused the request, or a motion has failed. Left out: all but 0.",
+    )
+
+
 class Command(Record):
     """A command: its id, its request and its reply. The key in `commands` names its method."""
 
@@ -198,6 +212,12 @@ class Command(Record):
         "The reply is an acknowledgement: it may come, come late or never, and clients do not wait "
         "for it.",
     )
+    event = optional(
+        YesNo(),
+        "The device sends the reply without a request: clients have a typed event instead of a "
+        "method. Its safety is `query`.",
+    )
+    accepted = accepted_key()
     alias = optional(
         Name(METHOD), "The command that has the same message; this name is its second one."
     )
@@ -227,7 +247,14 @@ class Command(Record):
     )
     notes = optional(Texts(), "Sentences for the reference.")
     disputed = facts.disputed()
-    EXCLUSIVE = (("request", "request_variants"), ("reply", "reply_variants"))
+    EXCLUSIVE = (
+        ("request", "request_variants"),
+        ("reply", "reply_variants"),
+        ("event", "request"),
+        ("event", "request_variants"),
+        ("event", "request_text"),
+        ("event", "ack"),
+    )
     EXAMPLE = """\
 id: 0x21
 title: Send one joint to an angle

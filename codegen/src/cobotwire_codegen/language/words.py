@@ -33,6 +33,7 @@ ROLES = {
     "stop": "Stops the arm.",
     "joints": "Reports the angles of all joints.",
     "coordinates": "Reports the pose of the end.",
+    "motion ended": "An event: a motion has ended; its last field is the status.",
     "powered": "Reports whether the motors have power.",
     "paused": "Reports whether the motion is paused.",
     "error": "Reports why the arm did not move; 0 is no error.",

@@ -99,6 +99,8 @@ class Command:
     the commands that use the same id with other data.
     ``samples`` are the raw values that a conformance run may send when not every legal value is
     harmless; ``agrees_with`` lists queries that report the same values while the arm rests.
+    The device sends the reply of an ``event`` without a request. ``accepted`` lists the raw values
+    of the last field of a reply that report success.
     ``arguments`` is the order of the method's arguments, if it is not that of the wire.
     """
 
@@ -114,6 +116,8 @@ class Command:
     requests: tuple[Variant, ...]
     replies: tuple[Variant, ...]
     ack: bool
+    event: bool
+    accepted: tuple[int, ...]
     alias: str
     shares_id: tuple[str, ...]
     text: Text | None
@@ -173,7 +177,7 @@ class Command:
     @property
     def awaits_reply(self) -> bool:
         """Whether a client waits for a reply."""
-        return (bool(self.replies) and not self.ack) or self.text is not None
+        return (bool(self.replies) and not self.ack and not self.event) or self.text is not None
 
 
 @dataclass(frozen=True, slots=True)

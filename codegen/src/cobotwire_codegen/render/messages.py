@@ -50,6 +50,8 @@ class MessageClass:
 
 def message_classes(command: Command) -> tuple[MessageClass, ...]:
     """Return the class of the request, and that of the reply if there is one."""
+    if command.event:
+        return (_event(command),)
     if not command.replies and command.text is None:
         return (_request(command),)
     return _request(command), _reply(command)
@@ -137,6 +139,17 @@ def _reply(command: Command) -> MessageClass:
         (f"Reply[{returns(command)}]", *keywords),
         f"{kind} {command.name}.",
         tuple(fields),
+    )
+
+
+def _event(command: Command) -> MessageClass:
+    reply = _reply(command)
+    keywords = [part for part in reply.parts[1:] if not part.startswith(("to=", "result"))]
+    return MessageClass(
+        message_class(command.name),
+        ("Event", f'event="{command.name}"', *keywords),
+        f"{command.title}; the device sends it without a request.",
+        reply.fields,
     )
 
 

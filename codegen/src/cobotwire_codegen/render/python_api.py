@@ -34,7 +34,9 @@ def overload_signatures(command: Command, way: Way = BLOCKING) -> list[str]:
 
 
 def signatures(command: Command) -> list[str]:
-    """Return every form in which a method can be called, on one line each."""
+    """Return every form in which a method can be called, on a line each; of an event its class."""
+    if command.event:
+        return [message_class(command.name)]
     heads = overload_signatures(command) or [signature(command)]
     return [oneline(head.removesuffix(" ...")) for head in heads]
 
@@ -121,8 +123,8 @@ def item_doc(item: Quantity) -> str:
 
 def imports(family: Family) -> tuple[set[str], bool]:
     """Return the enums and named tuples of a family's methods, and whether these use Sequence."""
-    used = set().union(*(classes_in_method(command) for command in family.commands))
-    found = (argument for command in family.commands for argument in arguments(command))
+    used = set().union(*(classes_in_method(command) for command in methods(family)))
+    found = (argument for command in methods(family) for argument in arguments(command))
     return used, any("Sequence[" in argument.annotation for argument in found)
 
 
@@ -130,7 +132,12 @@ def typing_names(family: Family) -> list[str]:
     """Return what a family's methods import from ``typing``."""
     used, sequence = imports(family)
     names = ["TYPE_CHECKING"] if used or sequence else []
-    return names + (["overload"] if any(map(overloads, family.commands)) else [])
+    return names + (["overload"] if any(map(overloads, methods(family))) else [])
+
+
+def methods(family: Family) -> list[Command]:
+    """Return the commands that become methods: all but the events."""
+    return [command for command in family.commands if not command.event]
 
 
 def moves(edition: Edition) -> bool:

@@ -120,7 +120,11 @@ class Sharing:
                 shared += [(module, found.name) for found in message_classes(command)]
         # ruff sorts by module and then by name.
         again = [import_line(module, [f"{name} as {name}"]) for module, name in sorted(shared)]
-        bases = [n for n in ("Reply", "Request") if any(c.parts[0].startswith(n) for c in classes)]
+        bases = [
+            n
+            for n in ("Event", "Reply", "Request")
+            if any(c.parts[0].startswith(n) for c in classes)
+        ]
         if bases:
             lines.append(import_line("cobotwire.protocol.messages", bases))
         again += local_imports(self.edition, used)

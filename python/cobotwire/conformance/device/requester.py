@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -149,11 +150,22 @@ class Requester:
                 continue
             address = self._codec.table.frame.address(event.data)
             own = event.command == command.id and can_come_from(address, request)
+            if self._is_event(event):
+                continue
             if own and command.reply:
                 response.replies.append(self._read(event, self._connection.now - start, command))
             else:
                 response.others.append(event)
         self._keep(response, self._diagnoser.feed(events))
+
+    def _is_event(self, frame: Frame) -> bool:
+        """Return whether a frame is a legal event: the device may send it at any time."""
+        for command in self._codec.table.commands:
+            if command.event and command.id == frame.command:
+                with suppress(ProtocolError):
+                    frame.decode("reply", of=command.name)
+                    return True
+        return False
 
     def _keep(self, response: Response, items: Sequence[Frame | Finding]) -> None:
         response.findings.extend(item for item in items if isinstance(item, Finding))

@@ -82,6 +82,14 @@ EXPLANATIONS = (
         "id: 0x23\ntitle: Set a pin",
     ),
     Explanation(
+        "bad-event",
+        "An event has a request, an acknowledgement or no reply, or its safety is not `query`.",
+        "The device sends it without a request, so there is nothing to send or to acknowledge.",
+        "State only its reply, and safety `query`.",
+        "id: 0x23\nevent: true\ntitle: Set a pin",
+        "id: 0x23\ntitle: Set a pin",
+    ),
+    Explanation(
         "bad-read-back",
         "A command's `read_by` names a query that does not report what the command sets.",
         "A conformance run sets, queries and compares; it needs the fields of both.",

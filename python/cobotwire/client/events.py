@@ -1,0 +1,134 @@
+"""Which events a client wants, the queue of those that wait, and handlers that are called."""
+
+from __future__ import annotations
+
+import sys
+from collections import deque
+from collections.abc import Callable
+from inspect import iscoroutinefunction
+from typing import Any, Generic, TypeVar
+
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.messages import Event
+from cobotwire.protocol.table import Address, Table
+from cobotwire.session import EventReceived, Traffic
+
+EventT = TypeVar("EventT", bound=Event)
+
+# How many events wait for a loop that is busy, unless the caller says otherwise.
+CAPACITY = 1000
+
+
+class Wanted:
+    """The events that a stream or a handler wants."""
+
+    def __init__(
+        self, table: Table, types: tuple[type[Event], ...], address: Address | None
+    ) -> None:
+        """Take the types, none for all; and the address of the client.
+
+        Raises:
+            UsageError: a type is not an event of the edition, or the edition has no events.
+        """
+        known = [command.name for command in table.commands if command.event]
+        if not known:
+            message = f"edition {table.edition} has no events"
+            raise UsageError("events", message=message)
+        for type in types:
+            if getattr(type, "command", None) not in known:
+                raise UsageError("events", type, f"events of the edition: {', '.join(known)}")
+        self._names = frozenset(type.command for type in types) or frozenset(known)
+        # An address of several devices has the events of all.
+        self._address = address.value if address and address.replies == "own" else None
+
+    def event_of(self, traffic: Traffic) -> Event | None:
+        """Return the event in what was received; None if it is none, or another one."""
+        found = traffic.event
+        if not isinstance(found, EventReceived) or found.command.name not in self._names:
+            return None
+        if self._address is not None and found.message.address != self._address:
+            return None
+        event: Any = found.message.typed
+        return event  # type: ignore[no-any-return]  # the reply of an event command is an Event
+
+
+class EventQueue:
+    """Events that wait for their consumer; a full queue drops the oldest and counts it.
+
+    Attributes:
+        lost: how many were dropped.
+    """
+
+    def __init__(self, wanted: Wanted, capacity: int) -> None:
+        """Keep at most ``capacity`` events.
+
+        Raises:
+            UsageError: the capacity is not a positive whole number.
+        """
+        if not isinstance(capacity, int) or isinstance(capacity, bool) or capacity < 1:
+            raise UsageError("capacity", capacity, "a whole number above 0")
+        self._wanted = wanted
+        self._waiting: deque[Event] = deque()
+        self._capacity = capacity
+        self.lost = 0
+
+    def take(self, traffic: Traffic) -> None:
+        """Queue what was received, if it is an event that is wanted."""
+        event = self._wanted.event_of(traffic)
+        if event is None:
+            return
+        if len(self._waiting) >= self._capacity:
+            self._waiting.popleft()
+            self.lost += 1
+        self._waiting.append(event)
+
+    def next(self) -> Any:
+        """Return the oldest event; None if none waits."""
+        try:
+            return self._waiting.popleft()
+        except IndexError:
+            return None
+
+    @property
+    def filled(self) -> bool:
+        """Whether an event waits."""
+        return bool(self._waiting)
+
+
+class EventHandler(Generic[EventT]):
+    """A function that is called with each event; see :meth:`cobotwire.client.Client.on`.
+
+    Attributes:
+        failures: how often the function has raised an error.
+        error: the last of these errors.
+    """
+
+    def __init__(self, wanted: Wanted, handler: Callable[[EventT], object]) -> None:
+        if not callable(handler) or iscoroutinefunction(handler):
+            raise UsageError("handler", handler, "a function, not a coroutine: use events() there")
+        self._wanted, self._handler = wanted, handler
+        self._remove: Callable[[], None] | None = None
+        self.failures = 0
+        self.error: Exception | None = None
+
+    def start(self, add: Callable[[Callable[[Traffic], None]], Callable[[], None]]) -> None:
+        """Have the function called from now on, by a traffic listener."""
+        self._remove = add(self._take)
+
+    def remove(self) -> None:
+        """Have the function called no longer. Removing twice is harmless."""
+        if self._remove is not None:
+            self._remove()
+            self._remove = None
+
+    def _take(self, traffic: Traffic) -> None:
+        event: Any = self._wanted.event_of(traffic)
+        if event is None:
+            return
+        try:
+            self._handler(event)
+        except Exception as error:
+            # The call that happened to read the event is not to blame.
+            self.failures += 1
+            self.error = error
+            sys.excepthook(type(error), error, error.__traceback__)

@@ -1,0 +1,322 @@
+"""Messages that a device sends without a request, and motions that end with one."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cobotwire import MotionTimeout, ReplyTimeout, RequestRefused, UsageError
+from cobotwire import codec as codecs
+from cobotwire.client.events import EventQueue, Wanted
+from cobotwire.codec.interface import Frame
+from cobotwire.conformance.device import DeviceConnection, Tester
+from cobotwire.protocol.messages import Event
+from cobotwire.session import EventReceived, Traffic
+from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
+from cobotwire_codegen.errors import SpecError
+from trial_specs import HEAD, edition_of, package_of
+
+STAGED = f"""
+{HEAD}
+joints: 3
+frame:
+  frame:
+    header: FE FE
+    check: crc16-modbus
+    length_counts: [command, data, check]
+    maximum_data: 24
+    doc: FE FE LEN CMD DATA and a CRC.
+  transport: {{baudrate: 115200, deadline_ms: 200}}
+acks:
+  fields: [{{name: mark, type: mark, const: 255}}, {{name: status, type: status}}]
+  accepted: [ACCEPTED]
+  why: Each setter is accepted or refused.
+types:
+  wire:
+    byte: {{bytes: 1, doc: A byte.}}
+    word: {{bytes: 2, signed_at: 32767, doc: A signed word.}}
+  quantities:
+    mark: {{wire: byte, doc: A mark.}}
+    angle: {{wire: word, scale: 1/100, unit: degree, doc: An angle.}}
+    percent: {{wire: byte, range: [1, 100], unit: percent, doc: A speed.}}
+    number: {{wire: byte, doc: A number.}}
+  flags:
+    flag: {{wire: byte, doc: Yes or no.}}
+  enums:
+    status:
+      class: Status
+      wire: byte
+      doc: How it went.
+      members:
+        REFUSED: {{value: 0, doc: It is not carried out.}}
+        ACCEPTED: {{value: 1, doc: It is carried out.}}
+        NO_POWER: {{value: 3, doc: The arm has no power.}}
+  values:
+    angles: {{class: Angles, doc: The angles., items: {{j1: angle, j2: angle, j3: angle}}}}
+commands:
+  power_on: {{id: 0x10, title: Power on, doc: Powers the arm., safety: power}}
+  get_angles:
+    {{id: 0x20, title: Angles, doc: Angles., safety: query, role: joints,
+     reply: [{{name: angles, type: angles}}]}}
+  send_angles:
+    {{id: 0x22, title: Send, doc: Sends., safety: motion, role: joint targets,
+     request: [{{name: angles, type: angles}}, {{name: speed, type: percent}}]}}
+  stop: {{id: 0x29, title: Stop, doc: Stops., safety: motion, role: stop}}
+  motion_ended:
+    {{id: 0x5B, title: Motion ended, doc: A motion has ended., safety: query, event: true,
+     role: motion ended, accepted: [ACCEPTED], reply: [{{name: status, type: status}}]}}
+  button_pressed:
+    {{id: 0x5C, title: Button, doc: A button was pressed., safety: query, event: true,
+     reply: [{{name: button, type: number}}, {{name: mark, type: mark, const: 7}}]}}
+"""
+
+
+@pytest.fixture(scope="module")
+def staged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Yield the package of a robot with events."""
+    with package_of(STAGED, tmp_path_factory.mktemp("staged")) as package:
+        yield package
+
+
+def frame(package: Any, name: str, *values: Any) -> bytes:
+    """Return the bytes of a reply or event."""
+    return codecs.load(package.TABLE).encode(name, "reply", values)
+
+
+class Peer:
+    """Send fixed bytes after each request."""
+
+    wait = None
+
+    def __init__(self, *sent: bytes) -> None:
+        self.received = b""
+        self._sent = list(sent)
+
+    def receive(self, data: bytes) -> bytes:
+        self.received += data
+        return self._sent.pop(0) if self._sent else b""
+
+    def flush(self) -> bytes:
+        return b""
+
+
+@pytest.mark.parametrize("codec", ["reference", "native"])
+def test_event_is_a_typed_message_without_a_request(staged: Any, codec: codecs.CodecName) -> None:
+    used = codecs.load(staged.TABLE, codec)
+    message = used.decode("reply", frame(staged, "button_pressed", 3, 7))
+    assert message.typed == staged.ButtonPressed(button=3)
+    assert isinstance(message.typed, Event)
+    assert message.typed.values == (3, 7)
+    with pytest.raises(UsageError):
+        used.encode("button_pressed", "request", ())
+    assert not hasattr(staged.Trial, "button_pressed")
+
+
+def test_event_between_request_and_reply_is_queued(staged: Any) -> None:
+    both = frame(staged, "button_pressed", 1, 7) + frame(staged, "get_angles", (1.0, 2.0, 3.0))
+    traffic: list[Traffic] = []
+    arm = staged.Trial(MemoryTransport(Peer(both)), trace=traffic.append)
+    with arm.events(staged.ButtonPressed, timeout=0.05) as events:
+        assert arm.get_angles() == (1.0, 2.0, 3.0)
+        assert list(events) == [staged.ButtonPressed(1)]
+    assert [type(one.event) for one in traffic[1:2]] == [EventReceived]
+
+
+def test_stream_yields_only_the_events_of_its_types(staged: Any) -> None:
+    sent = [frame(staged, "button_pressed", n, 7) for n in range(3)]
+    arm = staged.Trial(MemoryTransport(Peer(frame(staged, "motion_ended", 1).join(sent))))
+    some = arm.events(staged.ButtonPressed, timeout=0.05)
+    every = arm.events(timeout=0.05)
+    arm.stop()
+    assert [event.button for event in some] == [0, 1, 2]
+    assert [type(event).__name__ for event in every][1] == "MotionEnded"
+
+
+def test_full_queue_drops_the_oldest_and_counts_it(staged: Any) -> None:
+    sent = b"".join(frame(staged, "button_pressed", n, 7) for n in range(5))
+    arm = staged.Trial(MemoryTransport(Peer(sent)))
+    events = arm.events(capacity=2, timeout=0.05)
+    arm.stop()
+    arm.listen(0.01)
+    assert [event.button for event in events] == [3, 4]
+    assert events.lost == 3
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.integers(0, 255)), st.integers(1, 5))
+def test_queue_keeps_the_newest_events_and_counts_the_others(
+    staged: Any, buttons: list[int], capacity: int
+) -> None:
+    queue = EventQueue(Wanted(staged.TABLE, (), None), capacity)
+    codec = codecs.load(staged.TABLE)
+    command = staged.TABLE.command("button_pressed")
+    for button in buttons:
+        data = frame(staged, "button_pressed", button, 7)
+        found = Frame(0, data, command.id)
+        event = EventReceived(command, codec.decode("reply", data), found)
+        queue.take(Traffic(0.0, "received", data, event))
+    kept = [event.button for event in iter(queue.next, None)]
+    assert kept == buttons[-capacity:]
+    assert queue.lost == len(buttons) - len(kept)
+
+
+def test_handler_is_called_and_its_errors_are_reported(
+    staged: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen, errors = [], []
+    monkeypatch.setattr("sys.excepthook", lambda kind, error, traceback: errors.append(error))
+
+    def handle(event: Any) -> None:
+        seen.append((event.button, threading.get_ident()))
+        if event.button == 1:
+            raise ValueError("a mistake")
+
+    both = b"".join(frame(staged, "button_pressed", n, 7) for n in (1, 2))
+    arm = staged.Trial(MemoryTransport(Peer(both + frame(staged, "get_angles", (0, 0, 0)))))
+    handler = arm.on(staged.ButtonPressed, handle)
+    arm.get_angles()
+    assert seen == [(1, threading.get_ident()), (2, threading.get_ident())]
+    assert [str(error) for error in errors] == ["a mistake"]
+    assert (handler.failures, handler.error) == (1, errors[0])
+    handler.remove()
+    handler.remove()
+
+
+def test_wrong_event_or_handler_is_an_error(staged: Any) -> None:
+    async def coroutine(event: Any) -> None:
+        pass
+
+    arm = staged.Trial(MemoryTransport(Peer()))
+    with pytest.raises(UsageError, match="motion_ended, button_pressed"):
+        arm.events(staged.GetAngles)
+    with pytest.raises(UsageError, match="a function"):
+        arm.on(staged.ButtonPressed, coroutine)
+    with pytest.raises(UsageError, match="capacity"):
+        arm.events(capacity=0)
+    from cobotwire import MyCobot280
+
+    with pytest.raises(UsageError, match="has no events"):
+        MyCobot280(MemoryTransport(Peer())).events()
+
+
+def test_asyncio_client_iterates_events(staged: Any) -> None:
+    async def collect(url: str) -> list[Any]:
+        async with staged.AsyncTrial(url) as arm:
+            await arm.power_on(ack_within=2)
+            seen: list[Any] = []
+            arm.on(staged.MotionEnded, seen.append)
+            async with arm.events(staged.MotionEnded, timeout=5) as events:
+                await arm.send_angles((3.0, 0.0, 0.0), 100, ack_within=2)
+                async for event in events:
+                    return [event, *seen]
+            return []
+
+    with PtyServer(SimulatedArm(staged.TABLE)) as server:
+        ended = staged.MotionEnded(staged.Status.ACCEPTED)
+        assert asyncio.run(collect(server.url)) == [ended, ended]
+
+
+def test_refused_status_is_an_error_with_its_word(staged: Any) -> None:
+    arm = staged.Trial(MemoryTransport(Peer(frame(staged, "power_on", 255, 3))))
+    with pytest.raises(RequestRefused, match=r"power_on\(\): status is NO_POWER \(3\)") as caught:
+        arm.power_on(ack_within=0.5)
+    assert (caught.value.field, caught.value.status) == ("status", "NO_POWER (3)")
+    accepted = staged.Trial(MemoryTransport(Peer(frame(staged, "power_on", 255, 1))))
+    accepted.power_on(ack_within=0.5)
+    with pytest.raises(ReplyTimeout):
+        accepted.power_on(ack_within=0.05)
+
+
+def test_waited_motion_ends_with_its_event(staged: Any) -> None:
+    clock = SteppedClock()
+    simulated = SimulatedArm(staged.TABLE, clock=clock, powered=True)
+    traffic: list[Traffic] = []
+    arm = staged.Trial(MemoryTransport(simulated, clock), trace=traffic.append)
+    arm.move_angles((60.0, 0.0, 0.0), 50)
+    assert arm.get_angles() == (60.0, 0.0, 0.0)
+    queries = [one for one in traffic if one.direction == "sent" and one.data[3] == 0x20]
+    # One at the start, one a second, one after the event, and that of this test.
+    assert 3 <= len(queries) <= 5
+    assert EventReceived in [type(one.event) for one in traffic]
+
+
+def test_refused_motion_is_not_waited_for(staged: Any) -> None:
+    peer = Peer(frame(staged, "send_angles", 255, 3))
+    arm = staged.Trial(MemoryTransport(peer))
+    with pytest.raises(RequestRefused, match="NO_POWER"):
+        arm.move_angles((60.0, 0.0, 0.0), 50)
+
+
+def test_motion_that_ends_with_a_bad_status_is_stopped(staged: Any) -> None:
+    here = frame(staged, "get_angles", (0.0, 0.0, 0.0))
+    peer = Peer(frame(staged, "send_angles", 255, 1), here + frame(staged, "motion_ended", 0))
+    arm = staged.Trial(MemoryTransport(peer))
+    with pytest.raises(RequestRefused, match=r"REFUSED \(0\)"):
+        arm.move_angles((60.0, 0.0, 0.0), 50)
+    assert peer.received.endswith(codecs.load(staged.TABLE).encode("stop", "request", ()))
+
+
+def test_lost_event_is_made_up_for_by_queries(staged: Any) -> None:
+    there = frame(staged, "get_angles", (60.0, 0.0, 0.0))
+    away = frame(staged, "get_angles", (0.0, 0.0, 0.0))
+    clock = SteppedClock()
+    transport = MemoryTransport(Peer(frame(staged, "send_angles", 255, 1), away, there), clock)
+    staged.Trial(transport).move_angles((60.0, 0.0, 0.0), 50)
+    assert clock() < 3
+
+
+def test_arm_without_power_reports_no_end(staged: Any) -> None:
+    clock = SteppedClock()
+    transport = MemoryTransport(SimulatedArm(staged.TABLE, clock=clock), clock)
+    with pytest.raises(MotionTimeout):
+        staged.Trial(transport).move_angles((60.0, 0.0, 0.0), 50, timeout=2)
+
+
+class Chatty:
+    """An arm that sends an event before each reply."""
+
+    def __init__(self, arm: SimulatedArm, event: bytes) -> None:
+        self._arm, self._event = arm, event
+
+    @property
+    def wait(self) -> float | None:
+        return self._arm.wait
+
+    def receive(self, data: bytes) -> bytes:
+        return self._event + self._arm.receive(data)
+
+    def flush(self) -> bytes:
+        return self._arm.flush()
+
+
+@pytest.mark.parametrize("mark", [7, 8])
+def test_device_may_send_events_at_any_time(staged: Any, mark: int) -> None:
+    clock = SteppedClock()
+    legal = frame(staged, "button_pressed", 3, 7)
+    data = bytes.fromhex("FE FE 05 5C 03") + bytes([mark])
+    sent = legal if mark == 7 else data + staged.TABLE.frame.end(data)
+    arm = Chatty(SimulatedArm(staged.TABLE, clock=clock), sent)
+    report = Tester(DeviceConnection(MemoryTransport(arm, clock), clock), staged.TABLE).run()
+    assert report.conforms == (mark == 7)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        ("accepted: [ACCEPTED]\n  why", "accepted: [DONE]\n  why", "wrong-kind"),
+        ("event: true,\n     reply", "event: true,\n     ack: true, reply", "bad-event"),
+    ],
+)
+def test_wrong_statement_is_reported(tmp_path: Any, old: str, new: str, code: str) -> None:
+    assert old in STAGED
+    try:
+        _, problems = edition_of(STAGED.replace(old, new), tmp_path)
+    except SpecError as error:
+        problems = list(error.problems)
+    assert code in [problem.code for problem in problems]
