@@ -28,9 +28,23 @@ def repeats_arguments(message: DecodedMessage, request: EncodedRequest) -> bool:
     return all(request.arguments.get(name, fields[name]) == fields[name] for name in repeated)
 
 
+def is_of_command(frame: Frame, request: EncodedRequest) -> bool:
+    """Return whether a frame can be a reply of the request's command, whatever its values.
+
+    The command id tells; in a format without ids in replies, the size does.
+    """
+    if request.reply_has_id:
+        return frame.command == request.command.id
+    try:
+        frame.decode("reply", of=request.command.name)
+    except ProtocolError as error:
+        return error.reason == "bad-value"
+    return True
+
+
 def can_reply_to(frame: Frame, request: EncodedRequest) -> bool:
     """Return whether a frame is a legal reply to a request that is no longer waited for."""
-    if frame.command != request.command.id or frame.data == request.frame:
+    if not is_of_command(frame, request) or frame.data == request.frame:
         # The request's own bytes may be only their echo, with the reply still to come.
         return False
     try:
@@ -46,8 +60,12 @@ def replies_elsewhere(frame: Frame, command: Command, table: Table) -> bool:
     A constant in each reply tells them apart, for instance the number of the register that a device
     behind the arm reports. The rest of such a reply may be illegal.
     """
-    data = table.frame.data(frame.data)
-    others = [c for c in table.commands if c.id == frame.command and c is not command and c.reply]
+    data, has_id = table.frame.data(frame.data, "reply"), table.frame.reply_has_id
+    others = [
+        other
+        for other in table.commands
+        if (other.id == frame.command or not has_id) and other is not command and other.reply
+    ]
     return bool(others) and not any(_has_constants(v, data) for v in command.reply)
 
 
@@ -71,7 +89,7 @@ def _exclusive(one: Command, other: Command) -> bool:
 def replies_differ(one: EncodedRequest, other: EncodedRequest) -> bool:
     """Return whether no reply to one request can be mistaken for a reply to the other."""
     command = other.command
-    if one.command.id != command.id or not repliers_meet(one, other):
+    if (one.reply_has_id and one.command.id != command.id) or not repliers_meet(one, other):
         return True
     if one.command.name != command.name:
         return _exclusive(one.command, command)

@@ -105,7 +105,7 @@ class OtherFrames:
         if is_copy:
             self._echo.prove()
             return self._note(EchoReceived(frame), waiting)
-        if self._outstanding.has_id(frame.command):
+        if self._outstanding.has_command(frame):
             return self._note(UnexpectedFrame(frame), waiting)
         if len(waiting.attempt_times) > 1:
             self._outstanding.expect_late(waiting, 1)

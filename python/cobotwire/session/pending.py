@@ -8,6 +8,7 @@ from typing import Any
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.errors import CobotwireError, LinkError, ReplyTimeout
 from cobotwire.session.events import FrameEvent
+from cobotwire.session.matching import is_of_command
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.received import ReceivedMeanwhile
 from cobotwire.session.request import EncodedRequest, as_call
@@ -187,8 +188,8 @@ class PendingRequest(Pending):
 
     def accepts(self, frame: Frame) -> bool:
         """Return whether a frame has its command id and began after it was sent."""
-        command = self.request.command
-        return frame.command == command.id and frame.offset >= self.offset and bool(command.reply)
+        expected = frame.offset >= self.offset and bool(self.request.command.reply)
+        return expected and is_of_command(frame, self.request)
 
     def keep_candidate(self, message: DecodedMessage) -> None:
         """Keep a copy of the request, which counts if no other reply comes."""

@@ -20,6 +20,7 @@ class EncodedRequest(NamedTuple):
     ``arguments`` are those that a reply can repeat, with the values that it would repeat; empty
     where no reply repeats any. ``text`` follows some requests outside the frame. ``replier`` is
     the address that its reply must have, ANYBODY or NOBODY; None if frames have no address.
+    Without ``reply_has_id`` its reply is known only by address and size.
     """
 
     command: Command
@@ -27,6 +28,7 @@ class EncodedRequest(NamedTuple):
     text: bytes
     arguments: dict[str, Any]
     replier: int | None = None
+    reply_has_id: bool = True
 
 
 class RequestEncoder:
@@ -38,6 +40,7 @@ class RequestEncoder:
         self._to = address or find_address(codec.table, None)
         self._address = None if self._to is None else self._to.value
         self._replier = replier_of(self._to)
+        self._reply_has_id = codec.table.frame.reply_has_id
         # The commands that were used, and whether a reply can repeat arguments of theirs.
         self._commands: dict[str, tuple[Command, bool]] = {}
         # A request without arguments is always the same bytes.
@@ -78,11 +81,11 @@ class RequestEncoder:
         frame = self._codec.encode(name, "request", values, variant=variant, address=self._address)
         if command.request_text is not None:
             sent_text = text.encode(command.request_text, text_values or {})
-            return EncodedRequest(command, frame, sent_text, {}, self._replier)
+            return EncodedRequest(command, frame, sent_text, {}, self._replier, self._reply_has_id)
         # Decoding our own frame gives the arguments as a reply would repeat them.
         message = self._codec.decode("request", frame, of=name) if can_repeat else None
         arguments = message.fields if message is not None else {}
-        request = EncodedRequest(command, frame, b"", arguments, self._replier)
+        request = EncodedRequest(command, frame, b"", arguments, self._replier, self._reply_has_id)
         if not values:
             self._known[name] = request
         return request
@@ -105,7 +108,8 @@ def request_of(frame: bytes, codec: Codec) -> EncodedRequest | None:
         return None
     arguments = message.fields if _can_repeat(message.command) else {}
     replier = replier_of(find_address(codec.table, message.address))
-    return EncodedRequest(message.command, frame, b"", arguments, replier)
+    has_id = codec.table.frame.reply_has_id
+    return EncodedRequest(message.command, frame, b"", arguments, replier, has_id)
 
 
 def check_acknowledged(request: EncodedRequest) -> None:

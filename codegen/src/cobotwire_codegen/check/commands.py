@@ -30,6 +30,9 @@ def replies_cover_command(edition: Edition) -> Iterator[Problem]:
             if sum(field.type.size for field in variant) < frame.sizes["command"]:
                 message = f"a reply of {command.name} has no data in the place of CMD"
                 yield Problem(command.place, "bad-frame", message)
+        if command.ack:
+            message = f"an acknowledgement of {command.name} cannot be told apart without CMD"
+            yield Problem(command.place, "bad-frame", message)
 
 
 def payload_fits(edition: Edition) -> Iterator[Problem]:
