@@ -28,23 +28,9 @@ def repeats_arguments(message: DecodedMessage, request: EncodedRequest) -> bool:
     return all(request.arguments.get(name, fields[name]) == fields[name] for name in repeated)
 
 
-def is_of_command(frame: Frame, request: EncodedRequest) -> bool:
-    """Return whether a frame can be a reply of the request's command, whatever its values.
-
-    The command id tells; in a format without ids in replies, the size does.
-    """
-    if request.reply_has_id:
-        return frame.command == request.command.id
-    try:
-        frame.decode("reply", of=request.command.name)
-    except ProtocolError as error:
-        return error.reason == "bad-value"
-    return True
-
-
 def can_reply_to(frame: Frame, request: EncodedRequest) -> bool:
     """Return whether a frame is a legal reply to a request that is no longer waited for."""
-    if not is_of_command(frame, request) or frame.data == request.frame:
+    if not request.can_have_reply(frame) or frame.data == request.frame:
         # The request's own bytes may be only their echo, with the reply still to come.
         return False
     try:

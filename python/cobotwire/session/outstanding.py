@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from cobotwire.codec.interface import Frame
-from cobotwire.session.matching import can_reply_to, is_of_command, replies_differ
+from cobotwire.session.matching import can_reply_to, replies_differ
 from cobotwire.session.pending import PendingRequest
 from cobotwire.session.request import EncodedRequest
 
@@ -67,7 +67,7 @@ class OutstandingReplies:
 
     def has_command(self, frame: Frame) -> bool:
         """Return whether a reply of the frame's command is outstanding."""
-        return any(is_of_command(frame, reply.request) for reply in self.replies)
+        return any(reply.request.can_have_reply(frame) for reply in self.replies)
 
 
 def late_replies(pending: PendingRequest, received: int) -> list[OutstandingReply]:

@@ -8,7 +8,6 @@ from typing import Any
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.errors import CobotwireError, LinkError, ReplyTimeout
 from cobotwire.session.events import FrameEvent
-from cobotwire.session.matching import is_of_command
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.received import ReceivedMeanwhile
 from cobotwire.session.request import EncodedRequest, as_call
@@ -189,7 +188,7 @@ class PendingRequest(Pending):
     def accepts(self, frame: Frame) -> bool:
         """Return whether a frame has its command id and began after it was sent."""
         expected = frame.offset >= self.offset and bool(self.request.command.reply)
-        return expected and is_of_command(frame, self.request)
+        return expected and self.request.can_have_reply(frame)
 
     def keep_candidate(self, message: DecodedMessage) -> None:
         """Keep a copy of the request, which counts if no other reply comes."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from cobotwire.codec.interface import Codec
+from cobotwire.codec.interface import Codec, Frame
 from cobotwire.protocol.addresses import NOBODY, address_name, find_address, replier_of
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.messages import Request, Result
@@ -29,6 +29,19 @@ class EncodedRequest(NamedTuple):
     arguments: dict[str, Any]
     replier: int | None = None
     reply_has_id: bool = True
+
+    def can_have_reply(self, frame: Frame) -> bool:
+        """Return whether a frame can be a reply of this command, whatever its values.
+
+        The command id tells; in a format without ids in replies, the size does.
+        """
+        if self.reply_has_id:
+            return frame.command == self.command.id
+        try:
+            frame.decode("reply", of=self.command.name)
+        except ProtocolError as error:
+            return error.reason == "bad-value"
+        return True
 
 
 class RequestEncoder:

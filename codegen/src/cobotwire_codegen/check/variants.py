@@ -15,11 +15,13 @@ _DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
 def variants_apart(edition: Edition) -> Iterator[Problem]:
     """Report messages of one id, direction and length that a decoder cannot distinguish."""
     for direction in _DIRECTIONS:
-        seen: dict[tuple[int, int], list[tuple[Command, Variant]]] = {}
+        # Replies without an id are paired with their request by address and size.
+        named = edition.frame.has_command(direction)
+        seen: dict[tuple[int | str, int], list[tuple[Command, Variant]]] = {}
         for command in edition.commands:
             for variant in command.variants(direction):
                 length = sum(field.type.size for field in variant)
-                others = seen.setdefault((command.id, length), [])
+                others = seen.setdefault((command.id if named else command.name, length), [])
                 for other, known in others:
                     if not _apart(command, variant, other, known, direction):
                         message = (

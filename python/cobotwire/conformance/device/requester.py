@@ -149,7 +149,7 @@ class Requester:
             if not isinstance(event, Frame):
                 continue
             address = self._codec.table.frame.address(event.data)
-            own = event.command == command.id and can_come_from(address, request)
+            own = request.can_have_reply(event) and can_come_from(address, request)
             if self._is_event(event):
                 continue
             if own and command.reply:

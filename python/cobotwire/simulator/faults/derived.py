@@ -72,7 +72,9 @@ def _faults(exchange: Exchange, command: Command, where: _Where, codec: Codec) -
     data = b"".join(chunk for _, chunk in exchange.chunks)
     framer = codec.framer("reply")
     events = [*framer.feed(data), *framer.flush()]
-    replies = [e for e in events if isinstance(e, Frame) and e.command == command.id]
+    has_id = codec.table.frame.reply_has_id
+    found = [event for event in events if isinstance(event, Frame)]
+    replies = [reply for reply in found if reply.command == command.id or not has_id]
     if not replies:
         # A reply of text has no frame: it is lost only if nothing arrived.
         if command.reply and (command.requires_reply or command.ack):
