@@ -16,6 +16,8 @@ from cobotwire import codec as codecs
 from cobotwire.client.events import EventQueue, Wanted
 from cobotwire.codec.interface import Frame
 from cobotwire.conformance.device import DeviceConnection, Tester
+from cobotwire.inspect.doctor import harmless_queries
+from cobotwire.inspect.evidence import bare_queries
 from cobotwire.protocol.messages import Event
 from cobotwire.session import EventReceived, Traffic
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
@@ -276,6 +278,11 @@ def test_arm_without_power_reports_no_end(staged: Any) -> None:
     transport = MemoryTransport(SimulatedArm(staged.TABLE, clock=clock), clock)
     with pytest.raises(MotionTimeout):
         staged.Trial(transport).move_angles((60.0, 0.0, 0.0), 50, timeout=2)
+
+
+def test_tools_send_nothing_for_an_event(staged: Any) -> None:
+    assert [query.name for query in bare_queries(staged.TABLE)] == ["get_angles"]
+    assert [query.name for query in harmless_queries(staged.TABLE)] == ["get_angles"]
 
 
 class Chatty:

@@ -18,6 +18,7 @@ from cobotwire.cli.shared.call_arguments import parse
 from cobotwire.cli.shared.completers import complete_commands, complete_ports
 from cobotwire.cli.shared.output import as_json_value, format_result
 from cobotwire.inspect.readiness import check_accepted, check_ready
+from cobotwire.protocol.errors import UsageError
 from cobotwire.session.request import RequestEncoder
 
 
@@ -72,6 +73,9 @@ def call(
     package = editions.load(edition)
     to = None if address is None else parse_address(address)
     command = package.TABLE.command(name)
+    if command.event:
+        message = f"{name} is an event, which the device sends without a request"
+        raise UsageError("command", name, message=message)
     arguments = parse(command, args)
     # A bad value is reported before the arm is asked whether it obeys.
     RequestEncoder(codecs.load(package.TABLE)).encode_request(command.request_type(**arguments))

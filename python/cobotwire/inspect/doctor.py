@@ -87,7 +87,7 @@ def harmless_queries(table: Table) -> list[Command]:
     Other queries are not sent, because a query that a firmware did not know froze it until its
     power was cut.
     """
-    queries = [command for command in table.commands if command.safety == "query"]
+    queries = [c for c in table.commands if c.safety == "query" and not c.event]
     known = [command for command in queries if command.role in ROLES]
     if not known:
         bare = (c for c in queries if c.reply and not any(v.fields for v in c.request))

@@ -62,6 +62,7 @@ def bare_queries(table: Table) -> list[Command]:
         command
         for command in table.commands
         if command.safety == "query"
+        and not command.event
         and command.reply
         and not any(v.fields for v in command.request)
     ]
