@@ -21,13 +21,19 @@ from command_line import run_program
 from scripted_peer import ScriptedPeer
 
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
+ANGLES = bytes.fromhex("FE FE 0E 20" + "00 00" * 6 + "FA")
 VERSION = bytes.fromhex("FE FE 03 02 49 FA")
 REQUESTS = {
-    "mycobot": "FEFE0212FA FEFE0202FA FEFE0240FA",
-    "mycobot280": "FEFE0212FA FEFE0202FA FEFE021BFA",
+    "mycobot": "FEFE0212FA FEFE0220FA FEFE0202FA FEFE0240FA",
+    "mycobot280": "FEFE0212FA FEFE0220FA FEFE0202FA FEFE021BFA",
 }
 # Editions with a query that no other edition has; in the others a limit of a joint decides.
-OWN_QUERIES = {"mycobot": "get_speed", "mycobot280": "check_async_or_sync", "mecharm270": None}
+OWN_QUERIES = {
+    "mycobot": "get_speed",
+    "mycobot280": "check_async_or_sync",
+    "mecharm270": None,
+    "mypalletizer260": "get_angles",
+}
 
 
 @pytest.fixture(params=[(e, "pty") for e in names()] + [("mycobot280", "tcp")])
@@ -67,10 +73,10 @@ def test_connect_returns_the_client_of_the_arms_edition(arm: tuple[str, str]) ->
     edition, url = arm
     with connect(url, timeout=0.3) as client:
         assert type(client) is load(edition).CLIENT
-        client.set_tool_reference([100, 0, 0, 0, 0, 0])
-        assert client.get_tool_reference().x == 100
+        client.power_on()
+        assert client.is_power_on() is True
     with connect(url, timeout=0.3) as again:
-        assert again.is_power_on() is False
+        assert again.is_power_on() is True
 
 
 def test_connect_async_returns_an_open_asyncio_client(arm: tuple[str, str]) -> None:
@@ -88,7 +94,7 @@ def test_connect_without_a_reply_or_a_decision_names_the_queries_and_closes_the_
         with pytest.raises(EditionUnknown, match=r"is_power_on: no reply\); .*MyCobot280"):
             connect(peer.url, timeout=0.1)
         MyCobot280(peer.url).close()
-    with ScriptedPeer([POWERED]) as peer:
+    with ScriptedPeer([POWERED], [ANGLES]) as peer:
         with pytest.raises(EditionUnknown, match="get_system_version: no reply; get_speed: no rep"):
             connect(peer.url, timeout=0.1)
     with pytest.raises(LinkError):
@@ -99,7 +105,7 @@ def test_connect_without_a_reply_or_a_decision_names_the_queries_and_closes_the_
 def test_identify_sends_nothing_but_its_harmless_queries(edition: str) -> None:
     own = {"mycobot280": "FE FE 03 1B 01 FA", "mycobot": "FE FE 03 40 32 FA"}[edition]
     version = [VERSION] if edition == "mycobot280" else []
-    with ScriptedPeer([POWERED], version, [bytes.fromhex(own)]) as peer:
+    with ScriptedPeer([POWERED], [ANGLES], version, [bytes.fromhex(own)]) as peer:
         assert identify(peer.url, timeout=0.15).edition == edition
         received = {peer.received[at : at + 5] for at in range(0, len(peer.received), 5)}
         assert received == {bytes.fromhex(each) for each in REQUESTS[edition].split()}
@@ -113,7 +119,8 @@ def test_identify_verb_prints_edition_firmware_and_evidence(arm: tuple[str, str]
     assert first.startswith(f"{url}: edition {edition}")
     assert ("firmware" in first) == (edition != "mycobot")
     assert "is_power_on" in evidence[0]
-    decisive = f"only {edition} has this query" if OWN_QUERIES[edition] else f"in {edition}"
+    own = OWN_QUERIES[edition] not in (None, "get_angles")
+    decisive = f"only {edition} has this query" if own else f"in {edition}"
     assert decisive in evidence[-1]
 
 
@@ -125,7 +132,7 @@ def test_edition_without_a_query_of_its_own_is_known_by_a_limit_or_else_a_candid
         ("00 03 20", ""),
     ):
         reply = bytes.fromhex(f"FE FE 05 4B {limit} FA".replace("4B 00", "4B 03"))
-        with ScriptedPeer([POWERED], [VERSION], silent, [reply], [reply]) as peer:
+        with ScriptedPeer([POWERED], [ANGLES], [VERSION], silent, [reply], [reply]) as peer:
             found = identify(peer.url, timeout=0.15)
         assert found.edition == edition
         assert found.candidates == ((edition,) if edition else ("mecharm270", "mycobot280"))
@@ -134,8 +141,8 @@ def test_edition_without_a_query_of_its_own_is_known_by_a_limit_or_else_a_candid
 @pytest.mark.parametrize(
     ("replies", "edition", "code"),
     [
-        ([[POWERED], [VERSION], [bytes.fromhex("FE FE 03 1B 01 FA")]], "mycobot280", 0),
-        ([[POWERED]], "", 1),
+        ([[POWERED], [ANGLES], [VERSION], [bytes.fromhex("FE FE 03 1B 01 FA")]], "mycobot280", 0),
+        ([[POWERED], [ANGLES]], "", 1),
         ([], "", 4),
     ],
 )

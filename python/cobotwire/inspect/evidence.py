@@ -69,13 +69,41 @@ def bare_queries(table: Table) -> list[Command]:
 
 
 def own_query(table: Table, others: Iterable[Table]) -> Command | None:
-    """Return a query without arguments with an id that no other edition has; None: there is none.
+    """Return a query without arguments to which only this edition has a legal reply; or None.
 
-    If the query of the version is such a query, it is returned.
+    If no other edition has as many joints, it is the query for their angles. Else it has an id that
+    no other edition with as many joints has; if the query of the version has, it is returned.
     """
-    ids = {command.id for other in others for command in other.commands}
+    alike = [other for other in others if other.joints == table.joints]
+    if not alike and table.find_role("joints") is not None:
+        return table.in_role("joints")
+    ids = {command.id for other in alike for command in other.commands}
     own = [command for command in bare_queries(table) if command.id not in ids]
     return min(own, key=lambda command: command.role != "version", default=None)
+
+
+class JointCount(NamedTuple):
+    """A query for the angles of all joints, in an edition with one number of joints.
+
+    Attributes:
+        edition: the edition with which the query is sent and the reply is read.
+        command: the query.
+        editions: the editions with this number of joints.
+    """
+
+    edition: str
+    command: Command
+    editions: list[str]
+
+
+def joint_counts(names: Iterable[str]) -> list[JointCount]:
+    """Return a query for each number of joints that the editions have; empty if all have one."""
+    groups: dict[int, list[str]] = {}
+    for name in names:
+        if _table(name).find_role("joints") is not None:
+            groups.setdefault(_table(name).joints, []).append(name)
+    found = [JointCount(n[0], _table(n[0]).in_role("joints"), n) for n in groups.values()]
+    return found if len(found) > 1 else []
 
 
 class Candidates:
@@ -93,6 +121,12 @@ class Candidates:
         self.proven = list(names)
         self.likely = list(self.proven)
         self._asked: set[int] = set()
+
+    def keep(self, names: Iterable[str]) -> None:
+        """Rule out every other edition."""
+        kept = set(names)
+        self.proven = [name for name in self.proven if name in kept]
+        self.likely = [name for name in self.likely if name in kept]
 
     def evidence(self, found: Evidence, command: Command) -> Evidence:
         """Add to what a query shows which of the proven editions have it."""

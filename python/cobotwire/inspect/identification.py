@@ -1,8 +1,9 @@
 """Find out which edition an arm speaks, and connect to it with the client of that edition.
 
-First a query that every edition has, and for which every arm has a reply. Then queries that only
-some editions have; each legal reply rules out the others. If several editions remain, a limit of a
-joint decides, as the arm reports it.
+First a query that every edition has, and for which every arm has a reply. Then the number of
+joints, by the length of the row of angles. Then queries that only some editions have; each legal
+reply rules out the others. If several editions remain, a limit of a joint decides, as the arm
+reports it.
 """
 
 from __future__ import annotations
@@ -15,7 +16,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cobotwire import editions
 from cobotwire.client.opening import open_port
-from cobotwire.inspect.evidence import Candidates, Evidence, ask, limits_apart, own_query
+from cobotwire.inspect.evidence import (
+    Candidates,
+    Evidence,
+    ask,
+    joint_counts,
+    limits_apart,
+    own_query,
+)
 from cobotwire.protocol.errors import EditionUnknown
 from cobotwire.protocol.table import Command, Table
 from cobotwire.transport import Transport
@@ -89,6 +97,8 @@ def other_edition(
     # A device whose frames differ is no arm of the others, and is not sent their frames.
     others = [name for name in newest_first() if name != table.edition]
     others = [name for name in others if _same_frames(editions.load(name).TABLE, table)]
+    # First the editions with other numbers of joints: they may share a query with the rest.
+    others.sort(key=lambda name: editions.load(name).TABLE.joints == table.joints)
     found = list(own_evidence(transport, others, timeout=timeout))
     return own, found[-1] if found and found[-1].replied else None
 
@@ -118,16 +128,38 @@ def identify_on(transport: Transport, *, timeout: float | None = None) -> Identi
         if reply.text == "no reply" and len(evidence) == 1:
             return Identification(transport.url, "", (), "", tuple(evidence))
         found.note(command, reply.replied)
+        if len(evidence) == 1:
+            evidence += _row_evidence(transport, found, timeout=timeout)
         if command.role == "version" and reply.replied:
             firmware = str(reply.result)
         query = found.next_query()
     edition = found.known
+    version = editions.load(edition).TABLE.find_role("version") if edition else None
+    if version is not None and all(each.query != version.name for each in evidence):
+        reply = _asked(transport, edition, version, timeout=timeout)
+        evidence.insert(-1, reply._replace(shows="it does not tell the editions in question apart"))
+        firmware = str(reply.result) if reply.replied else ""
     if not edition:
         limits = list(_limit_evidence(transport, found.proven, timeout=timeout))
         evidence += limits
         edition = limits[-1].edition if limits else ""
     candidates = (edition,) if edition else tuple(found.proven)
     return Identification(transport.url, edition, candidates, firmware, tuple(evidence))
+
+
+def _row_evidence(
+    transport: Transport, found: Candidates, *, timeout: float | None
+) -> Iterator[Evidence]:
+    """Read the row of angles with one number of joints after another, until one fits."""
+    for count in joint_counts(found.proven):
+        reply = _asked(transport, count.edition, count.command, timeout=timeout)
+        joints = editions.load(count.edition).TABLE.joints
+        shows = f"a row of {joints} joints, as in {', '.join(count.editions)}"
+        only = count.editions[0] if len(count.editions) == 1 else ""
+        yield reply._replace(edition=only, shows=shows)
+        if reply.replied:
+            found.keep(count.editions)
+            return
 
 
 def _limit_evidence(
