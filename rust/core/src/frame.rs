@@ -58,19 +58,14 @@ impl Part {
         }
     }
 
+    #[inline]
     fn write(self, frame: &mut [u8], number: u16) {
-        let bytes = match (self.wide, self.order) {
-            (false, _) => [number.to_le_bytes()[0], 0],
-            (true, Order::Big) => number.to_be_bytes(),
-            (true, Order::Little) => number.to_le_bytes(),
-        };
-        for (place, byte) in frame
-            .iter_mut()
-            .skip(self.at)
-            .zip(bytes)
-            .take(self.end() - self.at)
-        {
-            *place = byte;
+        let [low, high] = number.to_le_bytes();
+        match (self.wide, self.order, frame.get_mut(self.at..)) {
+            (false, _, Some([first, ..])) => *first = low,
+            (true, Order::Big, Some([first, second, ..])) => (*first, *second) = (high, low),
+            (true, Order::Little, Some([first, second, ..])) => (*first, *second) = (low, high),
+            _ => {}
         }
     }
 }
@@ -157,6 +152,7 @@ impl FrameFormat {
     }
 
     /// Append the start of a frame, up to its data; the frame is empty.
+    #[inline]
     pub(crate) fn start(
         &self,
         frame: &mut Vec<u8>,

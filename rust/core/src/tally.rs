@@ -37,8 +37,13 @@ impl Tally {
     pub(crate) fn add_frames(&mut self, id: u16, count: u64) {
         match self.frames.get_mut(usize::from(id)) {
             Some(frames) => *frames += count,
-            None => *self.wide.entry(id).or_default() += count,
+            None => self.add_wide(id, count),
         }
+    }
+
+    #[cold]
+    fn add_wide(&mut self, id: u16, count: u64) {
+        *self.wide.entry(id).or_default() += count;
     }
 
     /// Count bytes of noise.
