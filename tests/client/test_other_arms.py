@@ -13,6 +13,7 @@ from cobotwire import Limits, MotionTimeout, ReplyTimeout, UsageError
 from cobotwire.protocol.limits import limited
 from cobotwire.session.motion import Goal, goal_of
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
+from cobotwire_codegen.errors import SpecError
 from trial_specs import FOOTED, HEAD, edition_of, package_of
 
 
@@ -111,6 +112,27 @@ def package_kind(package: Any, label: str) -> int:
     """Return the edition's number for a kind of target."""
     kind = getattr(package, "Kind", None)
     return {"ANGLES": 0, "COORDS": 1}[label] if kind is None else int(kind[label])
+
+
+def test_arm_moves_as_its_edition_states(tmp_path: Path) -> None:
+    stated = "motion: {speed: 10, fastest: 400, acceleration: 100000, doc: Fast.}\nframe:"
+    with package_of(SPECS["four joints"].replace("frame:", stated, 1), tmp_path) as package:
+        assert package.TABLE.motion == (10.0, 400.0, 100000.0)
+        clock = SteppedClock()
+        simulated = SimulatedArm(package.TABLE, clock=clock, powered=True)
+        arm = package.Trial(MemoryTransport(simulated, clock))
+        arm.turn_joints(30, [150.0, 0.0, 0.0, 0.0])
+        clock.sleep(0.25)
+        assert arm.read_joints()[0] == pytest.approx(75.0, abs=5)
+        arm.turn_joints(100, [0.0, 0.0, 0.0, 0.0])
+        clock.sleep(0.25 + 0.2)
+        assert arm.read_joints()[0] == pytest.approx(70.0, abs=5)
+
+
+def test_speed_of_nothing_is_reported(tmp_path: Path) -> None:
+    stated = "motion: {speed: 0, fastest: 400, acceleration: 100, doc: None.}\nframe:"
+    with pytest.raises(SpecError, match="must be above 0"):
+        edition_of(SPECS["four joints"].replace("frame:", stated, 1), tmp_path)
 
 
 def test_arm_that_does_not_get_there_is_stopped(package: Any) -> None:

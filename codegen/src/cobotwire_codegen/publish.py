@@ -84,6 +84,7 @@ def _document(edition: Edition) -> Record:
             base=edition.base,
             joints=edition.joints,
             geometry=_geometry(edition),
+            motion=_motion(edition),
         ),
         "frame": _given(
             header=_hex(frame.header),
@@ -137,6 +138,14 @@ def _frame_parts(frame: Frame) -> Record:
 
 def _ending(frame: Frame) -> list[str]:
     return [part for part in ("check", "footer") if frame.sizes[part]]
+
+
+def _motion(edition: Edition) -> Record | None:
+    if edition.motion is None:
+        return None
+    motion = edition.motion
+    parts = {name: getattr(motion, name) for name in ("speed", "fastest", "acceleration")}
+    return {name: _exact(part) for name, part in parts.items()} | {"doc": motion.doc}
 
 
 def _geometry(edition: Edition) -> Record | None:

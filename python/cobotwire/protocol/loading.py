@@ -16,6 +16,7 @@ from cobotwire.protocol.table import (
     Command,
     Crc,
     Dimensions,
+    Dynamics,
     Field,
     FrameFormat,
     Number,
@@ -49,6 +50,7 @@ def load_table(package: str) -> Table:
         tuple([reader.command(record) for record in document["commands"]]),
         _dimensions(edition.get("geometry")),
         tuple([Address(*address) for address in frame.get("addresses", ())]),
+        _dynamics(edition.get("motion")),
     )
 
 
@@ -93,6 +95,12 @@ def _dimensions(record: Record | None) -> Dimensions | None:
         return None
     links = [(_real(o), _real(alpha), _real(a), _real(d)) for o, alpha, a, d in record["links"]]
     return Dimensions(tuple(links), tuple(record["encoder_signs"]))
+
+
+def _dynamics(record: Record | None) -> Dynamics | None:
+    if record is None:
+        return None
+    return Dynamics(*(_real(record[name]) for name in Dynamics._fields))
 
 
 def _real(number: int | str) -> float:

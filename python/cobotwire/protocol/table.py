@@ -34,6 +34,7 @@ __all__ = [
     "Crc",
     "Dimensions",
     "Direction",
+    "Dynamics",
     "Field",
     "FieldKind",
     "FrameFormat",
@@ -232,6 +233,20 @@ class Dimensions(NamedTuple):
     encoder_signs: tuple[int, ...]
 
 
+class Dynamics(NamedTuple):
+    """How an arm moves.
+
+    Attributes:
+        speed: degrees a second for each percent of speed.
+        fastest: the highest speed of a joint, in degrees a second.
+        acceleration: the highest acceleration, in degrees a square second.
+    """
+
+    speed: float
+    fastest: float
+    acceleration: float
+
+
 class Address(NamedTuple):
     """A value of the address byte.
 
@@ -253,8 +268,8 @@ class Address(NamedTuple):
 class Table:
     """One edition of the protocol.
 
-    ``geometry`` is None if the edition does not state it. ``addresses`` describes the addresses
-    of ``frame``, in the same order; it is empty if they have no names.
+    ``geometry`` and ``motion`` are None if the edition does not state them. ``addresses`` describes
+    the addresses of ``frame``, in the same order; it is empty if they have no names.
     """
 
     edition: str
@@ -265,6 +280,7 @@ class Table:
     commands: tuple[Command, ...]
     geometry: Dimensions | None = None
     addresses: tuple[Address, ...] = ()
+    motion: Dynamics | None = None
 
     def command(self, name: str) -> Command:
         """Return the command called ``name``.

@@ -25,7 +25,7 @@ from cobotwire.simulator.motion.hand import checked
 from cobotwire.simulator.motion_ends import MotionEnds
 from cobotwire.simulator.peer import IDLE_SECONDS
 from cobotwire.simulator.replies import clamped, completed
-from cobotwire.simulator.state import ArmState
+from cobotwire.simulator.state import LIKE_280, ArmState
 
 # A joint's own limits lie within half a turn; wider ones are only what the wire can express.
 HALF_TURN = 180.0
@@ -255,7 +255,7 @@ class SimulatedArm:
             self._on_note(note)
 
     def _new_state(self) -> ArmState:
-        state = ArmState(self.table.joints, self._geometry)
+        state = ArmState(self.table.joints, self._geometry, motion=self.table.motion or LIKE_280)
         for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
             state.minimum[joint], state.maximum[joint] = lowest, highest
         return state

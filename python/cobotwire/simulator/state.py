@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from cobotwire.protocol.table import Dynamics
 from cobotwire.simulator.kinematics import DEGREES_PER_TICK, Geometry, Pose, flange
 from cobotwire.simulator.kinematics.ticks import (
     ZERO_TICK,
@@ -19,10 +20,8 @@ from cobotwire.simulator.motion import Axes
 from cobotwire.simulator.motion.hand import TimedPoint
 from cobotwire.simulator.remembered import Remembered
 
-# Facts of the 280, from the protocol notes on kinematics.
-DEGREES_PER_SECOND = 1.5  # for each percent of speed
-FASTEST = 150.0  # degrees per second
-ACCELERATION = 200.0  # degrees per square second
+# How an arm moves if its edition does not state it: like the 280.
+LIKE_280 = Dynamics(1.5, 150.0, 200.0)
 # No source defines how a gripper moves: here it opens in two thirds of a second, at full speed from
 # the beginning.
 OPENING_PER_SECOND = 1.5
@@ -42,6 +41,7 @@ class ArmState:
 
     joints: int
     geometry: Geometry | None = None
+    motion: Dynamics = LIKE_280
     powered: bool = False
     connected: bool = True
     free: bool = False
@@ -93,7 +93,7 @@ class ArmState:
     registers: list[dict[int, int]] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.angles = Axes((0.0,) * self.joints, ACCELERATION)
+        self.angles = Axes((0.0,) * self.joints, self.motion.acceleration)
         self.enabled = [False] * self.joints
         self.minimum = [-165.0] * self.joints
         self.maximum = [165.0] * self.joints

@@ -14,8 +14,6 @@ from cobotwire.simulator.kinematics import Pose, nearest
 from cobotwire.simulator.kinematics.straight import straight_line
 from cobotwire.simulator.kinematics.ticks import on_tick
 from cobotwire.simulator.state import (
-    DEGREES_PER_SECOND,
-    FASTEST,
     OPENING_PER_SECOND,
     ArmState,
 )
@@ -32,9 +30,9 @@ JOG_STEPS = 181
 Point = tuple[float, ...]
 
 
-def rate(speed: int) -> float:
+def rate(arm: ArmState, speed: int) -> float:
     """Return degrees per second for a speed in percent."""
-    return min(DEGREES_PER_SECOND * speed, FASTEST)
+    return min(arm.motion.speed * speed, arm.motion.fastest)
 
 
 def reject(arm: ArmState, why: str, error: int = 0) -> bool:
@@ -82,7 +80,7 @@ def go_to_angles(
                 return reject(arm, why, joint + 1)
             wish = min(max(on_tick(wish) if arm.geometry else wish, low), high)
         goal.append(wish)
-    arm.angles.go(goal, rate(speed), now, queue=_queues(arm) if queue is None else queue)
+    arm.angles.go(goal, rate(arm, speed), now, queue=_queues(arm) if queue is None else queue)
     _note_a_pause(arm)
     return True
 
@@ -195,7 +193,7 @@ def _go_along(arm: ArmState, points: list[Point], speed: int, now: float, *, que
     goal = tuple(
         min(max(on_tick(angle), low), high) for angle, (low, high) in zip(points[-1], arm.limits())
     )
-    arm.angles.follow([*points[:-1], goal], rate(speed), now, queue=queue)
+    arm.angles.follow([*points[:-1], goal], rate(arm, speed), now, queue=queue)
     _note_a_pause(arm)
 
 

@@ -55,6 +55,7 @@ NEW: dict[str, Any] = {
     "geometry": model.Geometry(
         (model.Link(Fraction(0), Fraction(90), Fraction(0), Fraction(100)),), (1,), "One link."
     ),
+    "motion": model.Motion(Fraction(1), Fraction(2), Fraction(3), "So."),
     "range": (Fraction(1), Fraction(2)),
     "requests": ((ARGUMENT,),),
     "replies": ((ARGUMENT,),),

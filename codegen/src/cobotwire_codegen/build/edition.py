@@ -9,7 +9,7 @@ from cobotwire_codegen import language
 from cobotwire_codegen.build.commands import build_family
 from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.frame import build_frame_format
-from cobotwire_codegen.build.geometry import build_geometry
+from cobotwire_codegen.build.geometry import build_geometry, build_motion
 from cobotwire_codegen.build.inherit import carried
 from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_own
 from cobotwire_codegen.build.types import Types
@@ -86,6 +86,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         base=_base_name(reader),
         joints=parts.joints or 0,
         geometry=build_geometry(parts, problems),
+        motion=build_motion(parts, problems),
         frame=frame,
         wires=tuple(types.wires.values()),
         types=tuple(types.types.values()),

@@ -51,6 +51,7 @@ class Parts:
     transport: Node | None = None
     joints: int | None = None
     geometry: Node | None = None
+    motion: Node | None = None
     acks: Node | None = None
     types: dict[str, Named] = field(
         default_factory=lambda: {name: {} for name in language.SECTIONS}
@@ -143,9 +144,11 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
         joints, parts.joints = parts.joints, reader.get(spec.joints)
         # An arm with another number of joints has another geometry.
         parts.geometry = parts.geometry if joints == parts.joints else None
+        parts.motion = parts.motion if joints == parts.joints else None
     if reader.get(spec.geometry_unknown):
         parts.geometry = None
     parts.geometry = reader.get(spec.geometry) or parts.geometry
+    parts.motion = reader.get(spec.motion) or parts.motion
     parts.acks = reader.get(spec.acks) or parts.acks
     node = reader.get(spec.types)
     if node is not None:

@@ -12,7 +12,7 @@ from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.frame import frame_changes
 from cobotwire_codegen.diff.named import named_types
 from cobotwire_codegen.diff.rules import LEVELS
-from cobotwire_codegen.model import Edition, Geometry
+from cobotwire_codegen.model import Edition, Geometry, Motion
 
 _SEVERITY = {level: index for index, level in enumerate(LEVELS)}
 
@@ -64,6 +64,7 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
         if before != after:
             yield finding(rule, where, before, after)
     yield from _geometry(old.geometry, new.geometry)
+    yield from _motion(old.motion, new.motion)
     yield from prose.doc("edition/title", old.title, new.title)
     yield from prose.doc("edition", old.doc, new.doc)
     yield from prose.doc("edition/document", old.document, new.document)
@@ -75,6 +76,21 @@ def _geometry(old: Geometry | None, new: Geometry | None) -> Iterator[Finding]:
         yield finding("geometry-changed", "edition/geometry", _lengths(old), _lengths(new))
     elif old is not None and new is not None:
         yield from prose.doc("edition/geometry", old.doc, new.doc)
+
+
+def _motion(old: Motion | None, new: Motion | None) -> Iterator[Finding]:
+    """Compare how the arms move, and how that is explained."""
+    if _speeds(old) != _speeds(new):
+        yield finding("motion-changed", "edition/motion", _speeds(old), _speeds(new))
+    elif old is not None and new is not None:
+        yield from prose.doc("edition/motion", old.doc, new.doc)
+
+
+def _speeds(motion: Motion | None) -> str:
+    """Return the numbers of a motion in one line."""
+    if motion is None:
+        return "not stated"
+    return f"speed {motion.speed}, fastest {motion.fastest}, acceleration {motion.acceleration}"
 
 
 def _lengths(geometry: Geometry | None) -> str:

@@ -96,6 +96,7 @@ _BEHAVIOUR = {
     "choices-widened": "legal raw values were {old}, are {new}: an old peer rejects some",
     "deadline-changed": "the deadline of the reply was {old} ms, is {new} ms",
     "default-changed": "was {old} if left out, is {new}: the same call sends another value",
+    "motion-changed": "the motion was {old}, is {new}",
     "geometry-changed": "the geometry was {old}, is {new}",
     "joints-changed": "the arm had {old} joints, has {new}",
     "maximum-data-changed": "a frame carried up to {old} data bytes, carries {new}",

@@ -27,7 +27,7 @@ from cobotwire_codegen.language.edition import (
 )
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
-from cobotwire_codegen.language.geometry import Geometry, Link
+from cobotwire_codegen.language.geometry import Geometry, Link, Motion
 from cobotwire_codegen.language.messages import (
     FIELDS,
     Case,
@@ -94,6 +94,7 @@ __all__ = [
     "Key",
     "Link",
     "Member",
+    "Motion",
     "NamedVector",
     "Quantity",
     "Record",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cobotwire_codegen.language.changes import CHANGE, ChangesFile
 from cobotwire_codegen.language.frame import FrameFile
-from cobotwire_codegen.language.geometry import Geometry
+from cobotwire_codegen.language.geometry import Geometry, Motion
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField, accepted_key
 from cobotwire_codegen.language.names import BASE, CLASS, LOWER, METHOD
@@ -71,6 +71,11 @@ class _Edition(Record):
     errata = optional(
         InFiles(_ERRATA, or_file(ref(ErrataFile.definition()))),
         "The places where the document is wrong or contradicts itself.",
+    )
+    motion = optional(
+        Part(Motion),
+        "How the arm moves. A delta with as many joints inherits that of its base. Left out: a "
+        "simulated arm moves like the 280.",
     )
     acks = optional(Part(Acks), "How commands without a reply are acknowledged.")
     geometry = optional(

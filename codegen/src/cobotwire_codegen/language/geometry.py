@@ -31,3 +31,18 @@ links:
 encoder_signs: [-1, 1]
 doc: Measured on an arm with two joints.
 """
+
+
+class Motion(Record):
+    """How the arm moves; a simulated arm moves like that."""
+
+    speed = required(Real(), "Degrees a second for each percent of speed.")
+    fastest = required(Real(), "The highest speed of a joint, in degrees a second.")
+    acceleration = required(Real(), "The highest acceleration, in degrees a square second.")
+    doc = required(Text(), "Where the numbers are taken from.")
+    EXAMPLE = """\
+speed: 1.5
+fastest: 150
+acceleration: 200
+doc: Measured on an arm.
+"""

@@ -19,6 +19,7 @@ from cobotwire_codegen.model.edition import (
     Erratum,
     Geometry,
     Link,
+    Motion,
     Vector,
 )
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
@@ -54,6 +55,7 @@ __all__ = [
     "Lines",
     "Link",
     "Member",
+    "Motion",
     "Quantity",
     "ReadBack",
     "Samples",

@@ -79,6 +79,16 @@ class Geometry:
 
 
 @dataclass(frozen=True, slots=True)
+class Motion:
+    """How an arm moves, in degrees and seconds: the speed is that of one percent."""
+
+    speed: Fraction
+    fastest: Fraction
+    acceleration: Fraction
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
 class Edition:
     """One edition of a protocol."""
 
@@ -92,6 +102,7 @@ class Edition:
     base: str
     joints: int
     geometry: Geometry | None
+    motion: Motion | None
     frame: Frame
     wires: tuple[Wire, ...]
     types: tuple[Type, ...]
