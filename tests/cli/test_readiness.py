@@ -16,7 +16,7 @@ from scripted_peer import ScriptedPeer
 MOTION = ("send_angles", "10,0,0,0,0,0", "30")
 NO_POWER = "the arm has no power; cobotwire call URL power_on switches it on"
 PAUSED = "the arm's motion is paused; cobotwire call URL resume continues the old motion at once"
-ERROR = "the arm's error register is 17 (0 is no error; 1 to 6 a joint beyond its limit; 16 to 19"
+ERROR = "the arm's error register is 3: joint 3 is beyond its limit; find the cause"
 
 
 def _cut(arm: SimulatedArm) -> None:
@@ -28,7 +28,7 @@ def _pause(arm: SimulatedArm) -> None:
 
 
 def _fail(arm: SimulatedArm) -> None:
-    arm.state.error = 17
+    arm.state.error = 3
 
 
 STATES = [
@@ -77,7 +77,8 @@ def test_motion_that_the_arm_rejects_is_reported_after_it_was_sent() -> None:
     with PtyServer(SimulatedArm(mycobot280.TABLE, powered=True)) as server:
         result = run_program("call", server.url, "send_coords", "281,281,281,0,0,0", "30")
     assert result.returncode == 7
-    assert "send_coords was sent, but the arm's error register is 32 (" in result.stderr
+    said = "send_coords was sent, but the arm's error register is 32: the inverse kinematics has no"
+    assert said in result.stderr
 
 
 def test_commands_that_end_a_motion_are_sent_to_any_arm() -> None:

@@ -98,7 +98,10 @@ def test_failed_motion_says_what_keeps_the_arm_from_moving(simulated: SimulatedA
         with pytest.raises(MotionTimeout, match="its motion is paused"):
             arm.move_angles(THERE, 50, timeout=5)
         simulated.state.error = 32
-        with pytest.raises(MotionTimeout, match=r"error register is 32 \(.*no inverse solution"):
+        with pytest.raises(MotionTimeout, match=r"error register is 32: the inverse kin.* has no"):
+            arm.wait_until_reached([150, 0, 0, 0, 0, 0], TargetKind.ANGLES, timeout=0.2)
+        simulated.state.error = 99
+        with pytest.raises(MotionTimeout, match="error register is 99, which no source explains"):
             arm.wait_until_reached([150, 0, 0, 0, 0, 0], TargetKind.ANGLES, timeout=0.2)
 
 

@@ -266,6 +266,7 @@ def _quantity(type: Quantity) -> Record:
         **bounds,
         choices=list(type.choices),
         radians=type.radians,
+        meanings=[list(meaning) for meaning in type.meanings],
         doc=type.doc,
     )
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from cobotwire.client import Client
 from cobotwire.inspect.advice import Problem
-from cobotwire.protocol.errors import ArmNotReady, ReplyTimeout
+from cobotwire.protocol.errors import ArmNotReady, ReplyTimeout, with_meaning
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.motion import error_meaning
 
@@ -30,7 +30,8 @@ def problems(table: Table, states: Mapping[Role, Any]) -> list[Problem]:
         advice = _use(table, "paused", 0, "continues the old motion at once") + discard
         found.append(Problem("paused", "the arm's motion is paused", advice))
     if states.get("error"):
-        text = f"the arm's error register is {states['error']} ({error_meaning(table)})"
+        error = states["error"]
+        text = f"the arm's error register is {with_meaning(error, error_meaning(table, error))}"
         advice = "find the cause; then " + _use(table, "error", 0, "clears the error")
         found.append(Problem("error-register", text, advice))
     return found

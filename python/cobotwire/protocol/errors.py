@@ -181,7 +181,7 @@ class ArmState(NamedTuple):
         powered: whether it has power.
         paused: whether its motion is paused.
         error: its error register.
-        error_meaning: what the numbers of the error register mean.
+        error_meaning: what the number in the error register means; empty if that is not known.
     """
 
     position: tuple[float, ...] | None = None
@@ -200,8 +200,13 @@ class ArmState(NamedTuple):
         if self.paused:
             found.append("its motion is paused")
         if self.error:
-            found.append(f"its error register is {self.error} ({self.error_meaning})")
+            found.append(f"its error register is {with_meaning(self.error, self.error_meaning)}")
         return found
+
+
+def with_meaning(number: int, meaning: str) -> str:
+    """Return a number of the error register, and what it means if that is known."""
+    return f"{number}: {meaning}" if meaning else f"{number}, which no source explains"
 
 
 UNKNOWN = ArmState()

@@ -45,6 +45,7 @@ class Field:
     ``sizes`` are the least and the most elements of a list whose number varies; a variant has one
     of these numbers, and other variants have the others. A field that ``counts`` the elements of
     another one has the same ``sizes``; callers pass ``...`` for it.
+    ``meanings`` say what raw values from the first to the second stand for; others are legal too.
     """
 
     name: str
@@ -63,6 +64,14 @@ class Field:
     padding: int = -1
     sizes: tuple[int, int] | None = None
     counts: str = ""
+    meanings: tuple[tuple[int, int, str], ...] = ()
+
+    def meaning(self, raw: int) -> str:
+        """Return what a raw value stands for; empty if the edition does not say."""
+        for low, high, text in self.meanings:
+            if low <= raw <= high:
+                return text.replace("{number}", str(raw))
+        return ""
 
     @property
     def size(self) -> int:

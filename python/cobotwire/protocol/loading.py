@@ -204,6 +204,7 @@ class _Reader:
             "echo" in record,
             const,
             tuple(default) if (default := get("default")) is not None else None,
+            meanings=_tuples(first.get("meanings", ())),
         )
 
     def _type(self, reference: str | Record) -> Record:

@@ -226,13 +226,13 @@ def _state(table: Table, goal: Goal) -> Generator[Step, Outcome, ArmState]:
             found.append(outcome.result)
     place, powered, paused, error = found
     position = None if place is None else tuple(place)
-    return ArmState(position, powered, paused, error, error_meaning(table))
+    return ArmState(position, powered, paused, error, error_meaning(table, error or 0))
 
 
-def error_meaning(table: Table) -> str:
-    """Return what the edition says about the numbers of its error register."""
+def error_meaning(table: Table, error: int) -> str:
+    """Return what the edition says about a number of its error register; empty if nothing."""
     command = table.find_role("error")
-    return "" if command is None else command.reply[0].fields[-1].doc.rstrip(".")
+    return "" if command is None else command.reply[0].fields[-1].meaning(error)
 
 
 def _left(started: float, limit: float, now: float) -> float:

@@ -80,6 +80,7 @@ NEW: dict[str, Any] = {
     "notes": ("New.",),
     "choices": (3,),
     "accepted": (3,),
+    "meanings": ((1, 2, "New."),),
     "printed": b"\xfe",
     "frame": b"\xfe",
     "const": 1,

@@ -8,6 +8,7 @@ from fractions import Fraction
 from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Named
 from cobotwire_codegen.errors import Place, Problem, nearest
+from cobotwire_codegen.language.meanings import in_words
 from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.load import Node, Scalar
 from cobotwire_codegen.model import (
@@ -117,11 +118,15 @@ class Types:
             reader.get(spec.range),
             reader.get(spec.choices),
             reader.get(spec.shown_in) == "radian",
-            reader.get(spec.doc),
+            " ".join(filter(None, (reader.get(spec.doc), in_words(reader.get(spec.meanings))))),
             reader.get(spec.source),
             disputes(reader, spec.disputed),
             reader.get(spec.not_finite),
+            reader.get(spec.meanings),
         )
+        if quantity.meanings and quantity.real:
+            message = f"the quantity {name} has meanings; make it an integer without a scale"
+            reader.problem("bad-meaning", message)
         self._check_float(quantity, reader)
         if quantity.choices and (quantity.range is not None or quantity.scale != 1):
             message = f"the quantity {name} has choices; remove its range and its scale"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from cobotwire_codegen.diff import prose, words
 from cobotwire_codegen.diff.finding import Finding, finding
+from cobotwire_codegen.language.meanings import in_words
 from cobotwire_codegen.model import Quantity
 
 
@@ -23,6 +24,8 @@ def changes(where: str, old: Quantity, new: Quantity) -> Iterator[Finding]:
     if old.radians != new.radians:
         spoken = ["radians" if side.radians else old.unit or "numbers" for side in (old, new)]
         yield finding("radians-changed", where, *spoken)
+    if old.meanings != new.meanings:
+        yield finding("meanings-changed", where, *(in_words(side.meanings) for side in (old, new)))
     yield from prose.source(where, old.source, new.source)
     yield from prose.disputes(where, old.disputed, new.disputed)
 

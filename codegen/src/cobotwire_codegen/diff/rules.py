@@ -146,6 +146,7 @@ _DOCS = {
     "family-renamed": "the family {old} is now {new}, and so is its page",
     "firmware-changed": "the firmware was {old}, is {new}",
     "history-changed": "the descriptions of the changes differ: {new}",
+    "meanings-changed": "the meanings were ({old}), are ({new})",
     "note-changed": "the notes changed: {new}",
     "order-changed": "the order was {old}; is {new}",
     "range-restated": "the range is {new}, as before, but stated differently",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cobotwire_codegen.language import facts
+from cobotwire_codegen.language.meanings import MeaningsOfNumbers
 from cobotwire_codegen.language.names import CLASS, LOWER, UPPER
 from cobotwire_codegen.language.records import Named, Record, optional, required
 from cobotwire_codegen.language.shapes import (
@@ -74,6 +75,13 @@ class Quantity(Record):
     )
     not_finite = optional(
         YesNo(), "Whether a float may also be infinite or NaN. Excludes `range`.", False
+    )
+    meanings = optional(
+        MeaningsOfNumbers(),
+        "What raw values stand for, by raw value or range: `0: no error, 1..6: joint {number} is "
+        "beyond its limit`. `{number}` is replaced by the raw value. Other raw values are legal "
+        "too; for a closed list use an enum. Descriptions and error messages show them. Only for "
+        "an integer without a scale.",
     )
     source = facts.source()
     disputed = facts.disputed()

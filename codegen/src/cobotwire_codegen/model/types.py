@@ -116,8 +116,9 @@ class _Scalar:
 class Quantity(_Scalar):
     """A wire type with a scale, a unit and a range (in that unit; None: every raw value).
 
-    ``choices``, if there are any, are the only legal raw values. With ``radians`` the API uses
-    radians, and the wire carries degrees.
+    ``choices``, if there are any, are the only legal raw values. ``meanings`` say what raw values
+    from the first to the second stand for, without making others illegal. With ``radians`` the API
+    uses radians, and the wire carries degrees.
     """
 
     kind: ClassVar[str] = "quantity"
@@ -136,6 +137,7 @@ class Quantity(_Scalar):
     source: Lines
     disputed: tuple[Dispute, ...]
     not_finite: bool = False
+    meanings: tuple[tuple[int, int, str], ...] = ()
 
     @property
     def bounds(self) -> tuple[Fraction, Fraction]:

@@ -54,6 +54,15 @@ EXPLANATIONS = (
         "pin: {wire: byte, choices: [2, 5, 35], doc: A pin of the board.}",
     ),
     Explanation(
+        "bad-meaning",
+        "`meanings` is not a mapping of raw values or ranges to texts, ranges overlap, or the "
+        "quantity is a float or has a scale.",
+        "An error message looks up the raw value; it needs exactly one text.",
+        "Write raw values or ranges, the lower end first, each once.",
+        "fault: {wire: byte, meanings: {0: no fault, 0..3: a lamp is broken}, doc: A fault.}",
+        "fault: {wire: byte, meanings: {0: no fault, 1..3: a lamp is broken}, doc: A fault.}",
+    ),
+    Explanation(
         "bad-float",
         "A float has a scale, choices or members, or `not_finite` is given with a range.",
         "A float is its own physical value, and members are whole numbers; a range is finite.",

@@ -36,8 +36,9 @@ class SystemCommands(Client):
 
         Reads why the arm did not move; 0 is no error.
 
-        Returns: 0 is no error; 1 to 6 a joint beyond its limit; 16 to 19 a collision; 32 no inverse
-            solution; 33 and 34 no adjacent solution for a straight line (0..255).
+        Returns: Why the arm did not move. 0: no error; 1 to 6: joint n is beyond its limit; 16 to
+            19: collision protection; 32: the inverse kinematics has no solution; 33 to 34: the
+            straight line has no adjacent solution (0..255).
         Safety: query. Command id 0x07.
         """
         return self._call(messages.system.GetErrorInformation())
