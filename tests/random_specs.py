@@ -13,13 +13,17 @@ from ruamel.yaml import YAML
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model import (
+    Bits,
+    Chars,
     Command,
     Edition,
     Enum,
     Field,
     Flag,
+    Octets,
     Quantity,
     Type,
+    Value,
     Variant,
 )
 from cobotwire_codegen.wire import build_frame
@@ -268,13 +272,35 @@ def vectors(
 def _value(field: Field, type: Type) -> st.SearchStrategy[Any]:
     if field.const is not None:
         return st.just(constant(field, type))
+    return _of_type(type)
+
+
+def _of_type(type: Type) -> st.SearchStrategy[Any]:
     if isinstance(type, Flag):
         return st.booleans()
     if isinstance(type, Enum):
         return st.sampled_from([member.name for member in type.members])
     if isinstance(type, Quantity):
         return _number(type)
-    return st.tuples(*(_number(item) for _, item in type.items))
+    if isinstance(type, Value):
+        return st.tuples(*(_number(item) for _, item in type.items))
+    return _shaped(type)
+
+
+def _shaped(type: Any) -> st.SearchStrategy[Any]:
+    """Draw bits, bytes, a text or a list."""
+    if isinstance(type, Bits):
+        return st.tuples(*(_of_type(part) for _, part in type.items))
+    least, most = type.sizes
+    if isinstance(type, Octets):
+        return st.binary(min_size=least, max_size=most).map(lambda data: data.hex(" "))
+    if isinstance(type, Chars):
+        short = least if type.padding is None else 0
+        return st.text(st.sampled_from("abc "), min_size=short, max_size=most).map(
+            lambda text: text.replace(" ", "x")
+        )
+    elements = st.lists(_of_type(type.of), min_size=least, max_size=most)
+    return elements.map(tuple)
 
 
 def _text_of(field: Field, type: Type) -> st.SearchStrategy[Any]:

@@ -8,12 +8,16 @@ from itertools import groupby
 from typing import Any
 
 from cobotwire_codegen.model import (
+    Bits,
+    Chars,
     Command,
     Dispute,
     Edition,
     Enum,
     Field,
     Flag,
+    Listed,
+    Octets,
     Quantity,
     Type,
     Value,
@@ -25,12 +29,35 @@ def numbers(type: Type) -> tuple[dict[str, Any], ...]:
     """Return the numbers of a type, in wire order."""
     if isinstance(type, Value):
         return tuple(_quantity(name, item) for name, item in type.items)
+    if isinstance(type, Bits):
+        return tuple(_bits(type))
+    if isinstance(type, Octets | Chars):
+        top = 127 if isinstance(type, Chars) and type.encoding == "ascii" else 255
+        return (_number("", type.wire, 0, top),) * type.least
+    if isinstance(type, Listed):
+        return numbers(type.of) * type.least
     if isinstance(type, Quantity):
         return (_quantity("", type),)
     if isinstance(type, Enum):
         values = [member.value for member in type.members]
         return (_number("", type.wire, min(values), max(values)),)
     return (_number("", type.wire, 0, 1),)
+
+
+def _bits(type: Bits) -> Iterator[dict[str, Any]]:
+    """Yield the numbers of a word's parts."""
+    for part in type.bit_parts:
+        [number] = numbers(part.type)
+        yield {
+            **number,
+            "name": part.name,
+            "kind": kind(part.type),
+            "choices": list(choices(part.type)),
+            "labels": list(labels(part.type)),
+            "shift": part.shift,
+            "bits": part.count,
+            "more": part is not type.bit_parts[-1],
+        }
 
 
 def _quantity(name: str, quantity: Quantity) -> dict[str, Any]:

@@ -19,13 +19,17 @@ from cobotwire_codegen import lower
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model import (
     Address,
+    Bits,
+    Chars,
     Command,
     Edition,
     Enum,
     Field,
     Flag,
     Frame,
+    Listed,
     Member,
+    Octets,
     Quantity,
     Text,
     Type,
@@ -170,6 +174,8 @@ class _Writer:
 
     def type(self, type: Type) -> Record:
         """Return a type's record."""
+        if isinstance(type, Bits | Octets | Chars | Listed):
+            return self._shaped(type)
         if isinstance(type, Value):
             items = [[name, self._reference(item)] for name, item in type.items]
             return {
@@ -192,6 +198,20 @@ class _Writer:
         if isinstance(type, Flag):
             return {"name": type.name, "kind": "flag", "wire": wire, "doc": type.doc}
         return {"name": type.name, "kind": "quantity", "wire": wire} | _quantity(type)
+
+    def _shaped(self, type: Bits | Octets | Chars | Listed) -> Record:
+        """Return the record of bits, bytes, a text or a list."""
+        head = {"name": type.name, "kind": type.kind}
+        if isinstance(type, Bits):
+            numbers = list(lower.numbers(type))
+            return head | {"class_name": type.class_name, "numbers": numbers, "doc": type.doc}
+        sizes = {"least": type.least, "most": type.most}
+        if isinstance(type, Listed):
+            return head | {"of": self._reference(type.of), **sizes, "doc": type.doc}
+        if isinstance(type, Octets):
+            return head | {**sizes, "doc": type.doc}
+        padding = {} if type.padding is None else {"padding": type.padding}
+        return head | {**sizes, "encoding": type.encoding, **padding, "doc": type.doc}
 
     def command(self, family: str, command: Command) -> Record:
         """Return a command's record: what is on the wire first, then its description."""
@@ -240,6 +260,7 @@ class _Writer:
             selector=field.selector,
             cases=cases,
             const=field.const,
+            counts=field.counts,
             default=list(field.default or ()),
             echo=field.echo,
             optional=field.optional,

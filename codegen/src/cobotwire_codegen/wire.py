@@ -13,6 +13,8 @@ from typing import Literal
 
 from cobotwire_codegen.catalogue import Crc
 from cobotwire_codegen.model import (
+    Bits,
+    Chars,
     Command,
     Enum,
     Field,
@@ -20,6 +22,8 @@ from cobotwire_codegen.model import (
     Frame,
     FrameCheck,
     FrameNumber,
+    Listed,
+    Octets,
     Quantity,
     Type,
     Value,
@@ -56,6 +60,7 @@ def encode_variant(
     for variant in command.variants(direction):
         if [field.name for field in variant] == list(values):
             try:
+                _check_counts(variant, values)
                 return variant, b"".join(_field(field, values) for field in variant)
             except ValueError as error:
                 problem = str(error)
@@ -132,6 +137,19 @@ def _field(field: Field, values: dict[str, object]) -> bytes:
     return encode_value(type, field.name, value)
 
 
+def _check_counts(variant: Variant, values: dict[str, object]) -> None:
+    """Raise an error if a field does not hold the number of elements that it counts."""
+    fields = {field.name: field for field in variant}
+    for field in variant:
+        if field.counts:
+            listed = fields[field.counts]
+            data = encode_value(listed.type, listed.name, values[listed.name])
+            size = len(data) // listed.type.element_size
+            if values[field.name] != size:
+                message = f"{field.name} is {values[field.name]}, but {listed.name} has {size}"
+                raise ValueError(f"{message} elements")
+
+
 def _constant(type: Type, name: str, const: int, value: object) -> bytes:
     """Return the bytes of a constant; a vector states its value, or the number of a member."""
     assert not isinstance(type, Value), "a value type has no constant"
@@ -152,6 +170,8 @@ def encode_value(type: Type, name: str, value: object) -> bytes:
             encode_value(item, f"{name}.{label}", part)
             for (label, item), part in zip(type.items, value)
         )
+    if isinstance(type, Bits | Octets | Chars | Listed):
+        return encode_shape(type, name, value)
     if isinstance(type, Enum):
         for member in type.members:
             if member.name == value:
@@ -162,6 +182,55 @@ def encode_value(type: Type, name: str, value: object) -> bytes:
             raise ValueError(f"{name} must be true or false")
         return _word(type.wire, Fraction(int(value)), name)
     return _quantity(type, name, value)
+
+
+def encode_shape(type: Bits | Octets | Chars | Listed, name: str, value: object) -> bytes:
+    """Return bits, bytes, a text or a list as bytes."""
+    if isinstance(type, Bits):
+        return _bits(type, name, value)
+    if isinstance(type, Octets):
+        try:
+            data = bytes.fromhex(value if isinstance(value, str) else "-")
+        except ValueError:
+            raise ValueError(f"{name} must be pairs of hex digits in quotes") from None
+        return _sized(type, name, data)
+    if isinstance(type, Chars):
+        return _chars(type, name, value)
+    if not isinstance(value, tuple) or not type.least <= len(value) <= type.most:
+        raise ValueError(f"{name} must be a list of {type.least}..{type.most} elements")
+    parts = [encode_value(type.of, f"{name}[{i}]", part) for i, part in enumerate(value)]
+    return b"".join(parts)
+
+
+def _sized(type: Octets | Chars, name: str, data: bytes) -> bytes:
+    if not type.least <= len(data) <= type.most:
+        raise ValueError(f"{name} has {len(data)} bytes; allowed: {type.least}..{type.most}")
+    return data
+
+
+def _chars(type: Chars, name: str, value: object) -> bytes:
+    if not isinstance(value, str):
+        raise ValueError(f"{name} must be a text")
+    try:
+        data = value.encode(type.encoding)
+    except UnicodeEncodeError:
+        raise ValueError(f"{name} is not a text in {type.encoding}") from None
+    if type.padding is None:
+        return _sized(type, name, data)
+    if data.endswith(bytes([type.padding])):
+        raise ValueError(f"{name} ends with its padding")
+    return _sized(type, name, data.ljust(type.least, bytes([type.padding])))
+
+
+def _bits(type: Bits, name: str, value: object) -> bytes:
+    if not isinstance(value, tuple) or len(value) != len(type.bit_parts):
+        raise ValueError(f"{name} must be a list of {len(type.bit_parts)} values")
+    word = 0
+    for part, each in zip(type.bit_parts, value):
+        data = encode_value(part.type, f"{name}.{part.name}", each)
+        low = int.from_bytes(data, type.wire.order) & ((1 << part.count) - 1)
+        word |= low << part.shift
+    return word.to_bytes(type.wire.width, type.wire.order)
 
 
 def raw_values(type: Type, name: str, value: object) -> tuple[int, ...]:
@@ -212,7 +281,5 @@ def _word(wire: Wire, raw: Fraction, name: str) -> bytes:
 
 
 def size(type: Type) -> int:
-    """Return the number of bytes of a type on the wire."""
-    if isinstance(type, Value):
-        return sum(item.wire.width for _, item in type.items)
-    return type.wire.width
+    """Return the number of bytes of a type on the wire; the least one if it varies."""
+    return type.size

@@ -83,7 +83,8 @@ def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[
             continue
         for number, single in _numbers(message, field, value):
             name = f"{field.name} {number.name}".strip()
-            chunk = data[offset : offset + number.width]
+            # Several parts of a word share its bytes: the last one has them.
+            chunk = data[offset : offset + number.step]
             yield Part(offset, chunk, name, format_value(field, number, single))
             offset += number.step
     end = "footer" if frame.check is None else "check"

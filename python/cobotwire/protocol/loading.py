@@ -5,6 +5,9 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
 from math import inf
 from typing import Any
 
@@ -18,6 +21,7 @@ from cobotwire.protocol.table import (
     Dimensions,
     Dynamics,
     Field,
+    FieldKind,
     FrameFormat,
     Number,
     ReadBack,
@@ -30,6 +34,9 @@ from cobotwire.protocol.table import (
 
 Record = dict[str, Any]
 VERSION = 2
+# The kinds of types that are more than one number or a row of numbers.
+SHAPED = ("bits", "bytes", "text", "list")
+BYTE = Number("", 1, "big", 255, 1, 1, 0, 255, "")
 
 
 def load_table(package: str) -> Table:
@@ -139,6 +146,7 @@ class _Reader:
         for type in document["types"]:
             self._types[type["name"]] = type
         self._deadline = document["frame"]["deadline_ms"]
+        self._most = document["frame"]["maximum_data"]
 
     def command(self, record: Record) -> Command:
         get = record.get
@@ -168,11 +176,77 @@ class _Reader:
         )
 
     def _variants(self, records: list[list[Record]]) -> tuple[Variant, ...]:
-        return tuple([self._variant(fields) for fields in records])
+        return tuple([made for fields in records for made in self._sized(fields)])
 
-    def _variant(self, fields: list[Record]) -> Variant:
+    def _sized(self, fields: list[Record]) -> Iterator[Variant]:
+        """Yield a variant for each number of elements that a message may have."""
+        varying = {
+            field["name"]: sizes for field in fields if (sizes := self._sizes(field)) is not None
+        }
+        if not varying:
+            yield self._variant(fields, {})
+            return
+        for counts in product(*[range(least, most + 1) for least, most in varying.values()]):
+            variant = self._variant(fields, dict(zip(varying, counts)))
+            if variant.size <= self._most:
+                yield variant
+
+    def _sizes(self, field: Record) -> tuple[int, int] | None:
+        """Return the least and the most elements of a field if they differ."""
+        type = self._type(field["type"]) if "type" in field else {}
+        least, most = type.get("least", 1), type.get("most", 1)
+        return (least, most) if least < most else None
+
+    def _variant(self, fields: list[Record], counts: dict[str, int]) -> Variant:
         names = [field["name"] for field in fields]
-        return Variant(tuple([self._field(field, names) for field in fields]))
+        by_name = {field["name"]: field for field in fields}
+        made = []
+        for record in fields:
+            counted = record.get("counts", "")
+            if counted:
+                field = self._field({**record, "const": counts[counted]}, names)
+                sizes = self._sizes(by_name[counted])
+                field = replace(field, sizes=sizes, counts=counted)
+            elif self._type(record["type"])["kind"] in SHAPED if "type" in record else False:
+                field = self._shaped(record, counts.get(record["name"]))
+            else:
+                field = self._field(record, names)
+            made.append(field)
+        return Variant(tuple(made))
+
+    def _shaped(self, record: Record, count: int | None) -> Field:
+        """Return a field of bits, bytes, a text or a list, with that many elements."""
+        type = self._type(record["type"])
+        kind: FieldKind = type["kind"] if type["kind"] in ("bytes", "text") else "number"
+        each, of = 0, type
+        element: tuple[Number, ...] = (BYTE,)
+        if type["kind"] == "bits":
+            element = tuple([_bits(number) for number in type["numbers"]])
+        elif type["kind"] == "list":
+            of = self._type(type["of"])
+            if of["kind"] == "text":
+                kind, element = "text", _letters(of) * of["least"]
+            else:
+                element = self._numbers_of(type["of"])
+                kind = of["kind"] if of["kind"] in ("enum", "flag") else "number"
+            each = len(element) if of["kind"] in ("value", "text") else 0
+        elif kind == "text":
+            element = _letters(type)
+        members = of.get("members", ())
+        return Field(
+            record["name"],
+            kind,
+            (Case((), element * (type.get("least", 1) if count is None else count)),),
+            record.get("doc", ""),
+            True,
+            _choices(of) if type["kind"] == "list" else (),
+            tuple([name for name, _, _ in members]),
+            echo="echo" in record,
+            each=each,
+            encoding=of.get("encoding", ""),
+            padding=of.get("padding", -1),
+            sizes=self._sizes(record),
+        )
 
     def _field(self, record: Record, names: list[str]) -> Field:
         get = record.get
@@ -185,13 +259,9 @@ class _Reader:
         labels: tuple[str, ...] = ()
         if const is not None:
             choices = (const,)
-        elif kind == "enum":
-            choices = tuple([value for _, value, _ in first["members"]])
-            labels = tuple([name for name, _, _ in first["members"]])
-        elif kind == "flag":
-            choices = (0, 1)
         else:
-            choices = tuple(first.get("choices", ()))
+            choices = _choices(first)
+            labels = tuple([name for name, _, _ in first.get("members", ())])
         return Field(
             record["name"],
             kind if kind in ("enum", "flag") else "number",
@@ -255,6 +325,24 @@ class _Reader:
             get("unit", ""),
             encoding,
         )
+
+
+def _choices(type: Record) -> tuple[int, ...]:
+    """Return all legal raw values of a type; empty if it has a range."""
+    if type["kind"] == "flag":
+        return 0, 1
+    return tuple([value for _, value, _ in type.get("members", ())] or type.get("choices", ()))
+
+
+def _bits(record: Record) -> Number:
+    """Return a part of a word."""
+    lists = {name: tuple(record[name]) for name in ("choices", "labels")}
+    return Number(**{**record, **lists})
+
+
+def _letters(type: Record) -> tuple[Number, ...]:
+    """Return the number of a byte of text."""
+    return (replace(BYTE, maximum=127) if type["encoding"] == "ascii" else BYTE,)
 
 
 def _affixes(text: Record) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -322,14 +322,12 @@ def _arranged(
 
 def _converters_of(message: type[Message]) -> dict[str, Callable[[Any], Any]]:
     """Return the functions that turn decoded values into what the class's annotations declare."""
-    from typing import get_args, get_type_hints
+    from typing import get_type_hints
 
     hints = get_type_hints(message)
     found: dict[str, Callable[[Any], Any]] = {}
     for name in message._names:
-        every = [*filter(None, map(_converter, (hints[name], *get_args(hints[name]))))]
-        # Where variants differ in their enum, the field keeps its number.
-        convert = every[0] if len(every) == 1 else None
+        convert = _converter(hints[name])
         if name in message._radians:
             convert = _in_radians(convert)
         if convert is not None:
@@ -337,11 +335,24 @@ def _converters_of(message: type[Message]) -> dict[str, Callable[[Any], Any]]:
     return found
 
 
-def _converter(hint: object) -> Callable[[Any], Any] | None:
+def _converter(hint: Any) -> Callable[[Any], Any] | None:
     """Return the function that converts a decoded value to ``hint``; None if none is needed."""
+    from typing import get_args, get_type_hints
+
+    origin, parts = getattr(hint, "__origin__", None), get_args(hint)
+    if origin is tuple or (origin is not None and origin.__name__ == "Sequence"):
+        element = _converter(parts[0])
+        return None if element is None else lambda values: tuple(map(element, values))
+    if parts:
+        every = [*filter(None, map(_converter, parts))]
+        # Where variants differ in their enum, the field keeps its number.
+        return every[0] if len(every) == 1 else None
     if not isinstance(hint, type):
         return None
     if issubclass(hint, tuple) and hasattr(hint, "_make"):
+        inner = [_converter(each) for each in get_type_hints(hint).values()]
+        if any(inner):
+            return lambda row: hint(*[f(v) if f else v for f, v in zip(inner, row)])
         return hint._make  # type: ignore[no-any-return]
     if hint is bool:
         return bool

@@ -29,7 +29,9 @@ def completed(
     if command.accepted:
         usual = command.accepted[0]
     return {
-        field.name: request[field.name]
+        field.name: ...
+        if field.counts
+        else request[field.name]
         if field.echo
         else result.get(field.name, _legal(field, usual))
         for field in _variant(command, result).fields
@@ -42,6 +44,8 @@ def clamped(
     """Return the fields of a reply, with each number inside the range that the edition allows."""
     kept = dict(fields)
     for field in _variant(command, result).fields:
+        if field.counts or field.each or field.kind in ("bytes", "text"):
+            continue
         row = fields[field.name] if field.many else (fields[field.name],)
         values = tuple(_inside(number, value) for number, value in zip(field.cases[0].numbers, row))
         if not field.echo:
@@ -63,9 +67,9 @@ def _variant(command: Command, result: Mapping[str, Any]) -> Variant:
 
 def _legal(field: Field, usual: int) -> Any:
     """Return the usual value if it is legal; else the nearest one, or the first of a list."""
-    listed = usual if usual in field.choices else next(iter(field.choices), None)
-    values = [
-        number.physical(number.clamp(usual) if listed is None else listed)
-        for number in field.cases[0].numbers
-    ]
-    return values if field.many else values[0]
+    values = []
+    for number in field.cases[0].numbers:
+        choices = field.choices or number.choices
+        listed = usual if usual in choices else next(iter(choices), None)
+        values.append(number.physical(number.clamp(usual) if listed is None else listed))
+    return field.present(values)

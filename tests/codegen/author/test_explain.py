@@ -19,7 +19,7 @@ from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
 # Codes about a folder, about files that do not belong to an edition, and of output targets.
-WITHOUT_LINES = {"no-edition", "unknown-rule", "unsupported-type"}
+WITHOUT_LINES = {"no-edition", "unknown-rule", "unsupported-type", "bad-size", "bad-count"}
 
 
 def _calls() -> Iterator[tuple[str, ast.Call]]:

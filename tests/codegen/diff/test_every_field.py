@@ -42,7 +42,7 @@ FIELDS = [
 ]
 # Words from closed lists become other words of the same list.
 OTHER = {"big": "little", "little": "big", "request": "reply", "reply": "request"}
-OTHER |= {"integer": "float"}
+OTHER |= {"integer": "float", "ascii": "utf-8"}
 OTHER |= {"": "required", "required": "optional", "optional": ""}
 WIRE = model.Wire(PLACE, "byte", 1, "big", 255, "", (), ())
 ARGUMENT = model.Field(
@@ -88,6 +88,7 @@ NEW: dict[str, Any] = {
     "arguments": ("new",),
     "example": 3,
     "line": 3,
+    "padding": 32,
 }
 
 

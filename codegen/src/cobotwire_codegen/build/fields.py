@@ -10,7 +10,7 @@ from cobotwire_codegen.build.types import Types, stand_in
 from cobotwire_codegen.build.vectors import plain_value
 from cobotwire_codegen.errors import nearest
 from cobotwire_codegen.load import Node, Sequence
-from cobotwire_codegen.model import Field, Member, Type, Variant
+from cobotwire_codegen.model import Field, Member, Quantity, Type, Variant
 from cobotwire_codegen.reader import Reader, label
 from cobotwire_codegen.wire import raw_values
 
@@ -51,7 +51,41 @@ def _shorter(full: Variant, reader: Reader) -> tuple[Variant, ...]:
 
 def _variant(nodes: tuple[Node, ...], direction: Direction, outer: Reader, types: Types) -> Variant:
     plain = [_read(node, direction, outer, types) for node in nodes]
-    return tuple(_selected(field, inner, plain, types) for field, inner in plain)
+    fields = tuple(_selected(field, inner, plain, types) for field, inner in plain)
+    return _counted(fields, [inner for _, inner in plain])
+
+
+def _counted(fields: Variant, readers: list[Reader]) -> Variant:
+    """Return the fields, of which some count the elements of others."""
+    counts: dict[str, str] = {}
+    earlier: dict[str, Field] = {}
+    to_the_end = 0
+    for field, reader in zip(fields, readers):
+        name = reader.get(language.RequestField.count)
+        place = reader.place_of(language.RequestField.count) if name else reader.place
+        if name and (name not in earlier or not _can_count(earlier[name], field)):
+            message = (
+                f"count: {name} must be an earlier whole number of the message that can hold "
+                f"{field.type.sizes[1]}, and {field.name} a type with a size that varies"
+            )
+            reader.problem("bad-count", message, place)
+        elif name:
+            counts[name] = field.name
+        elif field.type.varies:
+            to_the_end += 1
+        if to_the_end > 1:
+            message = f"a second field of {reader.what} goes to the end; give it a count"
+            reader.problem("bad-count", message, place)
+        earlier[field.name] = field
+    return tuple(replace(field, counts=counts.get(field.name, "")) for field in fields)
+
+
+def _can_count(field: Field, listed: Field) -> bool:
+    type, (least, most) = field.type, listed.type.sizes
+    if not isinstance(type, Quantity) or type.real or field.selector or field.const is not None:
+        return False
+    lowest, highest = type.ends
+    return listed.type.varies and lowest <= least and most <= highest and not type.choices
 
 
 def build_field(node: Node, direction: Direction, outer: Reader, types: Types) -> Field:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
+from typing import Literal
 
 from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Named
@@ -12,11 +14,16 @@ from cobotwire_codegen.language.meanings import in_words
 from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.load import Node, Scalar
 from cobotwire_codegen.model import (
+    BitPart,
+    Bits,
+    Chars,
     Dispute,
     Enum,
     Evidence,
     Flag,
+    Listed,
     Member,
+    Octets,
     Quantity,
     Type,
     Value,
@@ -45,6 +52,10 @@ class Types:
             ("flags", self._flag),
             ("enums", self._enum),
             ("values", self._value),
+            ("bits", self._bits),
+            ("bytes", self._octets),
+            ("texts", self._chars),
+            ("lists", self._listed),
         )
         for section, make in makers:
             for name, (place, node) in sections[section].items():
@@ -180,6 +191,77 @@ class Types:
                 type = stand_in(where)
             items.append((item, type))
         return Value(place, name, reader.get(spec.class_), tuple(items), reader.get(spec.doc))
+
+    def _bits(self, name: str, place: Place, node: Node) -> Bits:
+        spec = language.Bits
+        reader = Reader(node, spec, f"the bits {name}", self._problems)
+        wire = self._integer(reader, spec.wire)
+        parts: list[BitPart] = []
+        used = 0
+        for part, where, content in reader.get(spec.parts):
+            inner = Reader(content, language.BitPart, f"{part} of {name}", self._problems)
+            low, high = inner.get(language.BitPart.bits)
+            mask = (1 << high + 1) - (1 << low)
+            if high >= 8 * wire.width or mask & used:
+                message = f"{part} of {name} has bits outside of its wire type, or of another part"
+                reader.problem("bad-size", message, where)
+                continue
+            used |= mask
+            parts.append(BitPart(part, low, high - low + 1, self._bit_type(inner, wire, where)))
+        parts.sort(key=lambda part: part.shift)
+        return Bits(place, name, reader.get(spec.class_), wire, tuple(parts), reader.get(spec.doc))
+
+    def _bit_type(self, reader: Reader, wire: Wire, place: Place) -> Quantity | Enum | Flag:
+        spec = language.BitPart
+        low, high = reader.get(spec.bits)
+        doc, enum = reader.get(spec.doc), reader.get(spec.enum)
+        top = (1 << high - low + 1) - 1
+        signed_at = top // 2 if reader.get(spec.signed) else top
+        own = replace(wire, place=place, signed_at=signed_at)
+        if enum:
+            found = self.find(enum, reader.place_of(spec.enum))
+            fits = all(0 <= member.value <= top for member in found.members)
+            if isinstance(found, Enum) and fits:
+                return replace(found, wire=own)
+            message = f"{enum} of {reader.what} is not an enum with values 0..{top}"
+            reader.problem("bad-item", message, reader.place_of(spec.enum))
+        if low == high and not reader.get(spec.signed):
+            return Flag(place, "", own, doc)
+        ends = Fraction(signed_at - top if signed_at < top else 0), Fraction(signed_at)
+        return Quantity(place, "", own, Fraction(1), "", ends, (), False, doc, (), ())
+
+    def _octets(self, name: str, place: Place, node: Node) -> Octets:
+        spec = language.Octets
+        reader = Reader(node, spec, f"the bytes {name}", self._problems)
+        least, most = reader.get(spec.size)
+        return Octets(place, name, least, most, reader.get(spec.doc))
+
+    def _chars(self, name: str, place: Place, node: Node) -> Chars:
+        spec = language.Chars
+        reader = Reader(node, spec, f"the text {name}", self._problems)
+        least, most = reader.get(spec.size)
+        padding, word = reader.get(spec.padding), reader.get(spec.encoding)
+        if padding >= 0 and (least < most or padding > 127):
+            message = f"the text {name} varies in size, or its padding is not ASCII"
+            reader.problem("bad-size", message, reader.place_of(spec.padding))
+        encoding: Literal["ascii", "utf-8", "latin-1"] = "ascii"
+        if word != "ascii":
+            encoding = "utf-8" if word == "utf-8" else "latin-1"
+        pad = padding if padding >= 0 else None
+        return Chars(place, name, least, most, encoding, pad, reader.get(spec.doc))
+
+    def _listed(self, name: str, place: Place, node: Node) -> Listed:
+        spec = language.Listed
+        reader = Reader(node, spec, f"the list {name}", self._problems)
+        of = self.find(reader.get(spec.of), reader.place_of(spec.of))
+        if isinstance(of, Bits | Octets | Listed) or (
+            isinstance(of, Chars) and (of.varies or of.least < 2)
+        ):
+            message = f"the list {name} cannot have elements of the type {of.name}"
+            reader.problem("bad-item", message, reader.place_of(spec.of))
+            of = stand_in(place)
+        least, most = reader.get(spec.size)
+        return Listed(place, name, of, least, most, reader.get(spec.doc))
 
 
 def plain_name(node: Node) -> str:

@@ -40,7 +40,7 @@ def payload_fits(edition: Edition) -> Iterator[Problem]:
     for command in edition.commands:
         for direction in _DIRECTIONS:
             for variant in command.variants(direction):
-                length = sum(field.type.size for field in variant)
+                length = sum(f.type.sizes[1] * f.type.element_size for f in variant)
                 if length > edition.frame.maximum_data:
                     message = (
                         f"the {direction} of {command.name} has {length} data bytes; the frame "

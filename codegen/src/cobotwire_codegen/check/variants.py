@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import prod
 from typing import Any, Literal
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.model import Command, Edition, Field, Value, Variant
+from cobotwire_codegen.model.shapes import Shaped
 
+# Each size is a variant of its own in the table of the codecs.
+MOST_SIZES = 512
 _DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
 
 
@@ -20,16 +24,48 @@ def variants_apart(edition: Edition) -> Iterator[Problem]:
         seen: dict[tuple[int | str, int], list[tuple[Command, Variant]]] = {}
         for command in edition.commands:
             for variant in command.variants(direction):
-                length = sum(field.type.size for field in variant)
-                others = seen.setdefault((command.id if named else command.name, length), [])
-                for other, known in others:
-                    if not _apart(command, variant, other, known, direction):
-                        message = (
-                            f"the {direction} of {command.name} has the id {command.id:#04x} and "
-                            f"{length} data bytes, like {other.name} at {other.place}"
-                        )
-                        yield Problem(command.place, "ambiguous-variant", message)
-                others.append((command, variant))
+                reported: set[str] = set()
+                for length in _lengths(variant):
+                    others = seen.setdefault((command.id if named else command.name, length), [])
+                    for other, known in others:
+                        apart = _apart(command, variant, other, known, direction)
+                        if not apart and other.name not in reported:
+                            reported.add(other.name)
+                            message = (
+                                f"the {direction} of {command.name} has the id {command.id:#04x} "
+                                f"and {length} data bytes, like {other.name} at {other.place}"
+                            )
+                            yield Problem(command.place, "ambiguous-variant", message)
+                    others.append((command, variant))
+
+
+def sizes_bounded(edition: Edition) -> Iterator[Problem]:
+    """Report messages with too many sizes, and varying sizes beside several variants."""
+    for command in edition.commands:
+        for direction in _DIRECTIONS:
+            variants = command.variants(direction)
+            counts = [_combinations(variant) for variant in variants]
+            if sum(counts) > MOST_SIZES and max(counts) > 1:
+                message = f"the {direction} of {command.name} has {sum(counts)} sizes"
+                yield Problem(command.place, "bad-size", f"{message}; allowed: {MOST_SIZES}")
+            elif len(variants) > 1 and max(counts) > 1:
+                message = f"the {direction} of {command.name} has several variants, and a size"
+                yield Problem(command.place, "bad-size", f"{message} that varies")
+
+
+def _combinations(variant: Variant) -> int:
+    sizes = [field.type.sizes for field in variant]
+    return prod(most - least + 1 for least, most in sizes)
+
+
+def _lengths(variant: Variant) -> list[int]:
+    """Return every number of data bytes that a variant can have."""
+    found = {0}
+    for field in variant:
+        least, most = field.type.sizes
+        sizes = [count * field.type.element_size for count in range(least, most + 1)]
+        found = {length + size for length in found for size in sizes}
+    return sorted(found)
 
 
 def _apart(
@@ -47,7 +83,10 @@ def _apart(
 
 
 def _rules(variant: Variant) -> object:
-    return [(lower.numbers(field.type), field.selector, field.const) for field in variant]
+    return [
+        (lower.numbers(field.type), field.type.sizes, field.selector, field.const)
+        for field in variant
+    ]
 
 
 def _places(variant: Variant) -> dict[int, Field]:
@@ -55,7 +94,9 @@ def _places(variant: Variant) -> dict[int, Field]:
     found: dict[int, Field] = {}
     at = 0
     for field in variant:
-        if not field.selector and not isinstance(field.type, Value):
+        if field.type.varies:
+            break
+        if not field.selector and not isinstance(field.type, Value | Shaped):
             found[at] = field
         at += field.type.size
     return found
@@ -77,4 +118,4 @@ def _allows(field: Field, number: dict[str, Any], raw: int) -> bool:
     return raw in choices if choices else number["minimum"] <= raw <= number["maximum"]
 
 
-RULES = (variants_apart,)
+RULES = (variants_apart, sizes_bounded)

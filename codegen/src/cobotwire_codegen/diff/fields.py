@@ -19,6 +19,9 @@ def field_changes(where: str, part: str, old: Field, new: Field, known: Known) -
     if old.const != new.const:
         numbers = ["free" if side.const is None else side.const for side in (old, new)]
         yield finding("constant-changed", where, *numbers)
+    if old.counts != new.counts:
+        listed = [f"the size of {side.counts}" if side.counts else "free" for side in (old, new)]
+        yield finding("constant-changed", where, *listed)
     if old.echo != new.echo:
         loosened = (old.echo, new.echo) == ("required", "optional")
         rule = "echo-loosened" if loosened else "echo-changed"

@@ -8,9 +8,9 @@ from typing import TypeVar
 from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.match import Matched, bare, match, order
 from cobotwire_codegen.diff.types import Known, shape, type_changes, wire_changes
-from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value, Wire
+from cobotwire_codegen.model import Edition, Type, Wire
 
-T = TypeVar("T", Wire, Quantity | Enum | Flag | Value)
+T = TypeVar("T", Wire, Type)
 
 
 def named_types(old: Edition, new: Edition) -> tuple[Known, list[Finding]]:

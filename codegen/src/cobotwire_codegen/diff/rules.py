@@ -61,6 +61,7 @@ _WIRE = {
     "result-removed": "the reply no longer carries {old}: replies of old peers are rejected",
     "scale-changed": "the scale was {old}, is {new}: the same bytes are another value",
     "selector-changed": "the selector was {old}, is {new}: numbers are misread",
+    "shape-changed": "was {old}, is {new}: values are misread or rejected",
     "sign-rule-changed": "raw values were {old}, are {new}: some are misread",
     "text-changed": "the text was `{old}`, is `{new}`: it is misread",
     "type-bytes-changed": "was {old} on the wire, is {new}: the frame is misread or rejected",

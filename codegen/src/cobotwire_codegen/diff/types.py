@@ -10,7 +10,19 @@ from cobotwire_codegen import lower
 from cobotwire_codegen.diff import prose, quantities, words
 from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.match import bare, match, order, renamed
-from cobotwire_codegen.model import Enum, Member, Quantity, Type, Value, Wire
+from cobotwire_codegen.model import (
+    Bits,
+    Chars,
+    Enum,
+    Listed,
+    Member,
+    Octets,
+    Quantity,
+    Type,
+    Value,
+    Wire,
+)
+from cobotwire_codegen.model.shapes import Shaped
 
 
 @dataclass
@@ -73,6 +85,8 @@ def type_changes(where: str, old: Type, new: Type, known: Known) -> Iterator[Fin
     """Compare two types of any kind."""
     if isinstance(old, Value) and isinstance(new, Value):
         yield from _value(where, old, new, known)
+    elif isinstance(old, Shaped) or isinstance(new, Shaped):
+        yield from _shape(where, old, new, known)
     elif isinstance(old, Value) or isinstance(new, Value) or old.kind != new.kind:
         yield from _kind(where, old, new)
     else:
@@ -96,7 +110,42 @@ def wire_shape(type: Type) -> list[tuple[int, str, int, str]]:
 
 def shape(found: Type) -> tuple[Any, ...]:
     """Return a type without its names and descriptions."""
-    return found.kind, lower.numbers(found), lower.choices(found)
+    return found.kind, lower.numbers(found), lower.choices(found), found.sizes
+
+
+def _shape(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:
+    """Compare two types, of which one is bits, bytes, a text or a list."""
+    if not isinstance(old, Shaped) or not isinstance(new, Shaped) or old.kind != new.kind:
+        yield from _kind(where, old, new)
+        return
+    if isinstance(old, Bits) and isinstance(new, Bits):
+        yield from _class(where, old.class_name, new.class_name)
+    if _facts(old) != _facts(new):
+        yield finding("shape-changed", where, _facts(old), _facts(new))
+    if isinstance(old, Listed) and isinstance(new, Listed):
+        yield from _item(f"{where}/of", old.of, new.of, known)
+    if isinstance(old, Bits) and isinstance(new, Bits):
+        yield from known.unreported(
+            old.wire, new.wire, "wire", where, lambda at: wire_changes(at, old.wire, new.wire)
+        )
+        for before, after in zip(old.bit_parts, new.bit_parts):
+            yield from type_changes(f"{where}/{after.name}", before.type, after.type, known)
+
+
+def _facts(found: Bits | Octets | Chars | Listed) -> str:
+    """Return all that matters on the wire in words."""
+    sizes = "..".join(map(str, dict.fromkeys(found.sizes)))
+    if isinstance(found, Bits):
+        parts = [
+            f"{part.name} {part.type.name} {part.shift}+{part.count}" for part in found.bit_parts
+        ]
+        return f"bits {', '.join(parts)} of {found.wire.name}"
+    if isinstance(found, Listed):
+        return f"{sizes} x {found.of.name}"
+    if isinstance(found, Chars):
+        padding = "" if found.padding is None else f", padded with {found.padding:#04x}"
+        return f"{sizes} bytes of {found.encoding}{padding}"
+    return f"{sizes} bytes"
 
 
 def _kind(where: str, old: Type, new: Type) -> Iterator[Finding]:
@@ -150,7 +199,7 @@ def _value(where: str, old: Value, new: Value, known: Known) -> Iterator[Finding
             yield from _item(f"{where}/{after}", item, parts[after], known)
 
 
-def _item(where: str, old: Quantity, new: Quantity, known: Known) -> Iterator[Finding]:
+def _item(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:
     yield from known.unreported(
         old, new, "types", where, lambda at: type_changes(at, old, new, known)
     )

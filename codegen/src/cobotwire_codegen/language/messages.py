@@ -51,6 +51,12 @@ class _Field(Record):
     range = optional(Range(), "A range inside that of the type, in the type's unit.")
     optional_ = optional(YesNo(), "It may be left out. Only the last fields can be optional.")
     const = optional(Whole(), "The only raw value of the field; callers do not pass it.")
+    count = optional(
+        Text(),
+        "An earlier field that counts the elements of this one, whose size varies; callers do not "
+        "pass it. Left out: the elements go to the end of the data.",
+        "",
+    )
 
 
 class _ReplyField(_Field):

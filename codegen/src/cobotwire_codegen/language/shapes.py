@@ -132,6 +132,28 @@ class Whole(Shape[int]):
         return {"type": "integer", **{k: v for k, v in bounds.items() if v is not None}}
 
 
+class Span(Shape[tuple[int, int]]):
+    """A whole number, or a pair of them: the lowest and the highest."""
+
+    blank = (0, 0)
+    words = "a whole number, or [lowest, highest]"
+
+    def read(self, node: Node, subject: str, note: Note) -> tuple[int, int]:
+        """Return the two numbers, which are the same if only one is given."""
+        items = node.items if isinstance(node, Sequence) else (node, node)
+        ends = [item.value if isinstance(item, Scalar) else None for item in items]
+        if len(ends) == 2 and all(type(end) is int and 0 <= end < 2**16 for end in ends):
+            low, high = ends
+            if low <= high:  # type: ignore[operator]  # both are integers
+                return low, high  # type: ignore[return-value]  # both are integers
+        return self._wrong(node, subject, note, "bad-size")
+
+    def schema(self) -> Schema:
+        """Return a whole number, or an array of two."""
+        one: Schema = {"type": "integer", "minimum": 0, "maximum": 65535}
+        return either("array", {"items": one, "minItems": 2, "maxItems": 2}, one)
+
+
 class YesNo(Shape[bool]):
     """True or false."""
 

@@ -12,6 +12,7 @@ from cobotwire_codegen.language.shapes import (
     Name,
     Numbers,
     Range,
+    Span,
     Text,
     Whole,
     Word,
@@ -138,6 +139,72 @@ class Value(Record):
     EXAMPLE = "{class: Pair, doc: Two temperatures., items: {inner: warmth, outer: warmth}}"
 
 
+class BitPart(Record):
+    """Some bits of a word: a flag if it is one bit, else a number or the value of an enum."""
+
+    HEADING = "Part of a word"
+    bits = required(Span(), "Which bits: 3, or [4, 7]; 0 is the lowest bit.")
+    doc = required(Text(), _DOC)
+    enum = optional(Text(), "The enum that names the values of the bits.", "")
+    signed = optional(YesNo(), "Whether the number is in two's complement.", False)
+    EXAMPLE = "{bits: [4, 7], doc: How strong the signal is.}"
+
+
+class Bits(Record):
+    """A word divided into named bits; the generated Python has a named tuple for it.
+
+    Bits that no part names are 0 in requests, and are not read.
+    """
+
+    class_ = required(Name(CLASS), _CLASS)
+    wire = required(_WIRE, "How the word is encoded: an unsigned integer.")
+    doc = required(Text(), _DOC)
+    parts = required(Named(BitPart, LOWER, ("empty-value", "list its parts")), "The parts by name.")
+    EXAMPLE = """\
+class: Status
+wire: byte
+doc: How the sensor is.
+parts:
+  ready: {bits: 0, doc: Whether it is ready.}
+  level: {bits: [4, 7], doc: How strong the signal is.}
+"""
+
+
+class Octets(Record):
+    """Bytes without a meaning of their own."""
+
+    HEADING = "Bytes"
+    size = required(Span(), "How many: 8, or [0, 32] if the number varies.")
+    doc = required(Text(), _DOC)
+    EXAMPLE = "{size: [0, 32], doc: What the sensor stores.}"
+
+
+class Chars(Record):
+    """Text inside a frame."""
+
+    HEADING = "Text"
+    size = required(Span(), "How many bytes: 8, or [0, 32] if the number varies.")
+    doc = required(Text(), _DOC)
+    encoding = optional(Word(("ascii", "utf-8", "latin-1")), "How it is encoded.", "ascii")
+    padding = optional(
+        Whole(0, 255, "bad-size"),
+        "The byte after a text that is shorter than its fixed size. Left out: each text has "
+        "exactly that size.",
+        -1,
+    )
+    EXAMPLE = "{size: 16, padding: 0, doc: The name of the sensor.}"
+
+
+class Listed(Record):
+    """Several elements of one type. A list of a value type repeats a group of numbers."""
+
+    HEADING = "List"
+    of = required(Text(), "A quantity, flag, enum, value type, or text of a fixed size.")
+    size = required(Span(), "How many elements: 6, or [0, 8] if the number varies.")
+    doc = required(Text(), _DOC)
+    EXAMPLE = "{of: warmth, size: [0, 8], doc: The temperature of each sensor.}"
+
+
 class TypesFile(Record):
     """The types of fields. A field names a quantity, a flag, an enum or a value type."""
 
@@ -146,6 +213,10 @@ class TypesFile(Record):
     flags = optional(Named(Flag, LOWER), "Yes or no, encoded as 1 or 0.")
     enums = optional(Named(Enum, LOWER), "Closed lists of values.")
     values = optional(Named(Value, LOWER), "Named tuples of quantities.")
+    bits = optional(Named(Bits, LOWER), "Words divided into named bits.")
+    bytes = optional(Named(Octets, LOWER), "Bytes without a meaning of their own.")
+    texts = optional(Named(Chars, LOWER), "Text inside a frame.")
+    lists = optional(Named(Listed, LOWER), "Several elements of one type.")
 
 
 # The sections of a types file, with the record of their entries.
@@ -155,4 +226,8 @@ SECTIONS: dict[str, type[Record]] = {
     "flags": Flag,
     "enums": Enum,
     "values": Value,
+    "bits": Bits,
+    "bytes": Octets,
+    "texts": Chars,
+    "lists": Listed,
 }

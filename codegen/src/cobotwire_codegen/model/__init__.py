@@ -24,20 +24,23 @@ from cobotwire_codegen.model.edition import (
 )
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.frame import Address, Frame, FrameCheck, FrameNumber
+from cobotwire_codegen.model.shapes import BitPart, Bits, Chars, Listed, Octets, Type
 from cobotwire_codegen.model.types import (
     Enum,
     Flag,
     Member,
     Quantity,
     Scalar,
-    Type,
     Value,
     Wire,
 )
 
 __all__ = [
     "Address",
+    "BitPart",
+    "Bits",
     "Change",
+    "Chars",
     "Command",
     "Derivation",
     "Dispute",
@@ -54,8 +57,10 @@ __all__ = [
     "Geometry",
     "Lines",
     "Link",
+    "Listed",
     "Member",
     "Motion",
+    "Octets",
     "Quantity",
     "ReadBack",
     "Samples",

@@ -7,7 +7,8 @@ from typing import Literal
 
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model.facts import Change, Dispute, Lines
-from cobotwire_codegen.model.types import Member, Type, Value
+from cobotwire_codegen.model.shapes import Type
+from cobotwire_codegen.model.types import Member, Value
 
 
 class NoId(int):
@@ -21,7 +22,8 @@ class Field:
     When another field, the ``selector``, decides the type, ``cases`` holds a type for each value of
     the selector, and ``type`` is the first of them. A field with ``const`` always holds that raw
     value; the caller does not give it. ``default`` are the raw values of an argument that the
-    caller leaves out.
+    caller leaves out. ``counts`` names the list whose elements the field counts, which is no
+    argument and no result either.
     """
 
     place: Place
@@ -34,6 +36,7 @@ class Field:
     selector: str
     cases: tuple[tuple[Member, Type], ...]
     default: tuple[int, ...] | None = None
+    counts: str = ""
 
     @property
     def smallest(self) -> object:
@@ -54,7 +57,7 @@ def named_fields(variants: tuple[Variant, ...]) -> dict[str, tuple[Field, ...]]:
     found: dict[str, list[Field]] = {}
     for variant in sorted(variants, key=len, reverse=True):
         for field in variant:
-            if field.const is None:
+            if field.const is None and not field.counts:
                 found.setdefault(field.name, []).append(field)
     return {name: tuple(fields) for name, fields in found.items()}
 

@@ -10,7 +10,8 @@ from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.model.commands import Command, Family
 from cobotwire_codegen.model.facts import Change, Lines
 from cobotwire_codegen.model.frame import Frame
-from cobotwire_codegen.model.types import Type, Wire
+from cobotwire_codegen.model.shapes import Type
+from cobotwire_codegen.model.types import Wire
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Defines the types of fields: quantity, enum, flag, and a value type of several quantities.
+"""Defines the types of numbers: quantity, enum, flag, and a value type of several quantities.
 
 All four have the same attributes, so that the rest of the generator rarely distinguishes them:
 ``kind``, ``name``, ``doc``, ``class_name``, ``members``, ``parts``, ``size``, ``choices``, and the
@@ -85,6 +85,21 @@ class _Scalar:
         return self.wire.width
 
     @property
+    def sizes(self) -> tuple[int, int]:
+        """The least and the most elements."""
+        return 1, 1
+
+    @property
+    def varies(self) -> bool:
+        """Whether values differ in their number of elements."""
+        return False
+
+    @property
+    def element_size(self) -> int:
+        """Bytes on the wire."""
+        return self.size
+
+    @property
     def smallest(self) -> object:
         """The smallest legal value, as a vector writes it."""
         assert isinstance(self, Quantity | Enum | Flag)
@@ -103,7 +118,7 @@ class _Scalar:
         """Return whether every raw value of a width is legal."""
         return False
 
-    def narrowed(self, ends: tuple[Fraction, Fraction]) -> Type | None:
+    def narrowed(self, ends: tuple[Fraction, Fraction]) -> Quantity | None:
         """Return the type with a narrower range; None if the type cannot have that range."""
         return None
 
@@ -291,6 +306,21 @@ class Value:
         return sum(item.wire.width for _, item in self.items)
 
     @property
+    def sizes(self) -> tuple[int, int]:
+        """The least and the most elements."""
+        return 1, 1
+
+    @property
+    def varies(self) -> bool:
+        """Whether values differ in their number of elements."""
+        return False
+
+    @property
+    def element_size(self) -> int:
+        """Bytes on the wire."""
+        return self.size
+
+    @property
     def smallest(self) -> object:
         """The smallest value of each part."""
         return tuple(item.smallest for _, item in self.items)
@@ -325,4 +355,3 @@ def _plain(exact: Fraction) -> int | Fraction:
 
 
 Scalar = Quantity | Enum | Flag
-Type = Quantity | Enum | Flag | Value

@@ -16,7 +16,7 @@ from jinja2 import (
 )
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Edition, Enum, Flag, Quantity, Type, Value
+from cobotwire_codegen.model import Bits, Edition, Enum, Flag, Listed, Quantity, Type, Value
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import layout, markdown, parameters, python_api, words
 from cobotwire_codegen.render.byte_table import byte_rows
@@ -138,7 +138,10 @@ def template_names() -> list[str]:
 def with_used_types(edition: Edition) -> Edition:
     """Return the edition without unused types: a delta may stop using types of its base."""
     fields = [field for command in edition.commands for field in command.fields]
-    used = {type.name for field in fields for _, type in lower.cases(field)}
+    types = [type for field in fields for _, type in lower.cases(field)]
+    types += [type.of for type in types if isinstance(type, Listed)]
+    types += [part for type in types if isinstance(type, Bits) for _, part in type.items]
+    used = {type.name for type in types}
     return replace(edition, types=tuple(type for type in edition.types if type.name in used))
 
 
@@ -177,17 +180,17 @@ def environment(templates: Path | None = None) -> Environment:
     )
     jinja.tests.update(
         enum=lambda type: isinstance(type, Enum),
-        value=lambda type: isinstance(type, Value),
+        value=lambda type: isinstance(type, Value | Bits),
         flag=lambda type: isinstance(type, Flag),
         quantity=lambda type: isinstance(type, Quantity),
     )
     return jinja
 
 
-def _by_class(types: tuple[Type, ...]) -> Iterator[Enum | Value]:
+def _by_class(types: tuple[Type, ...]) -> Iterator[Enum | Value | Bits]:
     """Yield the types that become a class, each class once."""
     seen = set()
     for type in types:
-        if isinstance(type, Enum | Value) and type.class_name not in seen:
+        if isinstance(type, Enum | Value | Bits) and type.class_name not in seen:
             seen.add(type.class_name)
             yield type

@@ -7,7 +7,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from cobotwire_codegen.model import Command, Enum, Field, Flag, Quantity, Type, Value, Variant
+from cobotwire_codegen.model import (
+    Command,
+    Enum,
+    Field,
+    Flag,
+    Quantity,
+    Type,
+    Value,
+    Variant,
+    named_fields,
+)
 from cobotwire_codegen.render.parameters import Parameter, argument_type, parameters
 from cobotwire_codegen.render.words import decimal
 
@@ -43,7 +53,7 @@ def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
     It does if each variant adds one argument to the next shorter one, and no type differs.
     """
     found = parameters(command)
-    names = sorted(({f.name for f in v if f.const is None} for v in command.requests), key=len)
+    names = sorted((set(named_fields((v,))) for v in command.requests), key=len)
     steps = pairwise(names)
     chain = all(short < long and len(long) == len(short) + 1 for short, long in steps)
     if chain and all(len({_annotation(field) for field in p.fields}) == 1 for p in found):
@@ -131,7 +141,8 @@ def _of_text(command: Command, name: str) -> Argument:
 
 
 def _of_variant(command: Command, variant: Variant) -> tuple[Argument, ...]:
-    fields = {field.name: field for field in variant if field.const is None}
+    given = (field for field in variant if field.const is None and not field.counts)
+    fields = {field.name: field for field in given}
     texts = command.text_arguments
     return tuple(
         _of_field(Parameter(name, (fields[name],), optional=False))

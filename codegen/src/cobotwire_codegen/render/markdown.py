@@ -17,15 +17,18 @@ from cobotwire_codegen.model import (
     Value,
     Vector,
 )
+from cobotwire_codegen.model.shapes import Shaped
 from cobotwire_codegen.render.arguments import constant_in_words, default_in_words
 from cobotwire_codegen.render.escape_markdown import code as code
-from cobotwire_codegen.render.words import decimal
+from cobotwire_codegen.render.words import decimal, span
 
 Direction = Literal["request", "reply"]
 
 
 def wire_variant(type: Type) -> str:
     """Return how a type is encoded, in words."""
+    if isinstance(type, Shaped):
+        return span(type)
     if isinstance(type, Value):
         return ", ".join(wire_variant(item) for _, item in type.items)
     if not isinstance(type, Quantity):
@@ -113,6 +116,8 @@ def field_doc(field: Field) -> str:
         words.append(f"Repeats the request's value{older}.")
     if field.optional:
         words.append("May be left out.")
+    if field.counts:
+        words.append(f"Counts the elements of `{field.counts}`.")
     if field.const is not None:
         words.append(f"Always {constant_in_words(field)}.")
     if field.default is not None:

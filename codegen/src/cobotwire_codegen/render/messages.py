@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from cobotwire_codegen.lower import message_class
-from cobotwire_codegen.model import Command, Enum, Field, Type, Value, Variant
+from cobotwire_codegen.model import Command, Field, Listed, Type, Variant
 from cobotwire_codegen.render.arguments import (
     Argument,
     arguments,
@@ -173,6 +173,8 @@ def _row_of(variant: Variant) -> tuple[str, ...]:
 
 
 def _part(field: Field) -> str:
+    if field.counts:
+        return "..."
     if field.const is not None:
         return python_value(field.type, (field.const,), on_wire=True)
     if field.default is not None:
@@ -210,9 +212,10 @@ def classes_in_method(command: Command) -> set[str]:
 
 
 def _classes_named(command: Command, annotations: list[str]) -> set[str]:
-    words = {word for annotation in annotations for word in re.findall(r"\w+", annotation)}
+    words = set(re.findall(r"\w+", " ".join(annotations)))
     types = [type for field in command.fields for type in (field.type, *_case_types(field))]
-    return {t.class_name for t in types if isinstance(t, Enum | Value) and t.class_name in words}
+    types += [type.of for type in types if isinstance(type, Listed)]
+    return {type.class_name for type in types if type.class_name in words}
 
 
 def _case_types(field: Field) -> tuple[Type, ...]:

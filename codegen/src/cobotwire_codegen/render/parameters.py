@@ -6,10 +6,14 @@ from dataclasses import dataclass
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import (
+    Bits,
+    Chars,
     Command,
     Enum,
     Field,
     Flag,
+    Listed,
+    Octets,
     Quantity,
     Type,
     Value,
@@ -108,6 +112,10 @@ def argument_type(parameter: Parameter) -> str:
 
 
 def _argument(type: Type) -> str:
+    if isinstance(type, Bits):
+        return "Sequence[int]"
+    if isinstance(type, Listed):
+        return f"Sequence[{_argument(type.of)}]"
     if isinstance(type, Value):
         return f"Sequence[{'float' if scaled(type) else 'int'}]"
     if isinstance(type, Enum):
@@ -121,6 +129,8 @@ def scaled(type: Value) -> bool:
 
 
 def _scalar(type: Type) -> str:
+    if isinstance(type, Octets | Chars):
+        return "bytes" if isinstance(type, Octets) else "str"
     if isinstance(type, Flag):
         return "bool"
     return "int" if isinstance(type, Quantity) and not type.real else "float"
@@ -135,10 +145,17 @@ def result_type(parameter: Parameter) -> str:
             return first.class_name
         every = [type for type in parameter.types if isinstance(type, Value)]
         return f"tuple[{'float' if any(map(scaled, every)) else 'int'}, ...]"
-    if isinstance(first, Enum) and same:
+    if isinstance(first, Enum | Bits) and same:
         return first.class_name
+    if isinstance(first, Listed) and same:
+        return f"tuple[{element_type(first.of)}, ...]"
     words = {_scalar(type) if not isinstance(type, Enum) else "int" for type in parameter.types}
     return words.pop() if len(words) == 1 else "float"
+
+
+def element_type(type: Type) -> str:
+    """Return the annotation of an element of a list, or of a part of a named tuple."""
+    return type.class_name or _scalar(type)
 
 
 def returns(command: Command) -> str:

@@ -5,7 +5,17 @@ from __future__ import annotations
 import re
 
 from cobotwire_codegen.lower import message_class
-from cobotwire_codegen.model import Command, Edition, Enum, Family, Flag, Quantity, Value
+from cobotwire_codegen.model import (
+    Bits,
+    Command,
+    Edition,
+    Enum,
+    Family,
+    Flag,
+    Listed,
+    Quantity,
+    Value,
+)
 from cobotwire_codegen.render.arguments import Argument, arguments, overloads
 from cobotwire_codegen.render.layout import WIDTH, laid_out, oneline
 from cobotwire_codegen.render.messages import classes_in_method, declared
@@ -104,7 +114,7 @@ def _clause(sentence: str) -> str:
     return sentence.removesuffix(".")
 
 
-def item_docs(value: Value) -> list[tuple[str, str]]:
+def item_docs(value: Value | Bits) -> list[tuple[str, str]]:
     """Return the parts of a named tuple with their docs; neighbours with equal docs are joined."""
     found: list[tuple[str, str]] = []
     for name, item in value.items:
@@ -116,9 +126,10 @@ def item_docs(value: Value) -> list[tuple[str, str]]:
     return found
 
 
-def item_doc(item: Quantity) -> str:
+def item_doc(item: Quantity | Enum | Flag) -> str:
     """Return the description of a part of a named tuple, with its unit."""
-    return item.doc + (f" In {units(item.unit)}." if item.unit and not item.radians else "")
+    radians = isinstance(item, Quantity) and item.radians
+    return item.doc + (f" In {units(item.unit)}." if item.unit and not radians else "")
 
 
 def imports(family: Family) -> tuple[set[str], bool]:
@@ -148,7 +159,7 @@ def moves(edition: Edition) -> bool:
 
 def value_classes(edition: Edition) -> list[str]:
     """Return the name of every named tuple of an edition."""
-    names = {type.class_name for type in edition.types if isinstance(type, Value)}
+    names = {type.class_name for type in edition.types if isinstance(type, Value | Bits)}
     for command in edition.commands:
         if command.text is not None or len(results(command)) > 1:
             names.add(returns(command))
@@ -164,4 +175,6 @@ def enums_in_values(edition: Edition) -> list[str]:
     """Return the enums that occur in replies with several results."""
     found = [p for c in edition.commands if len(results(c)) > 1 for p in results(c)]
     types = {type for parameter in found for type in parameter.types}
-    return sorted(type.class_name for type in types if isinstance(type, Enum))
+    types |= {type.of for type in types if isinstance(type, Listed)}
+    types |= {part for type in edition.types if isinstance(type, Bits) for _, part in type.items}
+    return sorted({type.class_name for type in types if isinstance(type, Enum)})

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from cobotwire_codegen.model import Command, Edition, Enum, Family, Value
+from cobotwire_codegen.model import Bits, Command, Edition, Enum, Family, Value
 from cobotwire_codegen.render import python_api
 from cobotwire_codegen.render.layout import import_line
 from cobotwire_codegen.render.messages import classes_used, message_classes
-from cobotwire_codegen.render.parameters import reported_type, results, returns
+from cobotwire_codegen.render.parameters import element_type, reported_type, results, returns
 from cobotwire_codegen.render.way import Way
 
 PACKAGE = "cobotwire.editions"
@@ -159,8 +159,8 @@ def _classes(edition: Edition) -> dict[str, Any]:
         if isinstance(type, Enum):
             members = [(member.name, member.value, member.doc) for member in type.members]
             found.setdefault(type.class_name, (type.doc, members))
-        elif isinstance(type, Value):
-            items = [(name, item.scale == 1) for name, item in type.items]
+        elif isinstance(type, Value | Bits):
+            items = [(name, element_type(item)) for name, item in type.items]
             found.setdefault(type.class_name, (type.doc, items, python_api.item_docs(type)))
     for command in edition.commands:
         if command.text is not None:

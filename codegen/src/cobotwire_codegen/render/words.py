@@ -6,7 +6,19 @@ from fractions import Fraction
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.language.units import UNITS
-from cobotwire_codegen.model import Enum, Field, Flag, Lines, Quantity, Type
+from cobotwire_codegen.model import (
+    Bits,
+    Chars,
+    Enum,
+    Field,
+    Flag,
+    Lines,
+    Listed,
+    Octets,
+    Quantity,
+    Type,
+    Value,
+)
 
 
 def allowed(field: Field) -> str:
@@ -35,12 +47,28 @@ def span(type: Type) -> str:
         if type.wire.is_float and type.range is None:
             return f"a finite number of {type.wire.width} bytes{unit}"
         return f"{decimal(lowest)}..{decimal(highest)}{unit}"
+    if not isinstance(type, Value):
+        return _shape(type)
     names = [name for name, _ in type.items]
     spans: dict[str, list[str]] = {}
     for name, item in type.items:
         spans.setdefault(span(item), []).append(name)
     inner = "; ".join(f"{', '.join(group)} {words}" for words, group in spans.items())
     return f"{len(names)} numbers ({inner})"
+
+
+def _shape(type: Bits | Octets | Chars | Listed) -> str:
+    least, most = type.sizes
+    sizes = str(most) if least == most else f"{least}..{most}"
+    if isinstance(type, Octets):
+        return f"{sizes} bytes"
+    if isinstance(type, Chars):
+        at_most = "at most " if type.padding is not None else ""
+        return f"{type.encoding} text of {at_most}{sizes} bytes"
+    if isinstance(type, Listed):
+        return f"{sizes} elements: {span(type.of)}"
+    parts = [f"{name} {span(part)}" for name, part in type.items]
+    return f"{len(parts)} values ({'; '.join(parts)})"
 
 
 def decimal(exact: Fraction) -> str:

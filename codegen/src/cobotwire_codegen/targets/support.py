@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from cobotwire_codegen import lower
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.model import Edition, Quantity, Type, Value
+from cobotwire_codegen.model.shapes import Shaped
 
 
 def require_plain(edition: Edition, target: str) -> None:
@@ -45,6 +46,8 @@ def _unsupported(edition: Edition, target: str) -> Iterator[Problem]:
 
 
 def _other_kind(type: Type) -> str:
+    if isinstance(type, Shaped):
+        return {"bits": "bits", "bytes": "bytes"}.get(type.kind, f"a {type.kind}")
     parts = [item for _, item in type.items] if isinstance(type, Value) else [type]
     if any(isinstance(part, Quantity) and part.wire.is_float for part in parts):
         return "a float"

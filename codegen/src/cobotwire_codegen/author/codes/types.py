@@ -71,6 +71,24 @@ EXPLANATIONS = (
         "unit: degree\nrange: [-165, 165]\nshown_in: radian",
     ),
     Explanation(
+        "bad-size",
+        "Bits lie outside of their word or in two parts, a size cannot be encoded, or it varies "
+        "in a message that has several variants or several hundred sizes.",
+        "Each size of a message is a variant of its own, which decoders find by LEN.",
+        "Correct the bits; bound the sizes, or give the message one variant.",
+        "size: many",
+        "size: [0, 8]",
+    ),
+    Explanation(
+        "bad-count",
+        "`count` names no earlier field that can count the elements, or the end of the data is "
+        "that of two fields.",
+        "A decoder reads the number of elements before the elements.",
+        "Name an earlier whole number whose range includes the sizes.",
+        "- {name: data, type: blob, count: missing}",
+        "- {name: data, type: blob, count: size}",
+    ),
+    Explanation(
         "unsupported-type",
         "An output target (C, Wireshark, construct, the decoder page) cannot express a type.",
         "Code that misreads a field is worse than no code.",

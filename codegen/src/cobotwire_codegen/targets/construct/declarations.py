@@ -93,6 +93,7 @@ class Declarations:
     def _plain(self, field: Field, type: Type) -> Call | Name:
         if isinstance(type, Value):
             return Call("Struct", **{label: self._number(item) for label, item in type.items})
+        assert isinstance(type, Quantity | Enum | Flag), "other types are refused"
         number = self._number(type)
         return number if field.const is None else Call("Const", field.const, number)
 

@@ -1,0 +1,219 @@
+"""Defines the types that are more than a number: bits of a word, bytes, text, and lists.
+
+They have the attributes of the other types, so that the rest of the generator rarely distinguishes
+them. ``sizes`` are the least and the most elements (bytes of a text) of a value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar, Literal
+
+from cobotwire_codegen.errors import Place
+from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Scalar, Value, Wire
+
+
+class Shaped:
+    """What these types have in common: no raw value, no range, no members."""
+
+    __slots__ = ()
+    members: ClassVar[tuple[Member, ...]] = ()
+    choices: ClassVar[tuple[int, ...]] = ()
+    kind: ClassVar[str]
+    name: str
+    class_name: str
+
+    @property
+    def parts(self) -> tuple[tuple[str, Scalar], ...]:
+        """No scalars: selectors, constants and defaults have one number or a value type."""
+        return ()
+
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """The least and the most elements."""
+        return 1, 1
+
+    @property
+    def element_size(self) -> int:
+        """Bytes of an element on the wire."""
+        return 1
+
+    @property
+    def size(self) -> int:
+        """The least number of bytes on the wire."""
+        return self.sizes[0] * self.element_size
+
+    @property
+    def varies(self) -> bool:
+        """Whether values differ in their number of elements."""
+        return self.sizes[0] < self.sizes[1]
+
+    @property
+    def smallest(self) -> object:
+        """A legal value, as a vector writes it."""
+        return ()
+
+    def from_raw(self, raw: int) -> object:
+        """Return the raw value itself."""
+        return raw
+
+    def read(self, data: bytes) -> object:
+        """Return the bytes as hex digits, which is how a draft shows them."""
+        return data.hex(" ")
+
+    def can_hold(self, raw: int) -> bool:
+        """Return False: the type has several raw values."""
+        return False
+
+    def can_hold_any(self, width: int) -> bool:
+        """Return False: the type has several raw values."""
+        return False
+
+    def narrowed(self, ends: tuple[Fraction, Fraction]) -> None:
+        """Return None: the type has no range."""
+
+    def values(self, most: int) -> tuple[Member, ...]:
+        """Return nothing: the type cannot be a selector."""
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class BitPart:
+    """Some bits of a word: ``count`` bits, ``shift`` bits above the lowest one."""
+
+    name: str
+    shift: int
+    count: int
+    type: Quantity | Enum | Flag
+
+
+@dataclass(frozen=True, slots=True)
+class Bits(Shaped):
+    """A word divided into named parts: a named tuple."""
+
+    kind: ClassVar[str] = "bits"
+
+    place: Place
+    name: str
+    class_name: str
+    wire: Wire
+    bit_parts: tuple[BitPart, ...]
+    doc: str
+
+    @property
+    def element_size(self) -> int:
+        """Bytes of the word."""
+        return self.wire.width
+
+    @property
+    def items(self) -> tuple[tuple[str, Quantity | Enum | Flag], ...]:
+        """The parts by name."""
+        return tuple((part.name, part.type) for part in self.bit_parts)
+
+    @property
+    def smallest(self) -> object:
+        """The smallest value of each part."""
+        return tuple(part.type.smallest for part in self.bit_parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Octets(Shaped):
+    """Bytes without a meaning of their own."""
+
+    kind: ClassVar[str] = "bytes"
+    class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
+
+    place: Place
+    name: str
+    least: int
+    most: int
+    doc: str
+
+    @property
+    def wire(self) -> Wire:
+        """How each of its bytes is encoded."""
+        return _byte(self.place)
+
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """The least and the most bytes."""
+        return self.least, self.most
+
+    @property
+    def smallest(self) -> object:
+        """As few zeros as are legal."""
+        return bytes(self.least).hex(" ")
+
+
+@dataclass(frozen=True, slots=True)
+class Chars(Shaped):
+    """Text inside a frame. With ``padding`` a shorter text is followed by that byte."""
+
+    kind: ClassVar[str] = "text"
+    class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
+
+    place: Place
+    name: str
+    least: int
+    most: int
+    encoding: Literal["ascii", "utf-8", "latin-1"]
+    padding: int | None
+    doc: str
+
+    @property
+    def wire(self) -> Wire:
+        """How each of its bytes is encoded."""
+        return _byte(self.place)
+
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """The least and the most bytes."""
+        return self.least, self.most
+
+    @property
+    def smallest(self) -> object:
+        """The shortest legal text."""
+        return "" if self.padding is not None else "x" * self.least
+
+
+@dataclass(frozen=True, slots=True)
+class Listed(Shaped):
+    """Elements of one type: scalars, value types, or texts of a fixed size."""
+
+    kind: ClassVar[str] = "list"
+    class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
+
+    place: Place
+    name: str
+    of: Quantity | Enum | Flag | Value | Chars
+    least: int
+    most: int
+    doc: str
+
+    @property
+    def wire(self) -> Wire:
+        """How the elements' first number is encoded."""
+        return self.of.wire if isinstance(self.of, Chars) else self.of.parts[0][1].wire
+
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """The least and the most elements."""
+        return self.least, self.most
+
+    @property
+    def element_size(self) -> int:
+        """Bytes of an element on the wire."""
+        return self.of.size
+
+    @property
+    def smallest(self) -> object:
+        """As few elements as are legal."""
+        return (self.of.smallest,) * self.least
+
+
+def _byte(place: Place) -> Wire:
+    return Wire(place, "byte", 1, "big", 255, "A byte.", (), ())
+
+
+Type = Quantity | Enum | Flag | Value | Bits | Octets | Chars | Listed

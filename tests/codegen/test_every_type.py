@@ -1,0 +1,163 @@
+"""A made-up sensor uses every type: its vectors, its client and its simulated device agree."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Frame
+from cobotwire.diagnose.explain import format_message, frame_parts
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check
+from cobotwire_codegen.emit import Target, write
+from cobotwire_codegen.errors import SpecError
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.render import render_python
+from cobotwire_codegen.targets.c import render_c
+from cobotwire_codegen.targets.wireshark import render_wireshark
+
+HERE = Path(__file__).parent / "families"
+CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
+
+
+@pytest.fixture(scope="module")
+def edition() -> Edition:
+    found = build_edition(HERE / "sensor.yaml", HERE)
+    check(found)
+    return found
+
+
+@pytest.fixture(scope="module")
+def package(edition: Edition, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    folder = tmp_path_factory.mktemp("types")
+    write(Target(folder / "every_type_sensor", render_python(edition)))
+    sys.path.insert(0, str(folder))
+    importlib.invalidate_caches()
+    try:
+        yield importlib.import_module("every_type_sensor")
+    finally:
+        sys.path.remove(str(folder))
+
+
+@pytest.mark.parametrize("name", CODECS)
+def test_vectors_decode_to_typed_messages_that_encode_to_the_same_bytes(
+    package: Any, edition: Edition, name: codecs.CodecName
+) -> None:
+    codec = codecs.load(package.TABLE, name)
+    for vector in edition.vectors:
+        assert vector.frame is not None
+        decoded = codec.decode(vector.direction, vector.frame, of=vector.command)
+        command = package.TABLE.command(vector.command)
+        types = command.request_type, command.reply_type
+        message = types[vector.direction == "reply"].from_fields(decoded.fields)
+        assert codec.encode(vector.command, vector.direction, message.values) == vector.frame
+        parts = list(frame_parts(package.TABLE, vector.frame, decoded))
+        assert b"".join(part.data for part in parts) == vector.frame
+        assert format_message(decoded)
+
+
+def test_codecs_agree_on_the_stream_and_the_columns_of_all_vectors(
+    package: Any, edition: Edition
+) -> None:
+    stream = b"\xfe".join(vector.frame or b"" for vector in edition.vectors)
+    reference, native = (codecs.load(package.TABLE, name) for name in CODECS)
+    events = [codec.framer("both") for codec in (reference, native)]
+    found = [framer.feed(stream) + framer.flush() for framer in events]
+    assert found[0] == found[1]
+    assert sum(isinstance(event, Frame) for event in found[0]) == len(edition.vectors)
+    for raw in (False, True):
+        columns = [codec.decode_columns(stream, raw=raw) for codec in (reference, native)]
+        contents = [
+            [(rows.command.name, [rows[name].tolist() for name in rows.names]) for rows in each]
+            for each in columns
+        ]
+        assert contents[0] == contents[1]
+
+
+def test_generated_client_sets_and_reads_every_type_on_a_simulated_sensor(package: Any) -> None:
+    from every_type_sensor.enums import Mode  # type: ignore[import-not-found]  # generated above
+
+    with PtyServer(SimulatedArm(package.TABLE)) as server, package.CLIENT(server.url) as sensor:
+        sensor.set_torque(-2.5)
+        assert sensor.get_torque() == (-2.5, 0.0, 0.0)
+        sensor.set_status((True, Mode.OFF, 9, -4))
+        status = sensor.get_status()
+        assert (status.ready, status.mode, status.level, status.offset) == (True, Mode.OFF, 9, -4)
+        sensor.write_memory(3, b"\xca\xfe", verify=True)
+        assert (sensor.read_memory(3), sensor.read_memory(4)) == (b"\xca\xfe", b"")
+        sensor.set_name("left", bytearray(b"1234"), "à côté")
+        assert sensor.get_name() == ("left", b"1234", "à côté")
+        joints, modes = sensor.get_joints()
+        assert [joint.temperature for joint in joints] == [0, 0, 0, 0]
+        assert modes == (Mode.SLOW,) * 3
+        assert sensor.get_satellites() == ((), ())
+        sensor.set_temperatures([20, 30])
+
+
+@pytest.mark.parametrize(
+    ("method", "arguments", "message"),
+    [
+        (
+            "set_temperatures",
+            ([1, 300],),
+            r"temperatures\[1\] is 300; allowed: a whole number 0..2",
+        ),
+        ("set_temperatures", ([1] * 41,), r"len\(temperatures\) is 41; allowed: 0..40"),
+        ("write_memory", (1, b"x" * 41, True), r"len\(data\) is 41; allowed: 0..40"),
+        ("write_memory", (1, "x", True), "data is 'x'; allowed: bytes"),
+        ("set_name", ("é", b"1234", ""), "label is 'é'; allowed: ASCII text of at most 8 bytes"),
+        ("set_name", ("x" * 9, b"1234", ""), "label is 'xxxxxxxxx'; allowed: ASCII text"),
+        ("set_name", ("x", b"123", ""), r"len\(serial\) is 3; allowed: 4"),
+        ("set_name", ("x", b"1234", "x" * 31), r"len\(note\) is 31; allowed: 0..30"),
+        ("set_status", ((1, 7, 9, 0),), r"status.mode is 7; allowed: SLOW \(0\), FAST \(1\)"),
+        ("set_status", ((1, 1, 64, 0),), "status.level is 64; allowed: a whole number 0..63"),
+        ("set_torque", (math.nan,), "torque is nan; allowed: a number -50..50 newton metres"),
+    ],
+)
+@pytest.mark.parametrize("name", CODECS)
+def test_illegal_value_is_refused_with_its_element(
+    package: Any, name: codecs.CodecName, method: str, arguments: Any, message: str
+) -> None:
+    codec = codecs.load(package.TABLE, name)
+    request = package.TABLE.request_type(method)(*arguments)
+    with pytest.raises(UsageError, match=message):
+        codec.encode(method, "request", request.values)
+
+
+@pytest.mark.parametrize(
+    ("command", "data", "message"),
+    [
+        ("get_torque", "00 00 C0 7F" + " 00" * 12, "torque is nan"),
+        ("get_status", "06 00", r"status.mode is 3; allowed: SLOW"),
+        ("get_name", "6C E9" + " 00" * 10, "byte 1 of label is E9, not ascii"),
+        ("get_name", "6C" + " 00" * 11 + " C3 28", "byte 0 of note is C3, not utf-8"),
+        ("get_satellites", "01 09 00 00 00 00", r"satellites\[0\].channel is 9; allowed: a whole"),
+    ],
+)
+def test_both_codecs_refuse_malformed_data_with_the_same_text(
+    package: Any, command: str, data: str, message: str
+) -> None:
+    body = bytes.fromhex(data)
+    id = package.TABLE.command(command).id
+    frame = b"\xfe\xfe" + bytes([len(body) + 2, id]) + body + b"\xfa"
+    texts = []
+    for name in CODECS:
+        with pytest.raises(ProtocolError, match=message) as caught:
+            codecs.load(package.TABLE, name).decode("reply", frame)
+        texts.append(str(caught.value))
+    assert texts[0] == texts[1]
+
+
+def test_targets_without_the_types_name_the_command_and_the_type(edition: Edition) -> None:
+    for target in (render_c, lambda each: render_wireshark([each])):
+        with pytest.raises(SpecError) as caught:
+            target(edition)
+        assert "cannot express status of get_status: status is bits" in str(caught.value)
