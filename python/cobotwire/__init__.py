@@ -17,6 +17,7 @@ __all__ = [
     "AsyncMechArm270",
     "AsyncMyCobot",
     "AsyncMyCobot280",
+    "AsyncMyCobot280RDKX5",
     "AsyncMyPalletizer260",
     "CaptureError",
     "CobotwireError",
@@ -27,6 +28,7 @@ __all__ = [
     "MotionTimeout",
     "MyCobot",
     "MyCobot280",
+    "MyCobot280RDKX5",
     "MyPalletizer260",
     "ProtocolError",
     "ReplyTimeout",
@@ -47,6 +49,7 @@ if TYPE_CHECKING:
     from cobotwire.editions.mecharm270 import AsyncMechArm270, MechArm270
     from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
     from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
+    from cobotwire.editions.mycobot280_rdkx5 import AsyncMyCobot280RDKX5, MyCobot280RDKX5
     from cobotwire.editions.mypalletizer260 import AsyncMyPalletizer260, MyPalletizer260
     from cobotwire.inspect.identification import connect, connect_async, identify
     from cobotwire.protocol.errors import (
@@ -70,11 +73,13 @@ else:
         "AsyncMechArm270": "editions.mecharm270",
         "AsyncMyCobot": "editions.mycobot",
         "AsyncMyCobot280": "editions.mycobot280",
+        "AsyncMyCobot280RDKX5": "editions.mycobot280_rdkx5",
         "AsyncMyPalletizer260": "editions.mypalletizer260",
         "Limits": "protocol.limits",
         "MechArm270": "editions.mecharm270",
         "MyCobot": "editions.mycobot",
         "MyCobot280": "editions.mycobot280",
+        "MyCobot280RDKX5": "editions.mycobot280_rdkx5",
         "MyPalletizer260": "editions.mypalletizer260",
         "RetryPolicy": "session.policy",
         "Sample": "session.sample",

@@ -140,11 +140,13 @@ class Candidates:
     def next_query(self) -> tuple[str, Command] | None:
         """Return an edition, and a query of it that some of the likely editions lack; or None.
 
-        First the version, then queries that few editions have.
+        First the version, then queries that about half of the editions have. Of a single likely
+        edition, a query that few others have.
         """
         among = self.likely if len(self.likely) > 1 else self.proven
+        wanted = len(among) / 2 if among is self.likely else 1
         found = [
-            (command.role != "version", len(having), name, command)
+            (command.role != "version", abs(len(having) - wanted), name, command)
             for name in self.likely
             for command in bare_queries(_table(name))
             if command.id not in self._asked

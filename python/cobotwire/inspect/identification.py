@@ -58,23 +58,6 @@ class Identification(NamedTuple):
         return any(each.replied for each in self.evidence)
 
 
-def own_evidence(transport: Transport, names: list[str], **options: Any) -> Iterator[Evidence]:
-    """Send the own query of one edition after another, until one is replied to.
-
-    Raises:
-        LinkError: the transport is gone.
-    """
-    for name in names:
-        package = editions.load(name)
-        command = own_query(package.TABLE, _others(name))
-        if command is not None:
-            with closing(package.CLIENT(borrowed(transport), **options)) as client:
-                found = ask(client, command, name)
-            yield found
-            if found.replied:
-                return
-
-
 def other_edition(
     client: Client, table: Table, transport: Transport, *, timeout: float
 ) -> tuple[Evidence, Evidence | None]:
@@ -82,8 +65,7 @@ def other_edition(
 
     Returns:
         What the edition's own query shows, and the evidence that the arm speaks another edition;
-        None: there is none. An own query of another edition is only sent if that of the client's
-        edition gets no legal reply.
+        None: there is none. Other queries are only sent if the own one gets no legal reply.
 
     Raises:
         LinkError: the transport is gone.
@@ -92,15 +74,28 @@ def other_edition(
     own = Evidence("", table.edition, False, None, "the edition has no query of its own")
     if command is not None:
         own = ask(client, command, table.edition)
-    if command is None or own.replied:
+    if own.replied:
         return own, None
     # A device whose frames differ is no arm of the others, and is not sent their frames.
-    others = [name for name in newest_first() if name != table.edition]
-    others = [name for name in others if _same_frames(editions.load(name).TABLE, table)]
-    # First the editions with other numbers of joints: they may share a query with the rest.
-    others.sort(key=lambda name: editions.load(name).TABLE.joints == table.joints)
-    found = list(own_evidence(transport, others, timeout=timeout))
-    return own, found[-1] if found and found[-1].replied else None
+    found, against = Candidates(_with_same_frames(newest_first(), table)), None
+    for evidence in _narrowed(transport, found, timeout=timeout):
+        if against is None and table.edition not in found.proven:
+            against = evidence
+    return own, against and against._replace(edition=" or ".join(found.proven))
+
+
+def _narrowed(
+    transport: Transport, found: Candidates, *, timeout: float | None
+) -> Iterator[Evidence]:
+    """Send one query after another, until one edition is left, or no query tells them apart."""
+    yield from _row_evidence(transport, found, timeout=timeout)
+    query = found.next_query()
+    while query is not None and not found.known:
+        name, command = query
+        reply = found.evidence(_asked(transport, name, command, timeout=timeout), command)
+        found.note(command, reply.replied)
+        yield reply
+        query = found.next_query()
 
 
 def newest_first() -> list[str]:
@@ -116,26 +111,20 @@ def identify_on(transport: Transport, *, timeout: float | None = None) -> Identi
     Raises:
         LinkError: the transport is gone.
     """
-    first = editions.load(newest_first()[0])
-    names = [n for n in newest_first() if _same_frames(editions.load(n).TABLE, first.TABLE)]
-    found, evidence = Candidates(names), []
-    query: tuple[str, Command] | None = names[0], first.TABLE.in_role("powered")
-    firmware = ""
-    while query is not None and not found.known:
-        name, command = query
-        reply = _asked(transport, name, command, timeout=timeout)
-        evidence.append(found.evidence(reply, command))
-        if reply.text == "no reply" and len(evidence) == 1:
-            return Identification(transport.url, "", (), "", tuple(evidence))
-        found.note(command, reply.replied)
-        if len(evidence) == 1:
-            evidence += _row_evidence(transport, found, timeout=timeout)
-        if command.role == "version" and reply.replied:
-            firmware = str(reply.result)
-        query = found.next_query()
-    edition = found.known
-    version = editions.load(edition).TABLE.find_role("version") if edition else None
-    if version is not None and all(each.query != version.name for each in evidence):
+    first = editions.load(newest_first()[0]).TABLE
+    found, powered = Candidates(_with_same_frames(newest_first(), first)), first.in_role("powered")
+    reply = _asked(transport, first.edition, powered, timeout=timeout)
+    evidence = [found.evidence(reply, powered)]
+    if reply.text == "no reply":
+        return Identification(transport.url, "", (), "", tuple(evidence))
+    found.note(powered, reply.replied)
+    evidence += _narrowed(transport, found, timeout=timeout)
+    edition, firmware = found.known, ""
+    version = editions.load(edition or first.edition).TABLE.find_role("version")
+    asked = {each.query: each for each in evidence}
+    if version is not None and version.name in asked and asked[version.name].replied:
+        firmware = str(asked[version.name].result)
+    elif version is not None and edition:
         reply = _asked(transport, edition, version, timeout=timeout)
         evidence.insert(-1, reply._replace(shows="it does not tell the editions in question apart"))
         firmware = str(reply.result) if reply.replied else ""
@@ -156,9 +145,10 @@ def _row_evidence(
         joints = editions.load(count.edition).TABLE.joints
         shows = f"a row of {joints} joints, as in {', '.join(count.editions)}"
         only = count.editions[0] if len(count.editions) == 1 else ""
-        yield reply._replace(edition=only, shows=shows)
         if reply.replied:
             found.keep(count.editions)
+        yield reply._replace(edition=only, shows=shows)
+        if reply.replied:
             return
 
 
@@ -272,6 +262,10 @@ def _open(port: str, baudrate: int | None) -> Transport:
 
 def _others(name: str) -> list[Table]:
     return [editions.load(other).TABLE for other in editions.names() if other != name]
+
+
+def _with_same_frames(names: list[str], table: Table) -> list[str]:
+    return [name for name in names if _same_frames(editions.load(name).TABLE, table)]
 
 
 def _same_frames(one: Table, other: Table) -> bool:

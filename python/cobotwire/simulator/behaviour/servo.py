@@ -62,7 +62,8 @@ def set_joint_max(arm: ArmState, now: float, request: m.SetJointMax) -> None:
     _obey_limits(arm, now)
 
 
-query(m.IsServoEnable, lambda arm, now, request: arm.enabled[request.joint - 1])
+# The number after the last joint is the gripper's servo, which is always connected.
+query(m.IsServoEnable, lambda arm, now, request: [*arm.enabled, True][request.joint - 1])
 query(m.IsAllServoEnable, lambda arm, now, request: all(arm.enabled))
 
 
