@@ -72,7 +72,8 @@ def _plain(value: float) -> float:
     return int(value) if value == int(value) else value
 
 
-def _corners(variant: Variant) -> Iterator[tuple[Any, ...]]:
+def corners(variant: Variant) -> Iterator[tuple[Any, ...]]:
+    """Return values of a variant: the lowest and the highest, for each value of its selectors."""
     selectors = {field.selector for field in variant.fields} - {-1}
     picks = {w for field in variant.fields for case in field.cases for w in case.when}
     chosen: list[int | None] = [*sorted(picks)]
@@ -99,7 +100,7 @@ def end(field: Field, high: bool, pick: int | None = None) -> Any:
 def _requests(name: str) -> list[Arguments]:
     found = [] if name in _NO_CORNERS else [
         as_called(name, variant, values)
-        for variant in TABLE.command(name).request for values in _corners(variant)
+        for variant in TABLE.command(name).request for values in corners(variant)
     ]  # fmt: skip
     if name == "set_ssid_pwd":
         found = []

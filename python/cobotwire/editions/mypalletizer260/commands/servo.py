@@ -22,12 +22,11 @@ class ServoCommands(Client):
     def set_encoder(self, joint: int, encoder: int, speed: int) -> None:
         """Send one joint to an encoder position.
 
-        Moves one joint to an encoder position in ticks, at a speed in percent of the maximum; 2048
-        is a joint's zero. The maker's library states 1 to 4 and 7 for this servo number, and still
-        rejects 7 in this request; get_encoder accepts it.
+        Moves one joint, or the gripper, to an encoder position in ticks, at a speed in percent of
+        the maximum; 2048 is a joint's zero.
 
         Args:
-            joint: Joint number; 1 is the base, 4 the flange (1..4).
+            joint: Servo number; 1 to 4 are the joints, 7 is the gripper (one of 1, 2, 3, 4, 7).
             encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn, and both 0 and
                 4096 can be sent (0..4096 tick).
             speed: Speed in percent of the maximum (1..100 percent).
