@@ -152,6 +152,8 @@ fn samples(values: &[Value]) -> Vec<Sample> {
             }
             Value::Integer(integer) => Sample::Integer(*integer),
             Value::Real(real) => Sample::Real(*real),
+            // Random tables have only numbers.
+            Value::Rows(_) | Value::Bytes(_) | Value::Text(..) => unreachable!("{value:?}"),
         });
     }
     all

@@ -19,7 +19,11 @@ impl Count {
         self.tally.bytes += size;
         match reason {
             None => {
-                self.tally.frames[usize::from(oracle.id(bytes))] += 1;
+                let id = oracle.id(bytes);
+                match self.tally.frames.get_mut(usize::from(id)) {
+                    Some(count) => *count += 1,
+                    None => *self.tally.wide.entry(id).or_default() += 1,
+                }
                 self.tally.resyncs += u64::from(self.in_noise);
             }
             Some(reason) => {
@@ -39,6 +43,10 @@ impl Count {
     pub fn check(&self, tally: &Tally) {
         let numbers = |tally: &Tally| (tally.bytes, tally.noise, tally.resyncs);
         assert_eq!(numbers(tally), numbers(&self.tally), "the oracle's counts");
+        assert_eq!(
+            tally.wide, self.tally.wide,
+            "the oracle's counts of wide ids"
+        );
         for (id, counts) in tally.frames.iter().zip(self.tally.frames).enumerate() {
             assert_eq!(*counts.0, counts.1, "the oracle's count of frames {id:02X}");
         }
