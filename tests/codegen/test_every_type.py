@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from cobotwire import codec as codecs
+from cobotwire.cli.shared import call_arguments
 from cobotwire.codec.interface import Frame
 from cobotwire.diagnose.explain import format_message, frame_parts
 from cobotwire.protocol.errors import ProtocolError, UsageError
@@ -161,3 +162,29 @@ def test_targets_without_the_types_name_the_command_and_the_type(edition: Editio
         with pytest.raises(SpecError) as caught:
             target(edition)
         assert "cannot express status of get_status: status is bits" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "frame"),
+    [
+        ("write_memory", ["3", "CA FE", "on"], "FE FE 07 25 03 02 CA FE 01 FA"),
+        ("set_status", ["0,2,1,7"], "FE FE 04 23 14 1C FA"),
+        ("set_temperatures", ["20,21,22"], "FE FE 05 2A 14 15 16 FA"),
+        ("set_temperatures", [""], "FE FE 02 2A FA"),
+        (
+            "set_name",
+            ["x", "0A0B0C0D", "ok"],
+            "FE FE 10 27 78 00 00 00 00 00 00 00 0A 0B 0C 0D 6F 6B FA",
+        ),
+    ],
+)
+def test_words_of_the_command_line_become_values_of_every_type(
+    package: Any, command: str, words: list[str], frame: str
+) -> None:
+    record = package.TABLE.command(command)
+    given = call_arguments.parse(record, words)
+    values = call_arguments.request_values(record, given)
+    index = call_arguments.variant_of(record, given)
+    for name in CODECS:
+        codec = codecs.load(package.TABLE, name)
+        assert codec.encode(command, "request", values, variant=index) == bytes.fromhex(frame)

@@ -48,7 +48,11 @@ def _print_reference(frame: FrameFormat, command: Command) -> None:
     for note in command.notes:
         console.print(f"Note: {note}")
     for direction in _DIRECTIONS:
-        for variant in command.variants(direction):
+        every = command.variants(direction)
+        for index, variant in enumerate(every):
+            # Of the sizes of a list, the least and the most show the others.
+            if 0 < index < len(every) - 1 and any(field.sizes for field in variant.fields):
+                continue
             console.print(f"\n{direction}", style="bold")
             console.print(byte_table(frame, command, direction, variant))
     if command.text is not None:
@@ -80,7 +84,7 @@ def byte_table(
             name = f"{field.name} {number.name}".strip()
             ranges = [_allowed(field, case.numbers[index]) for case in field.cases]
             grid.add_row(place, name, " or ".join(ranges), field.doc)
-            offset += number.width
+            offset += number.step
     if frame.check is not None:
         grid.add_row(_place(offset, frame.check.width), frame.check.algorithm, "", "")
         offset += frame.check.width

@@ -38,16 +38,24 @@ def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
 def request_values(command: Command, given: Mapping[str, Any]) -> tuple[Any, ...]:
     """Return the values of the request's frame: the arguments, defaults and constants."""
     return tuple(
-        given[field.name]
+        ...
+        if field.counts
+        else given[field.name]
         if field.name in given
         else field.physical(field.default or (field.const or 0,))
         for field in _variant(command, given).fields
     )
 
 
-def variant_of(command: Command, given: Mapping[str, Any]) -> int:
-    """Return the index of the variant of a request that the given arguments choose."""
-    return command.request.index(_variant(command, given))
+def variant_of(command: Command, given: Mapping[str, Any]) -> int | None:
+    """Return the index of the variant of a request that the given arguments choose.
+
+    None: they have a size of their own, by which the codec chooses.
+    """
+    variant = _variant(command, given)
+    if any(field.sizes for field in variant.fields):
+        return None
+    return command.request.index(variant)
 
 
 def _variant(command: Command, given: Mapping[str, Any]) -> Variant:
@@ -81,11 +89,21 @@ def _takes(names: Sequence[str]) -> str:
 
 
 def parse_value(field: Field, word: str) -> Any:
-    """Parse a word as the value of a field.
+    """Parse a word as the value of a field: ``1,2`` is a row, ``1,2;3,4`` a list of rows.
 
     Raises:
-        UsageError: the word is not a number, a flag or a member of the field's enum.
+        UsageError: the word is not a number, a flag or a member of the field's enum, or not the
+            hex digits of bytes.
     """
+    if field.kind == "text":
+        return [part for part in word.split(",") if part] if field.each else word
+    if field.kind == "bytes":
+        return _bytes(field, word)
+    if field.each:
+        groups = [part.strip(" []()") for part in word.split(";")]
+        return [[_number(field, part.strip()) for part in g.split(",")] for g in groups if g]
+    if field.many and not word.strip("[]() "):
+        return []
     if field.many:
         return [_number(field, part.strip()) for part in word.strip("[]()").split(",")]
     if field.kind == "flag":
@@ -98,6 +116,13 @@ def parse_value(field: Field, word: str) -> Any:
         members = (f"{label} ({choice})" for label, choice in zip(field.labels, field.choices))
         raise UsageError(field.name, word, ", ".join(members))
     return _number(field, word)
+
+
+def _bytes(field: Field, word: str) -> bytes:
+    try:
+        return bytes.fromhex(word)
+    except ValueError:
+        raise UsageError(field.name, word, "pairs of hex digits") from None
 
 
 def _number(field: Field, word: str) -> int | float:
