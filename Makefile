@@ -13,7 +13,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -63,6 +63,9 @@ products: .venv/.tools ## write the build products: output targets, data of the 
 
 targets: products .venv/.native ## build each output target and run it in its real tool
 	PYTHONPATH=tests $(BIN)/python tests/targets/report.py
+
+spec-mutants: .venv/.tools .venv/.native ## change each fact of the spec, one at a time; report what nothing notices
+	PYTHONPATH=tests:tests/peers $(BIN)/python -m spec_mutants
 
 docs: .venv/.tools .venv/.native ## build the docs site into docs/_build; a warning is an error
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build

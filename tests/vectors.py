@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -36,6 +37,21 @@ def framed() -> list[tuple[str, Vector]]:
 def rejected() -> list[tuple[str, Vector]]:
     """Return the vectors with bytes that are not a legal frame."""
     return [(name, vector) for name, vector in every() if vector.rejected is not None]
+
+
+def limited() -> list[tuple[str, Vector]]:
+    """Return the vectors that state values which a field accepts or refuses."""
+    return [(name, vector) for name, vector in every() if vector.accepted or vector.refused]
+
+
+def limits(name: str, vector: Vector) -> Iterator[tuple[dict[str, Any], bool]]:
+    """Yield a vector's values with another value for one field, and whether that is legal."""
+    given = fields(name, vector)
+    for stated, legal in ((vector.accepted, True), (vector.refused, False)):
+        for key, values in stated:
+            for value in values:
+                found = plain(edition(name), vector, key, value)
+                yield {**given, key: tuple(found) if isinstance(found, list) else found}, legal
 
 
 def fields(name: str, vector: Vector) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import pytest
 
 import vectors
 from cobotwire.codec.interface import Codec, Frame
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Direction
 from cobotwire_codegen.model import Vector
 from strategies import TABLES, codec_of
@@ -18,6 +18,7 @@ def _named(found: list[tuple[str, Vector]]) -> pytest.MarkDecorator:
 
 
 FRAMED = _named(vectors.framed())
+LIMITED = _named(vectors.limited())
 REJECTED = _named(vectors.rejected())
 
 
@@ -35,6 +36,20 @@ def test_stated_values_encode_to_the_frame(codec: Codec, edition: str, vector: V
     codec = codec_of(edition, codec.name)
     fields = vectors.fields(edition, vector)
     assert codec.encode(vector.command, vector.direction, tuple(fields.values())) == vector.frame
+
+
+@LIMITED
+def test_codec_accepts_and_refuses_the_stated_values(
+    codec: Codec, edition: str, vector: Vector
+) -> None:
+    codec = codec_of(edition, codec.name)
+    for fields, legal in vectors.limits(edition, vector):
+        try:
+            codec.encode(vector.command, vector.direction, tuple(fields.values()))
+        except UsageError:
+            assert not legal, fields
+        else:
+            assert legal, fields
 
 
 @FRAMED

@@ -66,6 +66,7 @@ NEW: dict[str, Any] = {
     "crc": CRCS["crc16-modbus"],
     "address_range": (3, 4),
     "addresses": (model.Address(PLACE, "ALL", 0, "", "own"),),
+    "refused": (("new", (1,)),),
     "rejected": ("bad-length", 2),
     "derived": model.Derivation("small", b"\xfe", ()),
     "source": ((1, 2),),

@@ -15,17 +15,20 @@ from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_ow
 from cobotwire_codegen.build.types import Types
 from cobotwire_codegen.build.vectors import build_erratum, build_vector
 from cobotwire_codegen.errors import Problem, SpecError
+from cobotwire_codegen.load import Node
 from cobotwire_codegen.model import Edition, Family, Frame, Vector
 from cobotwire_codegen.reader import Reader
 
 
-def build_edition(path: Path, root: Path, unsaved: Mapping[Path, str] | None = None) -> Edition:
+def build_edition(
+    path: Path, root: Path, unsaved: Mapping[Path, str | Node] | None = None
+) -> Edition:
     """Return an edition; file names in messages are relative to ``root``.
 
     Args:
         path: the edition's file.
         root: the folder to which file names in messages are relative.
-        unsaved: texts that replace the content of files on disk, by resolved path.
+        unsaved: texts or nodes that replace the content of files on disk, by resolved path.
 
     Raises:
         SpecError: reading found problems; the error carries all of them.

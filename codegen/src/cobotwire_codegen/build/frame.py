@@ -23,10 +23,7 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
     spec, port = language.Frame, language.Transport
     frame = Reader(parts.frame, spec, "the frame", problems)
     transport = Reader(parts.transport, port, "the transport", problems)
-    # These keys inform readers of the file; nothing is generated from them.
-    for key in (port.data_bits, port.stop_bits):
-        transport.get(key)
-    transport.get(port.parity)
+    _compare_port(transport)
     transport.get(port.source)
     frame.get(spec.source)
     check = _check(frame)
@@ -79,6 +76,23 @@ def _address_range(frame: Reader) -> tuple[int, ...]:
         frame.problem("bad-frame", "address_range must be two bytes: [lowest, highest]")
         return ()
     return tuple(range(int(low), int(high) + 1))
+
+
+def _compare_port(transport: Reader) -> None:
+    """Report another character format than the one with which the clients open serial ports."""
+    port = language.Transport
+    for key, only in ((port.data_bits, 8), (port.stop_bits, 1)):
+        if transport.node(key) is not None and transport.get(key) != only:
+            _no_such_port(transport, f"{key.name} {transport.get(key)}")
+    if transport.get(port.parity) != "none":
+        _no_such_port(transport, f"the parity {transport.get(port.parity)}")
+
+
+def _no_such_port(transport: Reader, what: str) -> None:
+    message = (
+        f"no client opens a port with {what}; the format is 8 data bits, no parity, 1 stop bit"
+    )
+    transport.problem("bad-transport", message)
 
 
 def _addresses(frame: Reader) -> tuple[Address, ...]:

@@ -46,11 +46,17 @@ def carried(
         frame: the frame format of the delta.
         commands: the commands of the delta, by name.
     """
-    own = replace(vector, command=name)
+    own = replace(vector, command=name, accepted=(), refused=())
     before = next((command for command in base.commands if command.name == vector.command), None)
     after = commands.get(name)
     if vector.frame is None or before is None or after is None:
         return own
+    same = _unchanged(vector, before, after)
+    own = replace(
+        own,
+        accepted=tuple(limit for limit in vector.accepted if limit[0] in same),
+        refused=tuple(limit for limit in vector.refused if limit[0] in same),
+    )
     try:
         values, data = _adapted(vector, before, after)
         built = enclose(frame, after.id, data, vector.direction)
@@ -60,6 +66,15 @@ def carried(
         return own
     origin = vector.derived or Derivation(base.name, vector.frame, vector.values)
     return replace(own, frame=built, values=values, derived=origin)
+
+
+def _unchanged(vector: Vector, before: Command, after: Command) -> set[str]:
+    """Return the fields of a vector's message that have the same types in the delta."""
+    types = [
+        {(field.name, field.type, field.cases) for v in c.variants(vector.direction) for field in v}
+        for c in (before, after)
+    ]
+    return {name for name, *_ in types[0] & types[1]} - {name for name, *_ in types[0] ^ types[1]}
 
 
 def _adapted(vector: Vector, before: Command, after: Command) -> tuple[Values, bytes]:

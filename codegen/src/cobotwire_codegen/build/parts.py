@@ -22,7 +22,8 @@ from cobotwire_codegen.model import Change, Edition, Vector
 from cobotwire_codegen.reader import Reader
 
 Named = dict[str, tuple[Place, Node]]
-Unsaved = abc.Mapping[Path, str]
+# The content of files, as text or parsed.
+Unsaved = abc.Mapping[Path, str | Node]
 
 
 @dataclass
@@ -78,7 +79,10 @@ class Parts:
 
 
 class Texts:
-    """Loads files by path; texts that an editor has not saved yet replace their content."""
+    """Loads files by path; texts that an editor has not saved yet replace their content.
+
+    A text may also be given as the node that it contains.
+    """
 
     def __init__(self, root: Path, unsaved: Unsaved) -> None:
         self._root, self._unsaved = root.resolve(), unsaved
@@ -88,7 +92,9 @@ class Texts:
         path = path.resolve()
         shown = path.relative_to(self._root) if path.is_relative_to(self._root) else path
         text = self._unsaved.get(path)
-        return load(path, shown.as_posix()) if text is None else parse(text, shown.as_posix())
+        if text is None:
+            return load(path, shown.as_posix())
+        return parse(text, shown.as_posix()) if isinstance(text, str) else text
 
 
 class Files:

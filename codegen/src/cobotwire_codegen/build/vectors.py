@@ -6,9 +6,10 @@ from fractions import Fraction
 
 from cobotwire_codegen import language
 from cobotwire_codegen.errors import Problem
-from cobotwire_codegen.language.records import entries_of
+from cobotwire_codegen.language.records import Key, entries_of
+from cobotwire_codegen.language.shapes import items_of
 from cobotwire_codegen.load import Node, Scalar, Sequence
-from cobotwire_codegen.model import Erratum, Vector
+from cobotwire_codegen.model import Erratum, Limits, Vector
 from cobotwire_codegen.reader import Reader, label
 
 
@@ -52,6 +53,8 @@ def build_vector(node: Node, problems: list[Problem]) -> Vector:
         values=_values(reader),
         says=reader.get(spec.says),
         rejected=_rejected(reader),
+        accepted=_limits(reader, spec.accepted),
+        refused=_limits(reader, spec.refused),
     )
 
 
@@ -71,6 +74,17 @@ def _values(reader: Reader) -> tuple[tuple[str, object], ...]:
         return ()
     found = entries_of(node, f"{key.name} of {reader.what}", reader.problem)
     return tuple((name, plain_value(value)) for name, _, value in found)
+
+
+def _limits(reader: Reader, key: Key[Node | None]) -> Limits:
+    node = reader.get(key)
+    if node is None:
+        return ()
+    subject = f"{key.name} of {reader.what}"
+    return tuple(
+        (name, tuple(plain_value(item) for item in items_of(values, subject, reader.problem)))
+        for name, _, values in entries_of(node, subject, reader.problem)
+    )
 
 
 def plain_value(node: Node) -> object:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import Literal
 
-from cobotwire_codegen.errors import Problem
+from cobotwire_codegen.errors import Problem, nearest
 from cobotwire_codegen.model import Command, Edition, Variant, Vector
 from cobotwire_codegen.wire import build_frame
 
 Direction = Literal["request", "reply"]
+Values = dict[str, object]
 
 
 def vectors_hold(edition: Edition) -> Iterator[Problem]:
@@ -29,6 +31,39 @@ def vectors_hold(edition: Edition) -> Iterator[Problem]:
             if built != vector.frame:
                 message = f"{vector.name}: the values encode to {built.hex(' ').upper()}"
                 yield Problem(vector.place, "vector-differs", message)
+
+
+def limits_hold(edition: Edition) -> Iterator[Problem]:
+    """Report values that a vector states as accepted or refused although they are not."""
+    commands = {command.name: command for command in edition.commands}
+    for vector in edition.vectors:
+        command = commands.get(vector.command)
+        given = dict(vector.values)
+        for limits, legal in ((vector.accepted, True), (vector.refused, False)):
+            for name, values in limits:
+                if command is None or name not in given or vector.frame is None:
+                    message = f"{vector.name} has no field {name}{nearest(name, given)}"
+                    yield Problem(vector.place, "unencodable-vector", message)
+                    continue
+                for value in values:
+                    if _encodes(edition, command, vector, given | {name: value}) != legal:
+                        verb = "refuses" if legal else "accepts"
+                        message = f"{vector.name}: {command.name} {verb} {_shown(value)} as {name}"
+                        yield Problem(vector.place, "limit-differs", message)
+
+
+def _encodes(edition: Edition, command: Command, vector: Vector, values: Values) -> bool:
+    try:
+        build_frame(edition.frame, command, vector.direction, values)
+    except ValueError:
+        return False
+    return True
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_shown, value))}]"
+    return f"{float(value):g}" if isinstance(value, Fraction) else str(value)
 
 
 def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
@@ -121,6 +156,7 @@ def errata_name_commands(edition: Edition) -> Iterator[Problem]:
 RULES = (
     vectors_apart,
     vectors_hold,
+    limits_hold,
     text_vectors_hold,
     every_variant_shown,
     printed_explained,

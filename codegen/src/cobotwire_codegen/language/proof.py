@@ -17,6 +17,12 @@ class Rejection(Record):
     EXAMPLE = "{reason: bad-length, offset: 2}"
 
 
+_VALUES = Anything(
+    "a mapping from fields to lists of values",
+    {"type": "object", "additionalProperties": {"type": "array", "minItems": 1}},
+)
+
+
 class _Vector(Record):
     command = required(Name(METHOD), "The command that it shows.")
     direction = required(Word(("request", "reply")), "Which of its messages.")
@@ -30,6 +36,12 @@ class _Vector(Record):
         Anything("a mapping from fields to values", {"type": "object"}),
         "The values of the fields, in order: an enum by its member, a flag as true or false, a "
         "value type as a list.",
+    )
+    accepted = optional(
+        _VALUES, "Other values that a field accepts in place of its own: the ends of its range."
+    )
+    refused = optional(
+        _VALUES, "Values that a field refuses in place of its own: those beyond its range."
     )
     says = optional(Text(), "What it shows.")
     rejected = optional(Part(Rejection), "Why the printed bytes are not a legal frame.")

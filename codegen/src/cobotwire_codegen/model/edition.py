@@ -37,11 +37,17 @@ class Derivation:
     values: tuple[tuple[str, object], ...]
 
 
+# Values by field.
+Limits = tuple[tuple[str, tuple[object, ...]], ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Vector:
     """A frame with the values that it carries. ``example`` counts the document's own, from 1.
 
     With ``derived``, the frame was computed from a vector of the base; it is not evidence itself.
+    ``accepted`` and ``refused`` hold, for some fields, values that are legal in place of the
+    field's own, and values that are not.
     """
 
     place: Place
@@ -58,6 +64,8 @@ class Vector:
     says: str
     rejected: tuple[str, int] | None
     derived: Derivation | None = None
+    accepted: Limits = ()
+    refused: Limits = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,14 @@ EXPLANATIONS = (
         "maximum_data: 16",
     ),
     Explanation(
+        "bad-transport",
+        "The serial port needs a format that no client opens.",
+        "The clients open ports with 8 data bits, no parity and 1 stop bit.",
+        "Correct the format; if the device really needs another one, it cannot be driven yet.",
+        "parity: even",
+        "parity: none",
+    ),
+    Explanation(
         "bad-id",
         "A command's id is larger than CMD.",
         "CMD is one byte, or two with `command_bytes: 2` in the frame.",

@@ -22,6 +22,14 @@ EXPLANATIONS = (
         "values: {brightness: 50, colour: RED}",
     ),
     Explanation(
+        "limit-differs",
+        "A vector states that a field accepts or refuses a value, and the spec differs.",
+        "The ends of a range are facts: the vector shows from its source where they are.",
+        "Find out which of the two is right; correct the range, or the vector's values.",
+        "values: {brightness: 50, colour: RED}\nrefused: {brightness: [100]}",
+        "values: {brightness: 50, colour: RED}",
+    ),
+    Explanation(
         "unencodable-vector",
         "The values of a vector cannot be encoded: wrong fields, or an illegal value.",
         "A vector must show a legal message.",

@@ -1,0 +1,64 @@
+"""A wrong fact in the spec is noticed: a sample of what ``make spec-mutants`` changes."""
+
+from __future__ import annotations
+
+import pytest
+
+from cobotwire_codegen.load import Mapping, load
+from spec_mutants.campaign import Task, run, tasks
+from spec_mutants.nodes import changed
+from spec_mutants.spec_files import EDITIONS, files, judged
+from spec_mutants.survivors import accepted
+
+SAMPLE = [
+    "set_free_mode.safety: power -> query",
+    "jog_rpy.safety: motion -> setting",
+    "pause.read_by: is_paused -> get_",
+    "set_end_type.read_by: get_end_type -> get_",
+    "get_angles_plan.agrees_with",
+    "is_moving.role: moving -> reached",
+    "transport.baudrate: 115200 -> 115201",
+    "transport.deadline_ms: 500 -> 501",
+    "transport.stop_bits: 1 -> 2",
+    "quantities.voltage.unit: volt ->",
+    "quantities.j5_angle.range: 160 -> 161",
+    "quantities.joint.range: 6 -> 5",
+    "quantities.limit_angle.scale: 1/10 -> 1",
+    "wire.signed_word.signed_at: 33000 -> 33001",
+    "value: 254 -> 255",
+    "get_digital_input.id: 98 -> 99",
+]
+
+
+@pytest.fixture(scope="module")
+def all_tasks() -> list[Task]:
+    return list(tasks())
+
+
+@pytest.mark.parametrize("wanted", SAMPLE)
+def test_wrong_fact_is_noticed(all_tasks: list[Task], wanted: str) -> None:
+    task = next(task for task in all_tasks if wanted in task.name)
+    assert run(task)[1].killer, task
+
+
+def test_every_kind_of_fact_has_mutants(all_tasks: list[Task]) -> None:
+    assert len(all_tasks) > 3000
+    assert len({task.kind for task in all_tasks}) > 70
+
+
+def test_spec_as_it_is_is_not_noticed() -> None:
+    path = next(files(EDITIONS[1]))
+    verdict = judged(EDITIONS[1], path, load(path))
+    assert (verdict.killer, verdict.equal) == ("", True)
+
+
+def test_removed_fact_is_not_in_the_changed_file() -> None:
+    path = next(files(EDITIONS[0]))
+    root = changed(load(path), ("geometry", "links", 0, "offset"), None)
+    assert isinstance(root, Mapping)
+    assert load(path) != root
+
+
+def test_no_survivor_is_accepted_without_a_fact(all_tasks: list[Task]) -> None:
+    accepted_tasks = [task for task in all_tasks if accepted(task.kind, task.title)]
+    assert len(accepted_tasks) < len(all_tasks) / 50

@@ -1,0 +1,54 @@
+"""The spec agrees with what names, descriptions and the maker's library state a second time."""
+
+from __future__ import annotations
+
+import pytest
+
+import vectors
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
+from pymycobot_limits import sends
+from spec_statements import STATEMENTS, Statement, meanings
+
+EDITIONS = ("mycobot", "mycobot280")
+BY_MAKER = "The maker's library 4.0.7 sends the accepted values and raises for the refused ones."
+
+
+@pytest.mark.parametrize("statement", STATEMENTS, ids=lambda statement: statement.__name__)
+@pytest.mark.parametrize("edition", EDITIONS)
+def test_edition_agrees_with_independent_statement(edition: str, statement: Statement) -> None:
+    assert list(statement(vectors.edition(edition))) == []
+
+
+def test_every_pattern_of_a_meaning_describes_a_command() -> None:
+    commands = [command for name in EDITIONS for command in vectors.edition(name).commands]
+    for word, name, doc in (*meanings.SAFETY, *meanings.ROLES):
+        assert any(meanings.fits(command, name, doc) for command in commands), (word, name)
+
+
+def _limits_by_maker() -> set[str]:
+    """Return the names of the vectors that quote the library for their limits."""
+    root = load(vectors.ROOT / "spec" / "editions" / "mycobot280" / "vectors" / "limits.yaml")
+    assert isinstance(root, Mapping)
+    listed = root.entries["vectors"]
+    assert isinstance(listed, Sequence)
+    found = [item.entries for item in listed.items if isinstance(item, Mapping)]
+    return {
+        _text(each["name"]) for each in found if "why" in each and _text(each["why"]) == BY_MAKER
+    }
+
+
+def _text(node: Node) -> str:
+    return str(node.value) if isinstance(node, Scalar) else ""
+
+
+def test_limits_of_the_makers_library_are_its_own() -> None:
+    edition = vectors.edition("mycobot280")
+    commands = {command.name: command for command in edition.commands}
+    by_maker = _limits_by_maker()
+    compared = 0
+    for vector in edition.vectors:
+        if vector.name in by_maker:
+            for values, legal in vectors.limits("mycobot280", vector):
+                assert sends(commands[vector.command], values) == legal, (vector.name, values)
+                compared += 1
+    assert compared > 300

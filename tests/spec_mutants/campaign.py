@@ -1,0 +1,63 @@
+"""Runs mutants on several processes and counts what was noticed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from cobotwire_codegen.load import Node, load
+from spec_mutants.mutants import Mutant, mutants_of
+from spec_mutants.spec_files import EDITIONS, ROOT, Verdict, built, files, judged
+
+
+class Task(NamedTuple):
+    """One mutant of one file, by its number there."""
+
+    edition: str
+    file: Path
+    number: int
+    kind: str
+    name: str
+
+    @property
+    def title(self) -> str:
+        """The file and the change."""
+        return f"{self.file.relative_to(ROOT / 'spec').as_posix()}: {self.name}"
+
+
+Result = tuple[Task, Verdict]
+
+
+@lru_cache(maxsize=64)
+def _mutants(edition: str, file: Path) -> tuple[Node, tuple[Mutant, ...]]:
+    root = load(file, file.relative_to(ROOT).as_posix())
+    return root, tuple(mutants_of(root, built(edition)))
+
+
+def tasks() -> Iterator[Task]:
+    """Yield every mutant of every file, always in the same order."""
+    for edition in EDITIONS:
+        for file in files(edition):
+            for number, mutant in enumerate(_mutants(edition, file)[1]):
+                yield Task(edition, file, number, mutant.kind, mutant.name)
+
+
+def run(task: Task) -> Result:
+    """Return what notices a mutant."""
+    root, mutants = _mutants(task.edition, task.file)
+    return task, judged(task.edition, task.file, mutants[task.number].applied(root))
+
+
+def run_all(
+    chosen: Iterable[Task], processes: int, progress: Callable[[int], None]
+) -> list[Result]:
+    """Run mutants on several processes; report after each how many are done."""
+    results: list[Result] = []
+    with ProcessPoolExecutor(processes) as pool:
+        for result in pool.map(run, chosen, chunksize=8):
+            results.append(result)
+            progress(len(results))
+    return results

@@ -1,0 +1,105 @@
+"""Finds the facts of a spec file with the description of the language, whatever keys it has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from cobotwire_codegen import language
+from cobotwire_codegen.language.changes import CHANGE
+from cobotwire_codegen.language.messages import SelectedReplyField
+from cobotwire_codegen.language.records import (
+    Changed,
+    Choice,
+    Described,
+    InFile,
+    InFiles,
+    Key,
+    Listed,
+    ListedTwice,
+    Named,
+    Part,
+)
+from cobotwire_codegen.language.shapes import Known, Lines, Shape, Text, Texts
+from cobotwire_codegen.load import Mapping, Node, Sequence
+from spec_mutants.nodes import Path
+
+# These are facts although they are written as text; other texts and names are prose and names.
+STATED = {
+    language.RequestText.text,
+    language.Frame.length_counts,
+    language.Command.alias,
+    language.SelectedRequestField.selector,
+    SelectedReplyField.selector,
+}
+# Other files, and what the facts are compared with.
+BESIDE = (InFile, InFiles, Lines)
+DEFINITIONS = {language.Command, *language.SECTIONS.values()}
+EVIDENCE = {language.Dispute, language.Evidence}
+
+
+class Fact(NamedTuple):
+    """A node that states a fact: where it is, what kind it is, and whether it can be left out."""
+
+    path: Path
+    kind: str
+    node: Node
+    shape: Shape[Any] | None
+    removable: bool
+
+
+def facts_of(root: Node) -> Iterator[Fact]:
+    """Yield the facts of a file."""
+    assert isinstance(root, Mapping)
+    described = next(record for key, record in language.FILES.items() if key in root.entries)
+    yield from _mapping(root, described, ())
+
+
+def _mapping(node: Node, described: Described, path: Path) -> Iterator[Fact]:
+    if not isinstance(node, Mapping):
+        return
+    record = described.of(node) if isinstance(described, Choice) else described
+    verbs = CHANGE.chosen if record in CHANGE.options() else {}
+    for name, child in node.entries.items():
+        key = record.keys().get(name)
+        if key is not None and name not in verbs:
+            yield from _key(record.definition(), key, child, (*path, name))
+
+
+def _key(owner: str, key: Key[Any], node: Node, path: Path) -> Iterator[Fact]:
+    text = isinstance(key.shape, Text | Texts | Lines) and not isinstance(key.shape, Known)
+    beside = isinstance(key.shape, BESIDE) or EVIDENCE & {*key.shape.records}
+    if beside or (text and key not in STATED):
+        return
+    yield Fact(path, f"{owner}.{key.name}", node, key.shape, not key.required)
+    yield from _inside(key.shape, node, path, f"{owner}.{key.name}")
+
+
+def _inside(shape: Shape[Any], node: Node, path: Path, kind: str) -> Iterator[Fact]:
+    """Yield the facts inside the value of a key."""
+    if isinstance(shape, Part):
+        yield from _mapping(node, shape.records[0], path)
+    elif isinstance(shape, Listed | ListedTwice) and isinstance(node, Sequence):
+        for index, item in enumerate(node.items):
+            at = (*path, index)
+            yield Fact(at, f"{kind} (one)", item, None, removable=True)
+            if isinstance(item, Sequence):
+                for inner, part in enumerate(item.items):
+                    yield Fact((*at, inner), f"{kind} (field)", part, None, removable=True)
+                    yield from _mapping(part, shape.records[0], (*at, inner))
+            else:
+                yield from _mapping(item, shape.records[0], at)
+    elif isinstance(shape, Named) and isinstance(node, Mapping):
+        content = shape.content
+        for name, item in node.entries.items():
+            at = (*path, name)
+            inner_shape = content if isinstance(content, Shape) else None
+            if content not in DEFINITIONS:
+                yield Fact(at, kind, item, inner_shape, removable=True)
+            if not isinstance(content, Shape):
+                yield from _mapping(item, content, at)
+    elif isinstance(shape, Changed) and isinstance(node, Mapping):
+        for name, item in node.entries.items():
+            key = shape.keys().get(name)
+            if key is not None:
+                yield from _key(kind.rpartition(".")[0], key, item, (*path, name))

@@ -1,0 +1,65 @@
+"""The editions of this project, the files of each, and verdicts on changed files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.check import check
+from cobotwire_codegen.errors import SpecError
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.publish import edition_json
+from spec_statements import STATEMENTS
+
+ROOT = Path(__file__).parent.parent.parent
+FOLDER = ROOT / "spec" / "editions"
+# Bases first. A change of the base may also be noticed in the delta.
+EDITIONS = ("mycobot", "mycobot280")
+FACTS = ("frame", "types", "commands", "changes")
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What noticed a mutant, or that nothing did; ``equal`` if the edition is still the same."""
+
+    killer: str = ""
+    equal: bool = False
+
+
+def files(edition: str) -> Iterator[Path]:
+    """Yield the files that state the facts of an edition."""
+    path = (FOLDER / f"{edition}.yaml").resolve()
+    yield path
+    root = load(path)
+    assert isinstance(root, Mapping)
+    for key in FACTS:
+        node = root.entries.get(key)
+        for item in node.items if isinstance(node, Sequence) else (node,):
+            if isinstance(item, Scalar):
+                yield (path.parent / str(item.value)).resolve()
+
+
+@lru_cache(maxsize=8)
+def built(edition: str) -> Edition:
+    """Return an edition as it is."""
+    return build_edition(FOLDER / f"{edition}.yaml", ROOT)
+
+
+def judged(edition: str, path: Path, node: Node) -> Verdict:
+    """Return what notices that a file of an edition has other content."""
+    equal = True
+    for name in EDITIONS[EDITIONS.index(edition) :]:
+        try:
+            made = build_edition(FOLDER / f"{name}.yaml", ROOT, {path: node})
+            check(made)
+        except SpecError as error:
+            return Verdict(f"check: {error.problems[0].code}")
+        for statement in STATEMENTS:
+            for _ in statement(made):
+                return Verdict(f"{statement.__module__.rpartition('.')[2]}.{statement.__name__}")
+        equal = equal and edition_json(made) == edition_json(built(name))
+    return Verdict(equal=equal)

@@ -1,0 +1,12 @@
+"""States facts of the spec a second time, from sources other than the spec."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from cobotwire_codegen.model import Edition
+from spec_statements import maker, meanings, quantities
+
+Statement = Callable[[Edition], Iterator[str]]
+
+STATEMENTS: tuple[Statement, ...] = (*meanings.RULES, *quantities.RULES, *maker.RULES)

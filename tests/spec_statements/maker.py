@@ -1,0 +1,39 @@
+"""States facts of the transport as the maker's library has them."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+
+from cobotwire_codegen.model import Edition
+from pymycobot_classes import MyCobot280
+
+
+@lru_cache(maxsize=1)
+def _baudrate() -> int:
+    """Return the rate at which the library opens a port unless it is told another."""
+    return int(inspect.signature(MyCobot280.__init__).parameters["baudrate"].default)
+
+
+@lru_cache(maxsize=1)
+def _wait_ms() -> int:
+    """Return how long the library waits for the reply to a request, unless it knows better."""
+    found = re.search(r"\belse:\s+wait_time = ([\d.]+)", inspect.getsource(MyCobot280._read))
+    assert found, "the library states its default wait"
+    return round(float(found[1]) * 1000)
+
+
+def transport(edition: Edition) -> Iterator[str]:
+    """Report another baud rate or deadline than the library uses."""
+    if edition.frame.baudrate != _baudrate():
+        yield f"{edition.frame.baudrate} baud; the maker's library opens ports at {_baudrate()}"
+    if edition.frame.deadline_ms != _wait_ms():
+        yield f"{edition.frame.deadline_ms} ms; the maker's library waits {_wait_ms()} ms"
+    for command in edition.commands:
+        if command.deadline_ms != _wait_ms():
+            yield f"{command.name} has a deadline of its own"
+
+
+RULES = (transport,)
