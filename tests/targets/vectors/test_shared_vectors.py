@@ -13,6 +13,7 @@ import pytest
 
 import vectors
 from cobotwire import codec as codecs
+from cobotwire import editions
 from cobotwire_codegen import lower
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.model import Enum, Field, Quantity
@@ -120,4 +121,4 @@ def test_edition_without_replies_has_vectors() -> None:
 
 def test_vector_folder_holds_the_files_of_the_guide() -> None:
     names = {path.name for path in built("vectors").iterdir()}
-    assert names == {"schema.json", *(f"{edition}.json" for edition in EDITIONS)}
+    assert names == {"schema.json", *(f"{edition}.json" for edition in editions.names())}

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from cobotwire_codegen.targets.wireshark.fields import OWN
+from strategies import TABLES
 from targets.built import built
 
 ABSENT = "tshark is not installed (Debian: apt install tshark)"
@@ -43,7 +44,9 @@ class Item:
 
 def tshark(capture: Path, *words: str, scripts: list[Path] | None = None) -> str:
     """Return what tshark prints; fail if one of our scripts has an error."""
-    used = sorted(built("wireshark").glob("*.lua")) if scripts is None else scripts
+    # Of several dissectors for one TCP port, Wireshark uses the one loaded last: that of the 280.
+    usual = [built("wireshark") / f"{edition}.lua" for edition in sorted(TABLES)]
+    used = usual if scripts is None else scripts
     loaded = [word for script in used for word in ("-X", f"lua_script:{script}")]
     result = subprocess.run(
         ["tshark", "-n", *loaded, "-r", str(capture), *words],
