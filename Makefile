@@ -13,7 +13,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack robots
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -106,6 +106,9 @@ conform: .venv/.tools .venv/.native ## break subjects on purpose; count how many
 
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(ATTACK)
+
+robots: .venv/.tools .venv/.native ## compare every request of other robots with the maker's library
+	PYTHONPATH=tests:tests/peers $(BIN)/python tests/peers/pymycobot_robots.py
 
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py

@@ -7,7 +7,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 from cobotwire.client import Client
@@ -19,30 +19,56 @@ with warnings.catch_warnings():
     # Its import uses features that Python 3.11 deprecates (locale.getdefaultlocale). We cannot fix
     # that, and marks of pytest do not apply to imports.
     warnings.simplefilter("ignore")
-    from pymycobot import CommandGenerator, MyCobot, MyCobot280, MyPalletizer260
-    from pymycobot.error import MyCobot280DataException, MyCobotDataException
+    from pymycobot import (
+        CommandGenerator,
+        MechArm270,
+        MyCobot,
+        MyCobot280,
+        MyCobot280RDKX5,
+        MyPalletizer260,
+    )
+    from pymycobot.common import DataProcessor, read, write
+    from pymycobot.error import (
+        MechArmDataException,
+        MyCobot280DataException,
+        MyCobotDataException,
+    )
 
 __all__ = ["CLASSES", "REJECTIONS", "MyCobot", "MyCobot280", "MyPalletizer260"]
 __all__ += ["peer_on", "recording_client", "without_port", "written"]
 
 CLASSES: dict[str, type[Any]] = {
+    "MechArm270": MechArm270,
     "MyCobot": MyCobot,
     "MyCobot280": MyCobot280,
+    "MyCobot280RDKX5": MyCobot280RDKX5,
     "MyPalletizer260": MyPalletizer260,
 }
 
 # Exceptions that a call raises before it writes: on purpose, for an argument outside its limits; or
 # by accident, for a number that does not fit into its bytes (pyserial raises the last of these).
-REJECTIONS = (MyCobotDataException, MyCobot280DataException, struct.error, TypeError, ValueError)
+REJECTIONS = (
+    MechArmDataException,
+    MyCobotDataException,
+    MyCobot280DataException,
+    struct.error,
+    TypeError,
+    ValueError,
+)
 
 
 def peer_on(name: str, port: Any) -> Any:
     """Make an object of one of its classes, without opening a port or sleeping 1.5 s."""
     kind = CLASSES[name]
     peer = object.__new__(kind)
-    CommandGenerator.__init__(peer)
-    # Each module has its own argument check under this name.
-    peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
+    if issubclass(kind, CommandGenerator):
+        CommandGenerator.__init__(peer)
+        # Each module has its own argument check under this name.
+        peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
+    else:
+        DataProcessor.__init__(peer)
+        peer.calibration_parameters = peer.parametric_verification
+        peer._write, peer._read = partial(write, peer), partial(read, peer)
     peer.lock = threading.Lock()
     peer.thread_lock = True
     peer._serial_port = port

@@ -22,8 +22,7 @@ class GripperCommands(Client):
         Reads how far the gripper is open, in percent; 0 is closed, 100 fully open.
 
         Args:
-            gripper: Kind of gripper: 1 adaptive, 3 parallel, 4 flexible; no source says what 5 is
-                (one of 1, 3, 4, 5; optional).
+            gripper: Kind of gripper: 1 adaptive, 3 parallel, 4 flexible (one of 1, 3, 4; optional).
 
         Returns: How far the gripper is open, as the arm reports it; 0 is closed, 100 fully open. A
             gripper that is open beyond its calibration reports more than 100 (0..105 percent).
@@ -50,8 +49,8 @@ class GripperCommands(Client):
         Args:
             state: What the gripper does (one of OPEN (0), CLOSE (1), RELEASE (254)).
             speed: Speed in percent of the maximum (1..100 percent).
-            gripper: Kind of gripper: 1 adaptive, 2 hand with five fingers, 3 parallel, 4 flexible;
-                no source says what 5 is (one of 1, 2, 3, 4, 5; optional).
+            gripper: Kind of gripper: 1 adaptive, 2 hand with five fingers, 3 parallel, 4 flexible
+                (one of 1, 2, 3, 4; optional).
             torque: True for a gripper with force control (True or False; optional).
 
         Safety: motion. Command id 0x66.
@@ -77,8 +76,7 @@ class GripperCommands(Client):
         Args:
             value: How far the gripper is open; 0 is closed, 100 fully open (0..100 percent).
             speed: Speed in percent of the maximum (1..100 percent).
-            gripper: Kind of gripper: 1 adaptive, 3 parallel, 4 flexible; no source says what 5 is
-                (one of 1, 3, 4, 5; optional).
+            gripper: Kind of gripper: 1 adaptive, 3 parallel, 4 flexible (one of 1, 3, 4; optional).
             torque: True for a gripper with force control (True or False; optional).
 
         Safety: motion. Command id 0x67.
