@@ -59,6 +59,6 @@ def test_removed_fact_is_not_in_the_changed_file() -> None:
     assert load(path) != root
 
 
-def test_no_survivor_is_accepted_without_a_fact(all_tasks: list[Task]) -> None:
+def test_few_mutants_may_survive(all_tasks: list[Task]) -> None:
     accepted_tasks = [task for task in all_tasks if accepted(task.kind, task.title)]
     assert len(accepted_tasks) < len(all_tasks) / 50

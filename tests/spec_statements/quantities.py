@@ -35,6 +35,14 @@ FIELDS = (
 )
 
 
+PARTS = (
+    (r"[xyz]", "millimetre"),
+    (r"r[xyz]", "degree"),
+    (r"j\d_encoder", "tick"),
+    (r"j\d_speed", "step_per_second"),
+)
+
+
 def _quantities(field: Field) -> Iterator[Quantity]:
     for type in (field.type, *(case for _, case in field.cases)):
         for _, part in type.parts:
@@ -68,6 +76,15 @@ def field_units(edition: Edition) -> Iterator[str]:
                 yield f"{command.name}: {field.name} has {given}; wanted {wanted}"
 
 
+def part_units(edition: Edition) -> Iterator[str]:
+    """Report parts of value types with another unit than their name tells."""
+    for type in edition.types:
+        for label, part in type.parts:
+            for name, unit in PARTS:
+                if re.fullmatch(name, label) and part.unit != unit:
+                    yield f"{type.name}: {label} has the unit {part.unit!r}; wanted {unit}"
+
+
 def radians(edition: Edition) -> Iterator[str]:
     """Report fields that are shown in radians without such a name, or the reverse."""
     for command in edition.commands:
@@ -85,4 +102,4 @@ def flags(edition: Edition) -> Iterator[str]:
                 yield f"{command.name}: {field.name} is a {field.type.kind}, but is true or false"
 
 
-RULES = (units, field_units, radians, flags)
+RULES = (units, field_units, part_units, radians, flags)
