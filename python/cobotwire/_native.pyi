@@ -25,10 +25,10 @@ class NativeCodec:
         Raises:
             AttributeError, TypeError, OverflowError: it is not a table, or something in it has the
                 wrong type or is far too large.
-            ValueError: it cannot be interpreted: the header is not two bytes, the check is unknown,
-                the footer is not one byte where it is the check or not empty where it is not,
-                a variant is longer than LEN can say, a number is not one to four bytes wide, a
-                scale or bound is beyond what a double holds exactly, or a field's cases do not fit.
+            ValueError: it cannot be interpreted: the header has not 1 to 4 bytes, the check is
+                unknown, the footer does not fit the check, a variant is longer than LEN can say, a
+                number is wider than its encoding allows, a scale or bound is beyond what a double
+                holds exactly, or a field's cases do not fit.
         """
 
     @property

@@ -1,6 +1,7 @@
 """Protocols of other devices, from their specs alone: generated, framed, simulated, tested.
 
-Their frames are published ones (each spec names its source), and none has the maker's layout.
+None of them has the maker's layout. Where a spec names no source of a frame, only its check is
+known to be right.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.mark.parametrize("codec", CODECS)
 @pytest.mark.parametrize("name", NAMES)
-def test_published_frames_are_encoded_decoded_and_found_in_noise(
+def test_frames_of_the_spec_are_encoded_decoded_and_found_in_noise(
     package: Any, name: str, codec: codecs.CodecName
 ) -> None:
     edition, used = edition_of(name), codecs.load(package(name).TABLE, codec)
@@ -113,7 +114,7 @@ def test_stream_of_status_packets_is_read_as_the_first_message_of_their_size(
     assert row["voltage"].tolist() == [12.1]
 
 
-def test_sync_write_to_every_servo_is_the_published_frame(package: Any) -> None:
+def test_sync_write_to_every_servo_carries_each_goal(package: Any) -> None:
     frame = bytes.fromhex("FF FF FE 0E 83 1E 04 00 10 00 50 01 01 20 02 60 03 67")
     for codec in CODECS:
         used = codecs.load(package("dynamixel").TABLE, codec)

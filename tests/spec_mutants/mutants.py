@@ -7,21 +7,8 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from cobotwire_codegen.language import Command, RequestText
-from cobotwire_codegen.language.shapes import (
-    Exact,
-    Hex,
-    Known,
-    Names,
-    Numbers,
-    Range,
-    Real,
-    Shape,
-    Text,
-    Whole,
-    Word,
-    YesNo,
-    as_fraction,
-)
+from cobotwire_codegen.language.number_shapes import Exact, Numbers, Range, Real, Whole, as_fraction
+from cobotwire_codegen.language.shapes import Hex, Known, Names, Shape, Text, Word, YesNo
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
 from cobotwire_codegen.model import Edition, Quantity, Type
 from spec_mutants.facts import Fact, facts_of

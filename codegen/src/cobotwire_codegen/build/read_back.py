@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from cobotwire_codegen import language
+from cobotwire_codegen.language.number_shapes import Numbers
 from cobotwire_codegen.language.records import entries_of
-from cobotwire_codegen.language.shapes import Numbers, items_of
+from cobotwire_codegen.language.shapes import items_of
 from cobotwire_codegen.load import Mapping, Node, Scalar
 from cobotwire_codegen.model import ReadBack, Samples
 from cobotwire_codegen.reader import Reader

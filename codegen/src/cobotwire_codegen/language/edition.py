@@ -8,6 +8,7 @@ from cobotwire_codegen.language.geometry import Geometry, Motion
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField, accepted_key
 from cobotwire_codegen.language.names import BASE, CLASS, LOWER, METHOD
+from cobotwire_codegen.language.number_shapes import Whole
 from cobotwire_codegen.language.proof import VECTOR, ErrataFile, Erratum, VectorsFile
 from cobotwire_codegen.language.records import (
     Choice,
@@ -22,7 +23,7 @@ from cobotwire_codegen.language.records import (
     or_file,
     required,
 )
-from cobotwire_codegen.language.shapes import Name, Names, Text, Whole
+from cobotwire_codegen.language.shapes import Name, Names, Text
 from cobotwire_codegen.language.types import SECTIONS, TypesFile
 
 _JOINTS = "How many joints the arm has."

@@ -5,17 +5,9 @@ from __future__ import annotations
 from cobotwire_codegen.catalogue import CRCS
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.names import ADDRESS
+from cobotwire_codegen.language.number_shapes import Range, Whole
 from cobotwire_codegen.language.records import Named, Part, Record, optional, required
-from cobotwire_codegen.language.shapes import (
-    Catalogued,
-    Hex,
-    Range,
-    Text,
-    Texts,
-    Whole,
-    Word,
-    YesNo,
-)
+from cobotwire_codegen.language.shapes import Catalogued, Hex, Text, Texts, Word, YesNo
 from cobotwire_codegen.language.words import CHECKS, REPLIES
 
 _ORDER = Word(("big", "little"))

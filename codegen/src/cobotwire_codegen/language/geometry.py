@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from cobotwire_codegen.language.number_shapes import Numbers, Real
 from cobotwire_codegen.language.records import Listed, Record, required
-from cobotwire_codegen.language.shapes import Numbers, Real, Text
+from cobotwire_codegen.language.shapes import Text
 
 
 class Link(Record):

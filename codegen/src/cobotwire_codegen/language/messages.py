@@ -5,6 +5,7 @@ from __future__ import annotations
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.json_schema import Schema, either
 from cobotwire_codegen.language.names import CASE, CLASS, LOWER, METHOD
+from cobotwire_codegen.language.number_shapes import Numbers, Range, Whole
 from cobotwire_codegen.language.records import (
     Choice,
     Key,
@@ -16,19 +17,7 @@ from cobotwire_codegen.language.records import (
     optional,
     required,
 )
-from cobotwire_codegen.language.shapes import (
-    Anything,
-    Known,
-    Name,
-    Names,
-    Numbers,
-    Range,
-    Text,
-    Texts,
-    Whole,
-    Word,
-    YesNo,
-)
+from cobotwire_codegen.language.shapes import Anything, Known, Name, Names, Text, Texts, Word, YesNo
 from cobotwire_codegen.language.words import ROLES, SAFETY
 from cobotwire_codegen.load import Node
 

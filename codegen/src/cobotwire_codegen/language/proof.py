@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.names import METHOD
+from cobotwire_codegen.language.number_shapes import Whole
 from cobotwire_codegen.language.records import Choice, Listed, Part, Record, optional, required
-from cobotwire_codegen.language.shapes import Anything, Hex, Lines, Name, Text, Texts, Whole, Word
+from cobotwire_codegen.language.shapes import Anything, Hex, Lines, Name, Text, Texts, Word
 from cobotwire_codegen.language.words import ERRATUM_KINDS, REASONS, VERDICTS
 
 

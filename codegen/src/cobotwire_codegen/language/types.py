@@ -5,19 +5,9 @@ from __future__ import annotations
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.meanings import MeaningsOfNumbers
 from cobotwire_codegen.language.names import CLASS, LOWER, UPPER
+from cobotwire_codegen.language.number_shapes import Exact, Numbers, Range, Span, Whole
 from cobotwire_codegen.language.records import Named, Record, optional, required
-from cobotwire_codegen.language.shapes import (
-    Exact,
-    Known,
-    Name,
-    Numbers,
-    Range,
-    Span,
-    Text,
-    Whole,
-    Word,
-    YesNo,
-)
+from cobotwire_codegen.language.shapes import Known, Name, Text, Word, YesNo
 from cobotwire_codegen.language.units import UNITS
 
 _WIRE = Known("wire_name", "the name of a wire type")
