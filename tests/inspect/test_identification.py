@@ -26,7 +26,11 @@ POWERED = bytes.fromhex("FE FE 03 12 01 FA")
 SPEED = bytes.fromhex("FE FE 03 40 32 FA")
 
 
-@pytest.fixture(params=[(e, "pty") for e in names()] + [("mycobot280", "tcp")])
+# One edition for each kind of evidence: queries, or a limit. Another test identifies all editions.
+KINDS = [("mycobot", "pty"), ("mycobot280", "pty"), ("mycobot280", "tcp"), ("mecharm270", "pty")]
+
+
+@pytest.fixture(params=KINDS)
 def arm(request: pytest.FixtureRequest) -> Iterator[tuple[str, str]]:
     """Serve a simulated arm; return its edition and its URL."""
     edition, transport = request.param
