@@ -37,7 +37,7 @@ SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
 def frames(draw: st.DrawFn) -> dict[str, Any]:
     """Draw one of the maker's three frame formats."""
     check = draw(st.sampled_from(["footer", "crc16-modbus", "sum"]))
-    frame: dict[str, Any] = {"header": "FE FE", "maximum_data": 60, "doc": "A frame."}
+    frame: dict[str, Any] = {"header": "FE FE", "maximum_data": 240, "doc": "A frame."}
     if check == "footer":
         frame["footer"] = draw(st.sampled_from(["FA", "00", "FE"]))
         frame["length_counts"] = ["command", "data", "footer"]
