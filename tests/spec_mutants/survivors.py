@@ -10,6 +10,10 @@ REASONS = (
         r"\S*\.samples .*",
         "which legal values are harmless is this project's own judgement; no source states it",
     ),
+    (
+        r"\S*\.silence_ms .*",
+        "field notes report pauses of 100 ms; how much longer to wait is this project's own choice",
+    ),
 )
 
 

@@ -126,4 +126,25 @@ def agreement(edition: Edition) -> Iterator[str]:
             yield f"{command.name} agrees with {command.agrees_with}, but its name says {wanted}"
 
 
-RULES = (safety, roles, read_back, agreement)
+def echoes(edition: Edition) -> Iterator[str]:
+    """Report fields that a reply repeats from its request, but not as an echo."""
+    for command in edition.commands:
+        given = {field.name for variant in command.requests for field in variant}
+        for field in (field for variant in command.replies for field in variant):
+            if field.name in given and field.name in ("joint", "pin") and not field.echo:
+                yield f"{command.name}: {field.name} of the reply repeats the request's"
+
+
+def longest(edition: Edition) -> Iterator[str]:
+    """Report another maximum than the document quotes (0-16), or than the longest message needs."""
+    sizes = [
+        sum(field.type.size for field in variant)
+        for command in edition.commands
+        for variant in (*command.requests, *command.replies)
+    ]
+    quoted = [int(e.says[2:]) for e in edition.errata if re.fullmatch(r"0-\d+", e.says)]
+    if edition.frame.maximum_data != max([*sizes, *quoted]):
+        yield f"the frame carries {edition.frame.maximum_data} bytes; needed {max(sizes)}"
+
+
+RULES = (echoes, longest, safety, roles, read_back, agreement)
