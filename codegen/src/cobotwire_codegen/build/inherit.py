@@ -65,7 +65,8 @@ def carried(
     if built == vector.frame:
         return own
     origin = vector.derived or Derivation(base.name, vector.frame, vector.values)
-    return replace(own, frame=built, values=values, derived=origin)
+    # Whether printed bytes are a legal frame is known of the base only.
+    return replace(own, frame=built, values=values, derived=origin, rejected=None)
 
 
 def _unchanged(vector: Vector, before: Command, after: Command) -> set[str]:
