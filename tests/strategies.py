@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib import import_module
 from typing import Any, NamedTuple
 
 from hypothesis import strategies as st
@@ -42,7 +43,8 @@ VARIANTS = variants_of(TABLE)
 @lru_cache
 def codec_of(edition: str, name: codecs.CodecName) -> Codec:
     """Return a codec of an edition, cached."""
-    return codecs.load(TABLES[edition], name)
+    table = import_module(f"cobotwire.editions.{edition}").TABLE
+    return codecs.load(table, name)
 
 
 def variants(table: Table = TABLE) -> st.SearchStrategy[CommandVariant]:

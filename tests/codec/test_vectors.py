@@ -24,6 +24,19 @@ REJECTED = _named(vectors.rejected())
 
 def test_every_edition_has_vectors() -> None:
     assert {edition for edition, _ in vectors.framed()} == set(TABLES)
+    assert vectors.further()
+    assert all(vectors.edition(name).vectors for name in vectors.further())
+
+
+@pytest.mark.parametrize("edition", vectors.further())
+def test_vectors_of_a_further_edition_hold(codec: Codec, edition: str) -> None:
+    for vector in vectors.edition(edition).vectors:
+        if vector.accepted or vector.refused:
+            test_codec_accepts_and_refuses_the_stated_values(codec, edition, vector)
+        if vector.frame is not None:
+            test_stated_values_encode_to_the_frame(codec, edition, vector)
+            test_frame_decodes_to_its_stated_values(codec, edition, vector)
+            test_framer_finds_the_frame_after_noise(codec, edition, vector)
 
 
 def test_all_examples_of_the_document_are_vectors() -> None:

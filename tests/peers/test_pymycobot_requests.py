@@ -26,8 +26,8 @@ TEN_TIMES = {"set_joint_min", "set_joint_max", "set_tool_reference", "set_world_
 SHARED = [
     (command.name, peer)
     for command in TABLE.commands
-    for peer, kind in CLASSES.items()
-    if hasattr(kind, command.name)
+    for peer in ("MyCobot", "MyCobot280", "MyPalletizer260")
+    if hasattr(CLASSES[peer], command.name)
 ]
 EQUAL = [pair for pair in SHARED if not never_equal(*pair)]
 SCALED = [(command, peer) for command, peer in EQUAL if command in BY_NAME]

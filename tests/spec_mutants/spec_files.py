@@ -20,7 +20,8 @@ ROOT = Path(__file__).parent.parent.parent
 FOLDER = ROOT / "spec" / "editions"
 # Bases first. A change of the base may also be noticed in the delta.
 EDITIONS = ("mycobot", "mycobot280")
-PROSE = {"doc", "title", "notes"}
+# What explains a fact, and where it stands.
+PROSE = {"doc", "title", "notes", "place"}
 FACTS = ("frame", "types", "commands", "changes")
 
 

@@ -147,4 +147,12 @@ def longest(edition: Edition) -> Iterator[str]:
         yield f"the frame carries {edition.frame.maximum_data} bytes; needed {max(sizes)}"
 
 
-RULES = (echoes, longest, safety, roles, read_back, agreement)
+def explained_errors(edition: Edition) -> Iterator[str]:
+    """Report an error register whose numbers have no meanings."""
+    for command in edition.commands:
+        codes = [field.type for field in command.reply if field.type.name.startswith("error")]
+        if command.role == "error" and not all(getattr(code, "meanings", ()) for code in codes):
+            yield f"{command.name}: nothing says what its numbers mean"
+
+
+RULES = (explained_errors, echoes, longest, safety, roles, read_back, agreement)

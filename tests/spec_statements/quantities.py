@@ -85,6 +85,16 @@ def part_units(edition: Edition) -> Iterator[str]:
                     yield f"{type.name}: {label} has the unit {part.unit!r}; wanted {unit}"
 
 
+def case_units(edition: Edition) -> Iterator[str]:
+    """Report fields that an axis selects, with another unit than the axis has."""
+    for command in edition.commands:
+        for field in command.fields:
+            for member, type in field.cases:
+                wanted = [unit for name, unit in PARTS if re.fullmatch(name, member.name.lower())]
+                if wanted and isinstance(type, Quantity) and type.unit not in wanted:
+                    yield f"{command.name}: {field.name} for {member.name} has {type.unit!r}"
+
+
 def radians(edition: Edition) -> Iterator[str]:
     """Report fields that are shown in radians without such a name, or the reverse."""
     for command in edition.commands:
@@ -102,4 +112,4 @@ def flags(edition: Edition) -> Iterator[str]:
                 yield f"{command.name}: {field.name} is a {field.type.kind}, but is true or false"
 
 
-RULES = (units, field_units, part_units, radians, flags)
+RULES = (units, field_units, part_units, case_units, radians, flags)

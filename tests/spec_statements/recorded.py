@@ -43,4 +43,17 @@ def _end(geometry: Geometry, angles: tuple[float, ...]) -> tuple[np.ndarray, Rot
     return place, turned
 
 
-RULES = (geometry,)
+def motion(edition: Edition) -> Iterator[str]:
+    """Report a simulated arm whose full speed is not its fastest, or that states no motion.
+
+    The notes on kinematics say that a joint turns 1.5 degrees per second for each percent.
+    """
+    if edition.name not in (ARM, "mycobot280"):
+        return
+    if edition.motion is None:
+        yield "the edition of a real arm does not state how it moves"
+    elif edition.motion.speed * 100 != edition.motion.fastest:
+        yield "100 percent of the speed is not the fastest motion"
+
+
+RULES = (geometry, motion)

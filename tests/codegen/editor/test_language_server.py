@@ -169,7 +169,8 @@ def test_hover_completion_and_definition_of_the_280(tmp_path: Path) -> None:
         text = changes.read_text()
         await editor.show(changes, text)
         # From the delta to what it removes and changes in its base.
-        assert (await editor.definition(changes, text, "signed_word")).startswith("types.yaml:")
+        changed = await editor.definition(changes, text, "send_angle", "- change: ")
+        assert changed.startswith("motion.yaml:")
         removed = await editor.definition(changes, text, "get_speed", "- remove:")
         assert removed.startswith(("motion.yaml:", "jog.yaml:", "servo.yaml:"))
 
