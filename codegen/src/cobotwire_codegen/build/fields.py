@@ -56,7 +56,7 @@ def _variant(nodes: tuple[Node, ...], direction: Direction, outer: Reader, types
 
 
 def _counted(fields: Variant, readers: list[Reader]) -> Variant:
-    """Return the fields, of which some count the elements of others."""
+    """Return the fields; some may count the elements of others."""
     counts: dict[str, str] = {}
     earlier: dict[str, Field] = {}
     to_the_end = 0

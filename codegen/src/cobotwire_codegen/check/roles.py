@@ -101,7 +101,7 @@ def _reached(joints: int) -> Callable[[Command], bool]:
 
 
 def _coordinates(edition: Edition) -> int:
-    """Return the number of coordinates: of the row in a command that has such a role."""
+    """Return the number of coordinates: the length of the row in a command with that role."""
     for command in edition.commands:
         messages = {"coordinate targets": command.requests, "coordinates": command.replies}
         for variant in messages.get(command.role, ()):

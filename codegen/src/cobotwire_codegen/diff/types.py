@@ -114,7 +114,7 @@ def shape(found: Type) -> tuple[Any, ...]:
 
 
 def _shape(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:
-    """Compare two types, of which one is bits, bytes, a text or a list."""
+    """Compare two types if at least one of them is bits, bytes, a text or a list."""
     if not isinstance(old, Shaped) or not isinstance(new, Shaped) or old.kind != new.kind:
         yield from _kind(where, old, new)
         return
