@@ -22,8 +22,11 @@ ARM = "mycobot"  # and its deltas that state no geometry of their own
 
 
 def geometry(edition: Edition) -> Iterator[str]:
-    """Report links that put the end elsewhere than the arm reported."""
-    if edition.geometry is None or edition.name not in (ARM, "mycobot280"):
+    """Report links that put the end elsewhere than the arm reported, or no links at all."""
+    if edition.name not in (ARM, "mycobot280"):
+        return
+    if edition.geometry is None:
+        yield "the geometry of the arm is known, but the edition does not state it"
         return
     for angles, (x, y, z, *turns) in PAIRS:
         place, turned = _end(edition.geometry, angles)
