@@ -180,18 +180,36 @@ def test_command_added_in_yaml_works_without_other_changes(project: Path) -> Non
     assert "## get_gripper_load" in (project / "docs/reference/mycobot/gripper.md").read_text()
 
 
+def _plain(value: object) -> object:
+    if isinstance(value, bytes):
+        return list(value)
+    if isinstance(value, dict):
+        return {key: _plain(part) for key, part in value.items()}
+    return [_plain(part) for part in value] if isinstance(value, tuple | list) else value
+
+
+def _stated(record: object, value: object) -> object:
+    """Return a value without the keys that the record leaves out."""
+    if isinstance(record, dict) and isinstance(value, dict):
+        return {key: _stated(part, value.get(key)) for key, part in record.items()}
+    if isinstance(record, list) and isinstance(value, list) and len(record) == len(value):
+        return [_stated(part, other) for part, other in zip(record, value)]
+    return value
+
+
 def test_table_as_json_equals_the_table_of_python() -> None:
-    """Check what the Rust tests read; records that only Python needs are not in it."""
+    """Check what the Rust tests read: all that it states, and defaults for the rest."""
+    from dataclasses import asdict
+
     from cobotwire.editions.mycobot import TABLE
     from json_tables import table_of
 
     record = json.loads(vectors_json(vectors.edition()))["table"]
     made = table_of(record)
     assert made.frame == TABLE.frame
-    assert made.edition == TABLE.edition
     for command, other in zip(made.commands, TABLE.commands, strict=True):
-        assert (command.id, command.name) == (other.id, other.name)
         assert command.request == other.request
         assert command.reply == other.reply
-        assert command.safety == other.safety
-        assert command.deadline_ms == other.deadline_ms
+    # The frame was compared above: its check is a word here, and an object in Python.
+    del record["frame"]
+    assert record == _stated(record, _plain(asdict(TABLE)))

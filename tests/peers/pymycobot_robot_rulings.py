@@ -35,7 +35,7 @@ class Ruling(NamedTuple):
 
 _FREE = "a query or a reference is not a motion; the maker applies the limits of motion"
 _STEP = "a step may be as long as the distance between the limits; the maker compares it with them"
-_COMPOSED = "a call of several requests of ours; test_pymycobot_280_requests compares them"
+_COMPOSED = "a call of several requests of ours; it is compared for the 280 alone"
 _NEAREST = "the nearest step; the maker truncates"
 _PORT = "a port is 1..65535; the maker packs a signed word"
 _KIND = "the kind may be left out; the maker's check of a missing kind fails by mistake"
@@ -69,7 +69,8 @@ RULINGS: dict[tuple[str, str], Ruling] = {
 }
 for _kind in METHODS:
     for _which in ("tool", "world"):
-        RULINGS[_kind, f"set_{_which}_reference"] = Ruling("", _FREE)
+        _shows = "Has invalid coord" if _kind == "MechArm270" else "coords not right"
+        RULINGS[_kind, f"set_{_which}_reference"] = Ruling(_shows, _FREE)
     for _what in ("angles", "coords"):
         RULINGS[_kind, f"sync_send_{_what}"] = Ruling("", _COMPOSED)
 RULINGS["MyCobot280RDKX5", "is_in_position"] = Ruling(

@@ -127,7 +127,7 @@ class SimulatedArm:
         found = find_address(self.table, address)
         if found is None or found.value not in self._states:
             names = ", ".join(device.name for device in devices_of(self.table))
-            raise UsageError("address", address, names or "nothing: the edition has no addresses")
+            raise UsageError("address", address, names)
         return self._states[found.value]
 
     def receivers(self, address: int | None) -> tuple[int | None, ...]:
