@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
@@ -24,10 +24,13 @@ Plain = str | int | bool | Fraction | None
 _TAG = "tag:yaml.org,2002:"
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)")
 
-# The limits of one file, many times what the largest spec needs. Aliases count as often as they
-# are used, since every use is read.
+# The limits of one file, and of all files of an edition and its bases together: many times what
+# the largest spec needs. Aliases count as often as they are used, and so do files, since every use
+# is read.
 MOST_BYTES = 2 * 1024 * 1024
 MOST_NODES = 200_000
+MOST_BYTES_TOGETHER = 2 * MOST_BYTES
+MOST_NODES_TOGETHER = 2 * MOST_NODES
 DEEPEST = 40
 LONGEST_NUMBER = 100
 
@@ -60,8 +63,21 @@ class Mapping:
 Node = Scalar | Sequence | Mapping
 
 
+class Parsed(NamedTuple):
+    """The root node of a text, and the size of the text: its bytes and its values."""
+
+    root: Node
+    bytes: int
+    nodes: int
+
+
 def load(path: Path, shown: str | None = None) -> Node:
-    """Return the root node of a YAML file; ``shown`` is the file's name in messages.
+    """Return the root node of a YAML file; see :func:`loaded`."""
+    return loaded(path, shown).root
+
+
+def loaded(path: Path, shown: str | None = None) -> Parsed:
+    """Return the content of a YAML file; ``shown`` is the file's name in messages.
 
     Raises:
         SpecError: the file is missing, is not YAML, gives a key twice, or exceeds a limit.
@@ -73,7 +89,7 @@ def load(path: Path, shown: str | None = None) -> Node:
     except OSError as error:
         reason = error.strerror or str(error)
         raise SpecError([Problem(Place(name, 1, 1), "unreadable", reason)]) from error
-    return parse(_decoded(data, name), name)
+    return parsed(_decoded(data, name), name)
 
 
 def _decoded(data: bytes, name: str) -> str:
@@ -92,9 +108,14 @@ def _at(before: str, name: str) -> Place:
     return Place(name, before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1)
 
 
-@lru_cache(maxsize=256)
 def parse(text: str, name: str) -> Node:
-    """Return the root node of YAML text; ``name`` stands for the file in messages.
+    """Return the root node of YAML text; see :func:`parsed`."""
+    return parsed(text, name).root
+
+
+@lru_cache(maxsize=256)
+def parsed(text: str, name: str) -> Parsed:
+    """Return the content of YAML text; ``name`` stands for the file in messages.
 
     Parsing takes most of the time of a build, and the files of a base are read again for each of
     its deltas. So equal text gets the same nodes; nobody may change them.
@@ -120,7 +141,7 @@ def parse(text: str, name: str) -> Node:
         raise SpecError([_too_deep(Place(name, 1, 1))]) from None
     if converter.problems:
         raise SpecError(converter.problems)
-    return node if node is not None else Scalar(Place(name, 1, 1), None)
+    return Parsed(node or Scalar(Place(name, 1, 1), None), size, converter.nodes)
 
 
 def _yaml() -> YAML:
@@ -174,13 +195,13 @@ class _Converter:
     def __init__(self, name: str) -> None:
         self.problems: list[Problem] = []
         self._name = name
-        self._nodes = 0
+        self.nodes = 0
 
     def node(self, node: YamlNode, above: tuple[YamlNode, ...]) -> Node:
         """Return a node with everything in it; ``above`` are the nodes that contain it."""
         place = self._place(node)
-        self._nodes += 1
-        if self._nodes > MOST_NODES:
+        self.nodes += 1
+        if self.nodes > MOST_NODES:
             message = (
                 f"up to here the file has more than {MOST_NODES} values, the limit; each use of "
                 "an alias counts"

@@ -32,8 +32,7 @@ def numbers(type: Type) -> tuple[dict[str, Any], ...]:
     if isinstance(type, Bits):
         return tuple(_bits(type))
     if isinstance(type, Octets | Chars):
-        top = 127 if isinstance(type, Chars) and type.encoding == "ascii" else 255
-        return (_number("", type.wire, 0, top),) * type.least
+        return (byte_number(type),) * type.least
     if isinstance(type, Listed):
         return numbers(type.of) * type.least
     if isinstance(type, Quantity):
@@ -42,6 +41,12 @@ def numbers(type: Type) -> tuple[dict[str, Any], ...]:
         values = [member.value for member in type.members]
         return (_number("", type.wire, min(values), max(values)),)
     return (_number("", type.wire, 0, 1),)
+
+
+def byte_number(type: Octets | Chars) -> dict[str, Any]:
+    """Return the number of each byte of bytes or of a text."""
+    top = 127 if isinstance(type, Chars) and type.encoding == "ascii" else 255
+    return _number("", type.wire, 0, top)
 
 
 def _bits(type: Bits) -> Iterator[dict[str, Any]]:
@@ -69,6 +74,8 @@ def _quantity(name: str, quantity: Quantity) -> dict[str, Any]:
     number["multiply"] = quantity.scale.numerator
     number["divide"] = quantity.scale.denominator
     number["unit"] = quantity.unit
+    if quantity.choices:
+        number["choices"] = list(quantity.choices)
     return number
 
 
@@ -104,8 +111,14 @@ def choices(type: Type) -> tuple[int, ...]:
 
 
 def field_choices(field: Field) -> tuple[int, ...]:
-    """Return the closed list of a field: a constant has one entry."""
-    return choices(field.type) if field.const is None else (field.const,)
+    """Return the closed list of a field: a constant has one entry; a list, that of its elements.
+
+    The cases of a field may be quantities with different choices: those are in their numbers.
+    """
+    if field.const is not None:
+        return (field.const,)
+    type = field.type.of if isinstance(field.type, Listed) else field.type
+    return () if field.selector and isinstance(type, Quantity) else choices(type)
 
 
 def labels(type: Type) -> tuple[str, ...]:

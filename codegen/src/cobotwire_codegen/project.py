@@ -11,7 +11,9 @@ from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.language.schema import schema_json
+from cobotwire_codegen.library import build_library, render_library, render_page
 from cobotwire_codegen.model import Edition
+from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import (
     Files,
     render_python,
@@ -20,12 +22,15 @@ from cobotwire_codegen.render import (
     with_used_types,
 )
 from cobotwire_codegen.render.sharing import Sharing
-from cobotwire_codegen.render.unit_module import render_units
+from cobotwire_codegen.render.unit_module import render_clients, render_units
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
+
+# Not an edition of an arm: no client is generated from it.
+SERVO_BUS = "spec/servo_bus.yaml"
 
 
 def editions(root: Path) -> list[Edition]:
@@ -54,6 +59,16 @@ def edition_files(root: Path) -> list[Path]:
     return paths
 
 
+def spec_files(root: Path) -> list[Path]:
+    """Return the edition files of a project, and the file of the servo bus if it has one.
+
+    Raises:
+        SpecError: the project has no edition file.
+    """
+    bus = root / SERVO_BUS
+    return edition_files(root) + [bus] * bus.exists()
+
+
 def committed(root: Path, found: list[Edition]) -> list[Target]:
     """Return the generated files that people review, and that are committed."""
     package = root / "python" / "cobotwire" / "editions"
@@ -66,10 +81,40 @@ def committed(root: Path, found: list[Edition]) -> list[Target]:
         made.append(Target(reference / edition.name, render_reference(edition)))
     made.append(Target(root / "docs" / "_static" / "decoder" / "tables", render_decoder(found)))
     made.append(schema_target(root, found))
+    clients = {PurePosixPath("clients.py"): render_clients(found)}
+    made.append(Target(package, clients, alone=False))
+    made += _library(root, found)
+    made += _servo_bus(root)
     units = {PurePosixPath("units.py"): render_units()}
     made.append(Target(root / "python" / "cobotwire" / "protocol", units, alone=False))
     made.append(Target(reference, {PurePosixPath("language.md"): language_page()}, alone=False))
     return made
+
+
+def _library(root: Path, found: list[Edition]) -> list[Target]:
+    """Return the classes with the maker's names; none if the project does not state them."""
+    path = root / "spec" / "pymycobot.yaml"
+    if not path.is_file():
+        return []
+    library = build_library(path, root, found)
+    package = root / "python" / "cobotwire" / "pymycobot"
+    reference = root / "docs" / "reference"
+    return [
+        Target(package, render_library(library), alone=False),
+        Target(reference, render_page(library), alone=False),
+    ]
+
+
+def _servo_bus(root: Path) -> list[Target]:
+    """Return the table by which the diagnosis of noise reads packets of the servo bus."""
+    path = root / SERVO_BUS
+    if not path.exists():
+        return []
+    bus = build_edition(path, root)
+    check(bus)
+    files = {PurePosixPath("edition.json"): edition_json(bus)}
+    folder = root / "python" / "cobotwire" / "diagnose" / "servo_bus"
+    return [Target(folder, files, alone=False)]
 
 
 def _every_c(found: Sequence[Edition]) -> Files:

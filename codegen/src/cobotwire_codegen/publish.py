@@ -33,6 +33,7 @@ from cobotwire_codegen.model import (
     Variant,
     Wire,
 )
+from cobotwire_codegen.publish_robot import robot_parts
 from cobotwire_codegen.publish_sections import (
     Record,
     exact_number,
@@ -88,8 +89,7 @@ def _document(edition: Edition) -> Record:
             firmware=edition.firmware,
             base=edition.base,
             joints=edition.joints,
-            geometry=_geometry(edition),
-            motion=_motion(edition),
+            **robot_parts(edition),
         ),
         "frame": given(
             header=hexed(frame.header),
@@ -143,27 +143,6 @@ def _frame_parts(frame: Frame) -> Record:
 
 def _ending(frame: Frame) -> list[str]:
     return [part for part in ("check", "footer") if frame.sizes[part]]
-
-
-def _motion(edition: Edition) -> Record | None:
-    if edition.motion is None:
-        return None
-    motion = edition.motion
-    parts = {name: getattr(motion, name) for name in ("speed", "fastest", "acceleration")}
-    return {name: exact_number(part) for name, part in parts.items()} | {"doc": motion.doc}
-
-
-def _geometry(edition: Edition) -> Record | None:
-    if edition.geometry is None:
-        return None
-    return {
-        "links": [
-            [exact_number(part) for part in (link.offset, link.alpha, link.a, link.d)]
-            for link in edition.geometry.links
-        ],
-        "encoder_signs": list(edition.geometry.encoder_signs),
-        "doc": edition.geometry.doc,
-    }
 
 
 class _Writer:
@@ -306,9 +285,14 @@ def _wire(wire: Wire) -> Record:
 
 
 def _address(address: Address) -> list[Any]:
-    """Return name, byte and description of an address, and whose replies it has if not its own."""
-    replies = [] if address.replies == "own" else [address.replies]
-    return [address.name, address.value, address.doc, *replies]
+    """Return name, byte and description of an address.
+
+    If they are not usual, also whose replies it has, and the number of its joints.
+    """
+    found: list[Any] = [address.name, address.value, address.doc]
+    if address.replies != "own" or address.joints:
+        found.append(address.replies)
+    return [*found, address.joints] if address.joints else found
 
 
 def _member(member: Member) -> list[Any]:

@@ -24,7 +24,10 @@ def sections_for_people(edition: Edition) -> Record:
 
 
 def _sources(edition: Edition) -> Iterator[Record]:
-    """Yield for each named thing its place, its lines in the document, disputes and changes."""
+    """Yield for each named thing its place, its lines in the document, disputes and changes.
+
+    Start values have exact physical values here; the table has raw ones.
+    """
     things: list[tuple[str, Any]] = [("edition", edition), ("frame", edition.frame)]
     things += [("wire", wire) for wire in edition.wires]
     things += [("type", type) for type in edition.types]
@@ -39,6 +42,8 @@ def _sources(edition: Edition) -> Iterator[Record]:
             disputed=getattr(thing, "disputed", ()),
             changes=() if kind == "edition" else getattr(thing, "changes", ()),
         )
+    for stated in edition.robot.start_values:
+        yield given(of="start values", name=stated.query, place=stated.place, values=stated.values)
 
 
 def _plain_record(record: Record) -> Record:

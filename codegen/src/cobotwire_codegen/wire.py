@@ -38,6 +38,7 @@ def build_frame(
     command: Command,
     direction: Literal["request", "reply"],
     values: dict[str, object],
+    address: int | None = None,
 ) -> bytes:
     """Return the frame that carries ``values``.
 
@@ -45,7 +46,7 @@ def build_frame(
         ValueError: the message has no such variant, or a value cannot be encoded.
     """
     _, data = encode_variant(command, direction, values)
-    return enclose(frame, command.id, data, direction)
+    return enclose(frame, command.id, data, direction, address)
 
 
 def encode_variant(
@@ -68,15 +69,19 @@ def encode_variant(
 
 
 def enclose(
-    frame: Frame, id: int, data: bytes, direction: Literal["request", "reply"] = "request"
+    frame: Frame,
+    id: int,
+    data: bytes,
+    direction: Literal["request", "reply"] = "request",
+    address: int | None = None,
 ) -> bytes:
-    """Return the frame around data bytes, with its first address if it has addresses.
+    """Return the frame around data bytes; without ``address`` it has the first one, if any.
 
     Raises:
         ValueError: the id or LEN is too large.
     """
     parts = {
-        "address": bytes(frame.address_values[:1]),
+        "address": bytes(frame.address_values[:1] if address is None else [address]),
         "length": _number(frame.length_number, frame.length(len(data), direction)),
         "command": _number(frame.command_number, id) if frame.has_command(direction) else b"",
     }

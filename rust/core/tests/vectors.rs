@@ -85,7 +85,13 @@ fn encoded(edition: &Edition, vector: &Vector) -> Vec<u8> {
         &edition.table.commands()[index(edition, vector)],
     );
     let values = Samples(vector.values.clone());
-    let choice = Choice::default();
+    // A vector's frame may go to any address, which follows the header.
+    let addressed = !frame.addresses.is_empty();
+    let at = frame.header.len();
+    let choice = Choice {
+        address: addressed.then(|| vector.frame.as_ref().expect("a frame")[at]),
+        ..Choice::default()
+    };
     encode::<Sample>(frame, command, vector.direction, &values, choice)
         .unwrap_or_else(|error| panic!("encode {}: {error:?}", vector.name))
 }
@@ -108,7 +114,10 @@ fn same(mut decoded: &[Value], values: &[Sample]) -> bool {
             (Value::Integer(integer), Sample::Bool(expected)) => *integer == i64::from(*expected),
             (Value::Real(real), Sample::Real(expected)) => real == expected,
             (Value::Real(real), Sample::Integer(expected)) => *real == *expected as f64,
-            (Value::Row(count), Sample::Row(expected)) => {
+            (
+                Value::Row(count) | Value::Bytes(count) | Value::Text(count, _),
+                Sample::Row(expected),
+            ) => {
                 let (row, rest) = decoded.split_at(*count);
                 decoded = rest;
                 same(row, expected)

@@ -124,10 +124,12 @@ fn of_variant(
             .map_err(|(selector, raw, at)| bad(selector, 0, 0, raw, at))?;
         for (element, number) in field.cases[case].numbers.iter().enumerate() {
             let raw = raw_value(number, &data[at..]);
-            let allowed = if field.choices.is_empty() {
-                number.minimum <= raw && raw <= number.maximum
-            } else {
+            let allowed = if !field.choices.is_empty() {
                 field.choices.contains(&raw)
+            } else if !number.choices.is_empty() {
+                number.choices.contains(&raw)
+            } else {
+                number.minimum <= raw && raw <= number.maximum
             };
             if !allowed {
                 return Err(bad(index, case, element, raw, at));

@@ -180,8 +180,10 @@ fn of_case(field: &Field, case: usize, script: &mut Bytes<'_>) -> Vec<i64> {
 }
 
 fn raw(field: &Field, number: &Number, script: &mut Bytes<'_>) -> i64 {
-    if !field.choices.is_empty() {
-        return field.choices[script.pick(field.choices.len())];
+    for choices in [&field.choices, &number.choices] {
+        if !choices.is_empty() {
+            return choices[script.pick(choices.len())];
+        }
     }
     let taken = script.take(number.width).iter();
     let offset = taken.fold(0, |word: i64, byte| word << 8 | i64::from(*byte));

@@ -169,10 +169,11 @@ impl NativeColumnReader {
         let table = self.edition.table.bind(py);
         let rejected = Bound::new(py, Memory::offsets(rejected))?;
         let tally = counters(py, core.tally())?;
+        let raw = self.numbers == Numbers::Raw;
         names
             .columns
             .bind(py)
-            .call1((table, all, rejected, spans(py, noise)?, tally))
+            .call1((table, all, rejected, spans(py, noise)?, tally, raw))
     }
 
     fn rows<'py>(&self, py: Python<'py>, names: &Names, rows: Rows) -> PyResult<Bound<'py, PyAny>> {

@@ -96,6 +96,8 @@ def _value(value: object) -> str:
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, str) and not value.isidentifier():
+        return f'"{value}"'
     return decimal(value) if isinstance(value, Fraction) else str(value)
 
 

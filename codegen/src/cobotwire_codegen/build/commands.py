@@ -55,7 +55,7 @@ class _Acks:
     def __init__(self, parts: Parts, types: Types, problems: list[Problem]) -> None:
         self.variants: tuple[Variant, ...] = ()
         self.accepted: tuple[int, ...] = ()
-        self._except: tuple[str, ...] = ()
+        self._except = set(parts.unacknowledged)
         if parts.acks is None:
             return
         spec = language.Acks
@@ -65,11 +65,12 @@ class _Acks:
             reader.problem("missing-key", "the acks lack the key field or fields")
         self._accepted = reader.get(spec.accepted)
         self._reader = reader
-        self._except = reader.get(spec.except_)
+        listed = reader.get(spec.except_)
+        self._except |= set(listed)
         reader.get(spec.why)
         known = set(parts.commands())
-        for name in self._except:
-            if name not in known:
+        for name in listed:
+            if name not in known and name not in parts.gone:
                 reader.problem("unknown-command", f"there is no command {name}")
         if field is not None:
             # Both a frame with one byte and a bare frame have been observed.

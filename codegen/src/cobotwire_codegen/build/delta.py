@@ -64,6 +64,8 @@ def _rename(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
         holder = _holder(parts, reader, name)
         if holder is not None:
             parts.gone[name] = f"; this edition renames it to {new} at {reader.place}"
+            if name in parts.unacknowledged:
+                parts.unacknowledged.add(new)
             # Keep the place of the command, so that the order of the family stays the same.
             entries = [(new if key == name else key, value) for key, value in holder.items()]
             holder.clear()
@@ -114,12 +116,26 @@ def _withdraw(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
     return f"Withdrew vectors of the base: {', '.join(names)}."
 
 
+def _withdraw_acks(parts: Parts, reader: Reader, names: tuple[str, ...]) -> str:
+    """Drop the base's acknowledgement of some commands or of all."""
+    if parts.acks is None:
+        reader.problem("bad-change", "the base has no acks to withdraw")
+    elif names == ("all",):
+        parts.acks = None
+        return "Withdrew the acknowledgement of every command."
+    for name in names:
+        if find(parts.commands(), name, "command", reader.place, reader.problems):
+            parts.unacknowledged.add(name)
+    return f"Withdrew the acknowledgement of {', '.join(names)}."
+
+
 OPERATIONS: dict[str, Operation] = {
     "remove": _remove,
     "rename": _rename,
     "change": _change,
     "change_type": _change_type,
     "withdraw": _withdraw,
+    "withdraw_acks": _withdraw_acks,
 }
 
 

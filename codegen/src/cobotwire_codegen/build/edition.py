@@ -9,15 +9,17 @@ from cobotwire_codegen import language
 from cobotwire_codegen.build.commands import build_family
 from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.frame import build_frame_format
-from cobotwire_codegen.build.geometry import build_geometry, build_motion
 from cobotwire_codegen.build.inherit import carried
 from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_own
+from cobotwire_codegen.build.robot import build_robot
 from cobotwire_codegen.build.types import Types
 from cobotwire_codegen.build.vectors import build_erratum, build_vector
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.load import Node
 from cobotwire_codegen.model import Edition, Family, Frame, Vector
 from cobotwire_codegen.reader import Reader
+
+MOST_BASES = 10
 
 
 def build_edition(
@@ -57,6 +59,9 @@ def _collect(
         if base_path.resolve() in above:
             problem = Problem(base.place, "circular-base", "an edition cannot be its own base")
             raise SpecError([*problems, problem])
+        if len(above) > MOST_BASES:
+            message = f"the edition has more than {MOST_BASES} bases below each other, the limit"
+            raise SpecError([*problems, Problem(base.place, "too-large", message)])
         base_reader, parts = _collect(base_path, texts, problems, above)
         parts.base = _build(base_reader, parts, problems)
         parts.vectors = []
@@ -88,8 +93,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         firmware=reader.get(spec.firmware),
         base=_base_name(reader),
         joints=parts.joints or 0,
-        geometry=build_geometry(parts, problems),
-        motion=build_motion(parts, problems),
+        robot=build_robot(parts, families, problems),
         frame=frame,
         wires=tuple(types.wires.values()),
         types=tuple(types.types.values()),
@@ -107,8 +111,17 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
 def _inherited(parts: Parts, frame: Frame, families: tuple[Family, ...]) -> Iterator[Vector]:
     """Yield the base's vectors that the delta has not withdrawn."""
     commands = {command.name: command for family in families for command in family.commands}
+    acknowledged = {c.name for c in parts.base.commands if c.ack} if parts.base else set()
     for vector, name in parts.inherited:
         assert parts.base is not None, "only a delta inherits"
+        after = commands.get(name)
+        if (
+            vector.direction == "reply"
+            and vector.command in acknowledged
+            and after is not None
+            and not after.replies
+        ):
+            continue  # The acknowledgement was withdrawn, and its vectors with it.
         yield carried(vector, name, parts.base, frame, commands)
 
 

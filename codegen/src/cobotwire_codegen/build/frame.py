@@ -104,4 +104,5 @@ def _address(name: str, place: Place, node: Node, problems: list[Problem]) -> Ad
     spec = language.Address
     reader = Reader(node, spec, f"the address {name}", problems)
     value, doc = reader.get(spec.value), reader.get(spec.doc)
-    return Address(place, name, value, doc, reader.get(spec.replies))
+    joints = reader.get(spec.joints)
+    return Address(place, name, value, doc, reader.get(spec.replies), joints)

@@ -59,7 +59,9 @@ def carried(
     )
     try:
         values, data = _adapted(vector, before, after)
-        built = enclose(frame, after.id, data, vector.direction)
+        address = base.frame.address_in(vector.frame)
+        kept = address if address in frame.address_values else None
+        built = enclose(frame, after.id, data, vector.direction, kept)
     except (ValueError, Underivable):
         return own
     if built == vector.frame:

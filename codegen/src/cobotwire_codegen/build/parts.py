@@ -17,7 +17,16 @@ from cobotwire_codegen.build.packages import names_package, packaged_edition
 from cobotwire_codegen.errors import Place, Problem, SpecError, nearest
 from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.language.shapes import items_of
-from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load, parse
+from cobotwire_codegen.load import (
+    MOST_BYTES_TOGETHER,
+    MOST_NODES_TOGETHER,
+    Mapping,
+    Node,
+    Scalar,
+    Sequence,
+    loaded,
+    parsed,
+)
 from cobotwire_codegen.model import Change, Edition, Vector
 from cobotwire_codegen.reader import Reader
 
@@ -51,9 +60,15 @@ class Parts:
     frame: Node | None = None
     transport: Node | None = None
     joints: int | None = None
-    geometry: Node | None = None
-    motion: Node | None = None
+    robot: dict[str, Node] = field(default_factory=dict)
+    # Why there is no geometry; it has no effect beside one.
+    geometry_unknown: str = ""
+    # By query; those that the edition states itself, not its base.
+    start_values: dict[str, Node] = field(default_factory=dict)
+    own_start_values: set[str] = field(default_factory=set)
     acks: Node | None = None
+    # Commands that the rule in `acks` no longer covers, by changes of a delta.
+    unacknowledged: set[str] = field(default_factory=set)
     types: dict[str, Named] = field(
         default_factory=lambda: {name: {} for name in language.SECTIONS}
     )
@@ -86,15 +101,30 @@ class Texts:
 
     def __init__(self, root: Path, unsaved: Unsaved) -> None:
         self._root, self._unsaved = root.resolve(), unsaved
+        self._bytes = self._nodes = 0
 
-    def load(self, path: Path) -> Node:
-        """Return a file's content; messages name it relative to the root."""
+    def load(self, path: Path, place: Place | None = None) -> Node:
+        """Return the content of a file that is named at ``place``.
+
+        Raises:
+            SpecError: the file cannot be read, or all files together exceed a limit.
+        """
         path = path.resolve()
         shown = path.relative_to(self._root) if path.is_relative_to(self._root) else path
-        text = self._unsaved.get(path)
-        if text is None:
-            return load(path, shown.as_posix())
-        return parse(text, shown.as_posix()) if isinstance(text, str) else text
+        text, name = self._unsaved.get(path), shown.as_posix()
+        if text is not None and not isinstance(text, str):
+            return text
+        content = loaded(path, name) if text is None else parsed(text, name)
+        self._bytes += content.bytes
+        self._nodes += content.nodes
+        for size, most, what in (
+            (self._bytes, MOST_BYTES_TOGETHER, "bytes"),
+            (self._nodes, MOST_NODES_TOGETHER, "values"),
+        ):
+            if size > most:
+                message = f"with this file the edition has more than {most} {what}, the limit"
+                raise SpecError([Problem(place or Place(name, 1, 1), "too-large", message)])
+        return content.root
 
 
 class Files:
@@ -105,9 +135,9 @@ class Files:
         self._texts = texts
         self._problems = problems
 
-    def load(self, path: Path) -> Node:
-        """Return a file's content."""
-        return self._texts.load(path)
+    def load(self, path: Path, place: Place | None = None) -> Node:
+        """Return the content of a file that is named at ``place``."""
+        return self._texts.load(path, place)
 
     def path(self, node: Node) -> Path:
         """Return the path of the file, or of the package's edition, that a node names.
@@ -132,7 +162,7 @@ class Files:
 
     def content(self, node: Node) -> Node:
         """Return the content of the file that a node names, or the node itself."""
-        return self.load(self.path(node)) if isinstance(node, Scalar) else node
+        return self.load(self.path(node), node.place) if isinstance(node, Scalar) else node
 
     def listed(self, reader: Reader, key: Key[Node | None]) -> list[Node]:
         """Return the contents of a list of files."""
@@ -148,14 +178,14 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
     spec = language.WholeEdition
     if reader.node(spec.joints) is not None or parts.joints is None:
         joints, parts.joints = parts.joints, reader.get(spec.joints)
-        # An arm with another number of joints has another geometry.
-        parts.geometry = parts.geometry if joints == parts.joints else None
-        parts.motion = parts.motion if joints == parts.joints else None
-    if reader.get(spec.geometry_unknown):
-        parts.geometry = None
-    parts.geometry = reader.get(spec.geometry) or parts.geometry
-    parts.motion = reader.get(spec.motion) or parts.motion
-    parts.acks = reader.get(spec.acks) or parts.acks
+        if joints != parts.joints:
+            # An arm with another number of joints is another arm.
+            for name in language.JOINT_KEYS:
+                parts.robot.pop(name, None)
+    _add_robot(parts, reader)
+    acks = reader.get(spec.acks)
+    if acks is not None:
+        parts.acks, parts.unacknowledged = acks, set()
     node = reader.get(spec.types)
     if node is not None:
         _add_types(parts, files.content(node), reader.problems)
@@ -164,6 +194,21 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
         parts.vectors += _listed(files.content(item), language.VectorsFile.vectors, reader.problems)
     for item in _one_or_many(reader.get(spec.errata)):
         parts.errata += _listed(files.content(item), language.ErrataFile.errata, reader.problems)
+
+
+def _add_robot(parts: Parts, reader: Reader) -> None:
+    spec = language.WholeEdition
+    unknown = reader.get(spec.geometry_unknown)
+    if unknown:
+        parts.robot.pop("geometry", None)
+        parts.geometry_unknown = unknown
+    for name in language.ROBOT_KEYS:
+        node = reader.node(spec.keys()[name])
+        if node is not None:
+            parts.robot[name] = node
+    own = {name: node for name, _, node in reader.get(spec.start_values)}
+    parts.start_values |= own
+    parts.own_start_values = set(own)
 
 
 def _one_or_many(node: Node | None) -> tuple[Node, ...]:

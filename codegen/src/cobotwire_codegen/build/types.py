@@ -257,7 +257,10 @@ class Types:
         if isinstance(of, Bits | Octets | Listed) or (
             isinstance(of, Chars) and (of.varies or of.least < 2)
         ):
-            message = f"the list {name} cannot have elements of the type {of.name}"
+            message = (
+                f"the list {name} cannot have elements of the type {of.name}; allowed: a quantity, "
+                "flag, enum, value type, or text of a fixed size of at least 2 bytes"
+            )
             reader.problem("bad-item", message, reader.place_of(spec.of))
             of = stand_in(place)
         least, most = reader.get(spec.size)

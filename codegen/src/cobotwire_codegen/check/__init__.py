@@ -13,6 +13,7 @@ from cobotwire_codegen.check import (
     names,
     read_back,
     reserved,
+    robot,
     roles,
     types,
     variants,
@@ -31,6 +32,7 @@ RULES: tuple[Rule, ...] = (
     *arguments.RULES,
     *read_back.RULES,
     *roles.RULES,
+    *robot.RULES,
     *evidence.RULES,
 )
 

@@ -23,8 +23,9 @@ def vectors_hold(edition: Edition) -> Iterator[Problem]:
             message = edition.no_command(vector.command)
             yield Problem(vector.place, "unknown-command", message)
         elif vector.frame is not None:
+            values, address = dict(vector.values), edition.frame.address_in(vector.frame)
             try:
-                built = build_frame(edition.frame, command, vector.direction, dict(vector.values))
+                built = build_frame(edition.frame, command, vector.direction, values, address)
             except ValueError as error:
                 yield Problem(vector.place, "unencodable-vector", f"{vector.name}: {error}")
                 continue

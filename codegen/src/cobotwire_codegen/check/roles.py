@@ -8,6 +8,7 @@ from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.model import Command, Edition, Field, Quantity, Variant
 
 KINDS = {"ANGLES", "COORDS"}
+GRIPS = {"OPEN", "CLOSE"}
 
 
 def _parts(field: Field) -> int:
@@ -72,6 +73,15 @@ def _error(command: Command) -> bool:
     last = [variant[-1] for variant in command.replies if variant]
     ends = bool(last) and all(not _parts(field) for field in last)
     return command.requests == ((),) and ends
+
+
+def _grips(command: Command) -> bool:
+    """Return whether each request has a state that may be OPEN or CLOSE, and a speed."""
+    return all(
+        [{member.name for member in field.type.members} >= GRIPS for field in variant[:2]]
+        == [True, False]
+        for variant in command.requests
+    )
 
 
 def _reads_row(parts: int) -> Callable[[Command], bool]:
@@ -151,7 +161,8 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             "it must be an event, and its last field a status",
             lambda command: command.event and not _parts(command.replies[0][-1]),
         ),
-        "stop": ("it must take no arguments", lambda command: command.requests == ((),)),
+        "gripper": ("it must take first a state, OPEN or CLOSE, then a speed", _grips),
+        "stop": ("it must need no arguments", lambda command: () in command.requests),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import sys
+from collections.abc import Callable
 from itertools import combinations
 from pathlib import Path
 
@@ -20,19 +21,22 @@ from cobotwire_codegen.cli.shared import (
     report_write_errors,
 )
 from cobotwire_codegen.emit import Target, foreign
-from cobotwire_codegen.render import render_python, render_reference
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.render import Files, render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
+from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
 # What is generated into the folder of each option.
-RENDERERS = {
+RENDERERS: dict[str, Callable[[Edition, Path | None], Files]] = {
     "--out": render_python,
     "--docs": render_reference,
     "--c": render_c,
     "--wireshark": lambda edition, own: render_wireshark([edition], own),
+    "--construct": lambda edition, own: render_construct([edition], own),
 }
-# Wireshark's folder for plugins may contain other files.
-SHARED = ("--wireshark",)
+# Wireshark's folder for plugins, and one for modules, may contain other files.
+SHARED = ("--wireshark", "--construct")
 
 
 @click.command()
@@ -50,6 +54,11 @@ SHARED = ("--wireshark",)
     help="Also write a Wireshark dissector, to this folder; it may contain other files.",
 )
 @click.option(
+    "--construct",
+    type=click.Path(file_okay=False),
+    help="Also write declarations for construct, to this folder; it may contain other files.",
+)
+@click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
     help="Templates of your own; each replaces the built-in one of the same name.",
@@ -62,6 +71,7 @@ def build(
     docs: str | None,
     c: str | None,
     wireshark: str | None,
+    construct: str | None,
     templates: str | None,
     check_only: bool,
     variant: str,
@@ -72,7 +82,8 @@ def build(
     (`cobotwire --edition PACKAGE`). The folders of package and reference must contain nothing else.
     """
     path = edition_path(file)
-    given = {"--out": out, "--docs": docs, "--c": c, "--wireshark": wireshark}
+    given = {"--out": out, "--docs": docs, "--c": c}
+    given |= {"--wireshark": wireshark, "--construct": construct}
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
     with report_problems(variant):

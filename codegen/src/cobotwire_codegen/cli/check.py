@@ -9,7 +9,7 @@ import click
 from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.cli.shared import edition_path, format_option, report_problems, root_option
 from cobotwire_codegen.errors import Problem, SpecError
-from cobotwire_codegen.project import edition_files
+from cobotwire_codegen.project import spec_files
 
 
 @click.command()
@@ -17,14 +17,14 @@ from cobotwire_codegen.project import edition_files
 @root_option
 @format_option
 def check(files: tuple[str, ...], root: str, variant: str) -> None:
-    """Check the edition FILES, or all of spec/editions, and report every problem at once.
+    """Check the edition FILES, or all of spec/, and report every problem at once.
 
     A problem is `file:line:column: code: message`. Codes are stable; `cobotwire-gen explain CODE`
     explains a code.
     """
     problems: list[Problem] = []
     with report_problems(variant):
-        paths = [edition_path(file) for file in files] or edition_files(Path(root))
+        paths = [edition_path(file) for file in files] or spec_files(Path(root))
         for path in paths:
             try:
                 checked_edition(path, Path(root))

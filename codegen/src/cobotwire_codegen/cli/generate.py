@@ -23,7 +23,7 @@ def generate(check_only: bool, with_products: bool, root: str) -> None:
     """
     with report_problems():
         found = editions(Path(root))
-    wanted = committed(Path(root), found)
+        wanted = committed(Path(root), found)
     if with_products:
         wanted += products(Path(root), found)
     if check_only:

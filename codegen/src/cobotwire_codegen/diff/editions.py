@@ -11,8 +11,9 @@ from cobotwire_codegen.diff.families import family_changes
 from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.frame import frame_changes
 from cobotwire_codegen.diff.named import named_types
+from cobotwire_codegen.diff.robot import robot_changes
 from cobotwire_codegen.diff.rules import LEVELS
-from cobotwire_codegen.model import Edition, Geometry, Motion
+from cobotwire_codegen.model import Edition
 
 _SEVERITY = {level: index for index, level in enumerate(LEVELS)}
 
@@ -63,42 +64,7 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
     for rule, where, before, after in facts:
         if before != after:
             yield finding(rule, where, before, after)
-    yield from _geometry(old.geometry, new.geometry)
-    yield from _motion(old.motion, new.motion)
+    yield from robot_changes(old.robot, new.robot)
     yield from prose.doc("edition/title", old.title, new.title)
     yield from prose.doc("edition", old.doc, new.doc)
     yield from prose.doc("edition/document", old.document, new.document)
-
-
-def _geometry(old: Geometry | None, new: Geometry | None) -> Iterator[Finding]:
-    """Compare the links and the encoders' directions, and how they are explained."""
-    if _lengths(old) != _lengths(new):
-        yield finding("geometry-changed", "edition/geometry", _lengths(old), _lengths(new))
-    elif old is not None and new is not None:
-        yield from prose.doc("edition/geometry", old.doc, new.doc)
-
-
-def _motion(old: Motion | None, new: Motion | None) -> Iterator[Finding]:
-    """Compare how the arms move, and how that is explained."""
-    if _speeds(old) != _speeds(new):
-        yield finding("motion-changed", "edition/motion", _speeds(old), _speeds(new))
-    elif old is not None and new is not None:
-        yield from prose.doc("edition/motion", old.doc, new.doc)
-
-
-def _speeds(motion: Motion | None) -> str:
-    """Return the numbers of a motion in one line."""
-    if motion is None:
-        return "not stated"
-    return f"speed {motion.speed}, fastest {motion.fastest}, acceleration {motion.acceleration}"
-
-
-def _lengths(geometry: Geometry | None) -> str:
-    """Return the numbers of a geometry in one line."""
-    if geometry is None:
-        return "not stated"
-    links = "; ".join(
-        f"offset {link.offset}, alpha {link.alpha}, a {link.a}, d {link.d}"
-        for link in geometry.links
-    )
-    return f"{links}; encoder signs {', '.join(map(str, geometry.encoder_signs))}"

@@ -44,6 +44,10 @@ def _addresses(old: tuple[Address, ...], new: tuple[Address, ...]) -> Iterator[F
         if before.replies != after.replies:
             where_now = f"{where}/{after.name}"
             yield finding("address-replies-changed", where_now, before.replies, after.replies)
+        if before.joints != after.joints:
+            where_now = f"{where}/{after.name}"
+            shown = [str(side.joints or "those of the edition") for side in (before, after)]
+            yield finding("address-joints-changed", where_now, *shown)
         if before.name != after.name:
             yield finding("address-renamed", f"{where}/{after.name}", before.name, after.name)
         yield from prose.doc(f"{where}/{after.name}", before.doc, after.doc)

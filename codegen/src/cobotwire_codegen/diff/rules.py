@@ -89,6 +89,7 @@ _API = {
     "type-kind-changed": "the kind was {old}, is {new}: callers pass or get another type",
 }
 _BEHAVIOUR = {
+    "address-joints-changed": "the joints of the device were {old}, are {new}",
     "agreement-changed": "agreed with {old}, agrees with {new}: runs compare other queries",
     "read-back-changed": "read_by was {old}, is {new}: conformance runs send other queries",
     "samples-changed": "a conformance run sent {old}, sends {new}",
@@ -99,6 +100,13 @@ _BEHAVIOUR = {
     "default-changed": "was {old} if left out, is {new}: the same call sends another value",
     "motion-changed": "the motion was {old}, is {new}",
     "geometry-changed": "the geometry was {old}, is {new}",
+    "encoders-changed": "the encoders were {old}, are {new}",
+    "gripper-changed": "the simulated gripper was {old}, is {new}",
+    "servos-changed": "the servos were {old}, are {new}",
+    "error-codes-changed": "the numbers of rejected motions were {old}, are {new}",
+    "joint-limits-changed": "the limits of the joints were {old}, are {new}",
+    "start-angles-changed": "a simulated arm began at {old}, begins at {new}",
+    "start-values-changed": "queries first reported {old}, now report {new}",
     "joints-changed": "the arm had {old} joints, has {new}",
     "maximum-data-changed": "a frame carried up to {old} data bytes, carries {new}",
     "range-moved": "the range was {old}, is {new}: values on either side are rejected",

@@ -16,18 +16,20 @@ from cobotwire_codegen.language.changes import (
     RemoveField,
     RenameCommand,
     RenameField,
+    WithdrawAcks,
     WithdrawVectors,
 )
 from cobotwire_codegen.language.edition import (
     EDITION,
     FILES,
+    JOINT_KEYS,
+    ROBOT_KEYS,
     Acks,
     DeltaEdition,
     WholeEdition,
 )
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
-from cobotwire_codegen.language.geometry import Geometry, Link, Motion
 from cobotwire_codegen.language.messages import (
     FIELDS,
     Case,
@@ -50,6 +52,15 @@ from cobotwire_codegen.language.proof import (
     VectorsFile,
 )
 from cobotwire_codegen.language.records import Choice, Key, Record
+from cobotwire_codegen.language.robot import (
+    Encoders,
+    ErrorCodes,
+    Geometry,
+    Gripper,
+    Link,
+    Motion,
+    Servos,
+)
 from cobotwire_codegen.language.types import (
     SECTIONS,
     BitPart,
@@ -72,6 +83,8 @@ __all__ = [
     "FIELDS",
     "FIELD_CHANGES",
     "FILES",
+    "JOINT_KEYS",
+    "ROBOT_KEYS",
     "SECTIONS",
     "VECTOR",
     "Acks",
@@ -90,15 +103,18 @@ __all__ = [
     "CommandsFile",
     "DeltaEdition",
     "Dispute",
+    "Encoders",
     "Enum",
     "ErrataFile",
     "Erratum",
+    "ErrorCodes",
     "Evidence",
     "ExampleVector",
     "Flag",
     "Frame",
     "FrameFile",
     "Geometry",
+    "Gripper",
     "Key",
     "Link",
     "Listed",
@@ -118,6 +134,7 @@ __all__ = [
     "RequestField",
     "RequestText",
     "SelectedRequestField",
+    "Servos",
     "TextField",
     "Transport",
     "TypesFile",
@@ -125,5 +142,6 @@ __all__ = [
     "VectorsFile",
     "WholeEdition",
     "Wire",
+    "WithdrawAcks",
     "WithdrawVectors",
 ]

@@ -156,6 +156,21 @@ evidence: [{source: a library 2.0, says: "sends two more bytes"}]
 """
 
 
+class WithdrawAcks(_Change):
+    """Withdraw the base's acknowledgement of commands, with its vectors.
+
+    The commands then have no reply. An edition that acknowledges otherwise states `acks` of its
+    own, which replace those of its base.
+    """
+
+    withdraw_acks = required(Names(), "The commands, or `all`.")
+    EXAMPLE = """\
+withdraw_acks: all
+why: The firmware sends nothing after a setter.
+evidence: [{source: a library 2.0, says: "waits for no reply to setters"}]
+"""
+
+
 CHANGE = Choice(
     "change",
     {
@@ -164,6 +179,7 @@ CHANGE = Choice(
         "change": ChangeCommands,
         "change_type": ChangeTypes,
         "withdraw": WithdrawVectors,
+        "withdraw_acks": WithdrawAcks,
     },
 )
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from cobotwire_codegen.language.changes import CHANGE, ChangesFile
 from cobotwire_codegen.language.frame import FrameFile
-from cobotwire_codegen.language.geometry import Geometry, Motion
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField, accepted_key
 from cobotwire_codegen.language.names import BASE, CLASS, LOWER, METHOD
-from cobotwire_codegen.language.number_shapes import Whole
+from cobotwire_codegen.language.number_shapes import Ranges, Reals, Whole
 from cobotwire_codegen.language.proof import VECTOR, ErrataFile, Erratum, VectorsFile
 from cobotwire_codegen.language.records import (
     Choice,
@@ -23,7 +22,15 @@ from cobotwire_codegen.language.records import (
     or_file,
     required,
 )
-from cobotwire_codegen.language.shapes import Name, Names, Text
+from cobotwire_codegen.language.robot import (
+    Encoders,
+    ErrorCodes,
+    Geometry,
+    Gripper,
+    Motion,
+    Servos,
+)
+from cobotwire_codegen.language.shapes import Anything, Name, Names, Text
 from cobotwire_codegen.language.types import SECTIONS, TypesFile
 
 _JOINTS = "How many joints the arm has."
@@ -76,9 +83,13 @@ class _Edition(Record):
     motion = optional(
         Part(Motion),
         "How the arm moves. A delta with as many joints inherits that of its base. Left out: a "
-        "simulated arm moves like the 280.",
+        "simulated arm turns one degree a second for each percent of speed.",
     )
-    acks = optional(Part(Acks), "How commands without a reply are acknowledged.")
+    acks = optional(
+        Part(Acks),
+        "How commands without a reply are acknowledged. In a delta they replace those of its base; "
+        "the change `withdraw_acks` withdraws those.",
+    )
     geometry = optional(
         Part(Geometry),
         "The arm's geometry. A delta with as many joints inherits that of its base.",
@@ -88,6 +99,33 @@ class _Edition(Record):
         "Why the geometry is not known. A delta with this key does not inherit the geometry of its "
         "base: its simulated arm sends no coordinates instead of wrong ones. The key has no effect "
         "beside `geometry`.",
+    )
+    encoders = optional(
+        Part(Encoders),
+        "How the encoders of the joints count. A delta with as many joints inherits those of its "
+        "base. Left out: the joints of a simulated arm rest anywhere.",
+    )
+    gripper = optional(Part(Gripper), "The gripper. A delta inherits that of its base.")
+    servos = optional(Part(Servos), "What the servos report. A delta inherits it from its base.")
+    error_codes = optional(
+        Part(ErrorCodes),
+        "The numbers of rejected motions. A delta with as many joints inherits those of its base. "
+        "Left out: a simulated arm reports no error.",
+    )
+    joint_limits = optional(
+        Ranges(),
+        "For each joint, the lowest and the highest angle that the arm obeys. A delta with as many "
+        "joints inherits them. They have no effect if messages give targets of joints a range.",
+    )
+    start_angles = optional(
+        Reals(),
+        "For each joint, where that of a simulated arm is at first. A delta with as many joints "
+        "inherits them. Left out: at 0 degrees.",
+    )
+    start_values = optional(
+        Named(Anything("a mapping from fields to values", {"type": "object"}), METHOD),
+        "By query: the fields of its reply, and what they report before anything has set them. A "
+        "delta inherits those of its base, as far as it has the queries and fields.",
     )
 
 
@@ -117,6 +155,10 @@ class DeltaEdition(_Edition):
     frame = optional(InFile(FrameFile), f"{_FRAME} Left out: as in the base.")
     changes = optional(InFiles(_CHANGES), "The changes, in order.")
 
+
+# The keys that describe the robot. Those of `JOINT_KEYS` fit one number of joints only.
+JOINT_KEYS = ("geometry", "motion", "encoders", "error_codes", "joint_limits", "start_angles")
+ROBOT_KEYS = (*JOINT_KEYS, "gripper", "servos")
 
 EDITION = Choice("edition", {"base": DeltaEdition}, WholeEdition)
 

@@ -23,6 +23,12 @@ class Address(Record):
         "From which address the replies to a request come that is sent to this one.",
         "own",
     )
+    joints = optional(
+        Whole(1, None, "bad-frame"),
+        "How many joints the device has. Left out: as many as the edition. Commands with a row for "
+        "all joints cannot be sent to a device with fewer.",
+        0,
+    )
     EXAMPLE = "{value: 0, doc: Every arm., replies: any}"
 
 

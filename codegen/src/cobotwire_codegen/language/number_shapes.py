@@ -143,6 +143,41 @@ class Numbers(Shape[tuple[int, ...]]):
         return {"type": "array", "items": {"type": "integer"}, "minItems": 1}
 
 
+class Reals(Shape[tuple[Fraction, ...]]):
+    """A list of any numbers."""
+
+    blank = ()
+    words = "a list of numbers"
+
+    def read(self, node: Node, subject: str, note: Note) -> tuple[Fraction, ...]:
+        """Return the numbers."""
+        items = items_of(node, subject, note)
+        return tuple(Real().read(item, f"a number of {subject}", note) for item in items)
+
+    def schema(self) -> Schema:
+        """Return an array of numbers."""
+        return {"type": "array", "items": Real().schema(), "minItems": 1}
+
+
+class Ranges(Shape[tuple[tuple[Fraction, Fraction], ...]]):
+    """A list of pairs of numbers, the lowest and the highest."""
+
+    blank = ()
+    words = "a list of [lowest, highest]"
+
+    def read(self, node: Node, subject: str, note: Note) -> tuple[tuple[Fraction, Fraction], ...]:
+        """Return the pairs."""
+        pairs = (
+            Range().read(item, f"a pair of {subject}", note)
+            for item in items_of(node, subject, note)
+        )
+        return tuple(pair for pair in pairs if pair is not None)
+
+    def schema(self) -> Schema:
+        """Return an array of pairs."""
+        return {"type": "array", "items": Range().schema(), "minItems": 1}
+
+
 def as_fraction(node: Node) -> Fraction | None:
     """Return the exact number that a node holds, or None."""
     value = node.value if isinstance(node, Scalar) else None

@@ -30,7 +30,9 @@ class _Vector(Record):
     line = optional(Whole(1), "Its line in the document.", 0)
     printed = optional(Hex(), "The bytes that the document prints.")
     frame = optional(
-        Hex(), "The frame to encode and to decode. Left out: the printed bytes are a stray copy."
+        Hex(),
+        "The frame to encode and to decode; it may carry any legal address. Left out: the printed "
+        "bytes are a stray copy.",
     )
     text = optional(Text(), "The text of a reply outside any frame, instead of `frame`.")
     values = optional(

@@ -15,7 +15,6 @@ from cobotwire_codegen.language.changes import (
 from cobotwire_codegen.language.edition import Acks, DeltaEdition, WholeEdition
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
-from cobotwire_codegen.language.geometry import Geometry, Link, Motion
 from cobotwire_codegen.language.messages import (
     ANY_REPLY_FIELD,
     ANY_REQUEST_FIELD,
@@ -28,6 +27,7 @@ from cobotwire_codegen.language.messages import (
 )
 from cobotwire_codegen.language.proof import VECTOR, ErrataFile, Erratum, Rejection, VectorsFile
 from cobotwire_codegen.language.records import Choice, Described, Key, Record
+from cobotwire_codegen.language.robot import ROBOT_RECORDS
 from cobotwire_codegen.language.shapes import Word
 from cobotwire_codegen.language.types import SECTIONS, BitPart, Member, TypesFile
 
@@ -46,7 +46,7 @@ Editors that use the YAML language server complete and check a file whose first 
 `# yaml-language-server: $schema=PATH/schema.json`; `cobotwire-gen schema` writes the schema.
 """
 _CHAPTERS: tuple[tuple[str, tuple[Described, ...]], ...] = (
-    ("Editions", (WholeEdition, DeltaEdition, Acks, Geometry, Link, Motion)),
+    ("Editions", (WholeEdition, DeltaEdition, Acks, *ROBOT_RECORDS)),
     ("The frame", (FrameFile, Frame, Address, Transport)),
     ("Types", (TypesFile, *SECTIONS.values(), Member, BitPart)),
     ("Commands", (CommandsFile, Command)),

@@ -21,6 +21,7 @@ CHECKS = {
 REPLIES = {
     "own": "From this address: one device has it.",
     "any": "From any address: several devices have it, and each may reply.",
+    "one": "From any address, but one only: several devices have it, and one replies for all.",
     "none": "There are none: it is a broadcast.",
 }
 ROLES = {
@@ -38,6 +39,7 @@ ROLES = {
     "paused": "Reports whether the motion is paused.",
     "error": "Reports why the arm did not move; 0 is no error.",
     "version": "Reports the version of the firmware.",
+    "gripper": "Opens or closes the gripper, at a speed.",
 }
 CONFIDENCE = ("high", "medium", "low")
 VERDICTS = ("consistent", "erratum", "label only", "text and byte disagree")

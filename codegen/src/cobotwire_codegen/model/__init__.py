@@ -17,14 +17,22 @@ from cobotwire_codegen.model.edition import (
     Derivation,
     Edition,
     Erratum,
-    Geometry,
     Limits,
-    Link,
-    Motion,
     Vector,
 )
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.frame import Address, Frame, FrameCheck, FrameNumber
+from cobotwire_codegen.model.robot import (
+    Encoders,
+    ErrorCodes,
+    Geometry,
+    Gripper,
+    Link,
+    Motion,
+    Robot,
+    Servos,
+    StartValues,
+)
 from cobotwire_codegen.model.shapes import BitPart, Bits, Chars, Listed, Octets, Type
 from cobotwire_codegen.model.types import (
     Enum,
@@ -46,8 +54,10 @@ __all__ = [
     "Derivation",
     "Dispute",
     "Edition",
+    "Encoders",
     "Enum",
     "Erratum",
+    "ErrorCodes",
     "Evidence",
     "Family",
     "Field",
@@ -56,6 +66,7 @@ __all__ = [
     "FrameCheck",
     "FrameNumber",
     "Geometry",
+    "Gripper",
     "Limits",
     "Lines",
     "Link",
@@ -65,8 +76,11 @@ __all__ = [
     "Octets",
     "Quantity",
     "ReadBack",
+    "Robot",
     "Samples",
     "Scalar",
+    "Servos",
+    "StartValues",
     "Text",
     "Type",
     "Value",

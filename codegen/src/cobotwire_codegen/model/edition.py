@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Literal
 
 from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.model.commands import Command, Family
 from cobotwire_codegen.model.facts import Change, Lines
 from cobotwire_codegen.model.frame import Frame
+from cobotwire_codegen.model.robot import Robot
 from cobotwire_codegen.model.shapes import Type
 from cobotwire_codegen.model.types import Wire
 
@@ -69,35 +69,6 @@ class Vector:
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
-    """A row of standard Denavit-Hartenberg parameters, in degrees and millimetres."""
-
-    offset: Fraction
-    alpha: Fraction
-    a: Fraction
-    d: Fraction
-
-
-@dataclass(frozen=True, slots=True)
-class Geometry:
-    """The links of an arm, and for each joint the direction in which its encoder counts."""
-
-    links: tuple[Link, ...]
-    encoder_signs: tuple[int, ...]
-    doc: str
-
-
-@dataclass(frozen=True, slots=True)
-class Motion:
-    """How an arm moves, in degrees and seconds: the speed is that of one percent."""
-
-    speed: Fraction
-    fastest: Fraction
-    acceleration: Fraction
-    doc: str
-
-
-@dataclass(frozen=True, slots=True)
 class Edition:
     """One edition of a protocol."""
 
@@ -110,8 +81,7 @@ class Edition:
     firmware: str
     base: str
     joints: int
-    geometry: Geometry | None
-    motion: Motion | None
+    robot: Robot
     frame: Frame
     wires: tuple[Wire, ...]
     types: tuple[Type, ...]

@@ -15,13 +15,17 @@ _USUAL_CHECKS = (("crc16-modbus", "header", 2, "big"), ("sum", "command", 1, "bi
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """A value of the address byte, and from which address the replies to it come."""
+    """A value of the address byte, and from which address the replies to it come.
+
+    ``joints`` is the number of the device's joints; 0: as many as the edition.
+    """
 
     place: Place
     name: str
     value: int
     doc: str
     replies: str
+    joints: int = 0
 
     @property
     def attribute(self) -> str:
@@ -78,6 +82,11 @@ class Frame:
         named = tuple(address.value for address in self.addresses)
         return named + tuple(value for value in self.address_range if value not in named)
 
+    def address_in(self, data: bytes) -> int | None:
+        """Return the address that a frame carries; None if it has no legal one."""
+        found = data[self.offset("address") :][:1] if self.address_values else b""
+        return found[0] if found and found[0] in self.address_values else None
+
     @property
     def check_word(self) -> str:
         """The spec's word for the check."""
@@ -117,8 +126,8 @@ class Frame:
         """Return LEN of a frame with that many data bytes."""
         absent = 0 if self.has_command(direction) else self.sizes["command"]
         fixed = sum(self.sizes.get(part, 0) for part in self.counted)
-        # A reply without an id has data in its place, so LEN does not depend on the id.
-        return fixed + data_size - (absent if "command" in self.counted else 0)
+        # A reply without an id has data in its place: frames of one LEN have one size.
+        return fixed + data_size - absent
 
     @property
     def maximum_length(self) -> int:

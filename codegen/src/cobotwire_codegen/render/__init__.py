@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -59,6 +60,10 @@ def render_python(
     return files
 
 
+def _package_of(module: str) -> str:
+    return module.rpartition(".")[0]
+
+
 def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
     """Return the modules of typed requests and replies, one for each family that has its own."""
     sharing: Sharing = common["sharing"]
@@ -78,7 +83,9 @@ def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
             )
     index = jinja.get_template("python/messages/__init__.py.j2")
     made[PurePosixPath("messages/__init__.py")] = index.render(
-        common, **{key: sorted(names) for key, names in modules.items()}
+        common,
+        **{key: sorted(names) for key, names in modules.items()},
+        shared_by_package=[list(g) for _, g in groupby(sorted(modules["shared"]), _package_of)],
     )
     return made
 

@@ -119,7 +119,10 @@ class Sharing:
                 module = module.replace(f"{PACKAGE}.", "...", 1)
                 shared += [(module, found.name) for found in message_classes(command)]
         # ruff sorts by module and then by name.
-        again = [import_line(module, [f"{name} as {name}"]) for module, name in sorted(shared)]
+        again = [
+            import_line(module, [f"{name} as {name}"])
+            for module, name in sorted(shared, key=_by_name)
+        ]
         bases = [
             n
             for n in ("Event", "Reply", "Request")
@@ -139,6 +142,12 @@ class Sharing:
                 same = [c.name for c in other.commands] == [c.name for c in family.commands]
                 return other if same else None
         return None
+
+
+def _by_name(shared: tuple[str, str]) -> tuple[str, str, str]:
+    """Return the key by which import lines are sorted, as linters sort them."""
+    module, name = shared
+    return module, name.lower(), name
 
 
 def local_imports(edition: Edition, names: set[str]) -> list[str]:

@@ -1,12 +1,12 @@
 //! One column of numbers, of the type that fits them.
 
-use crate::field::Field;
+use crate::field::{Field, Shape};
 use crate::number::Value;
 
 /// Which numbers a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
-    /// Physical values: 64-bit floats, whatever the field.
+    /// Physical values: 64-bit floats; bytes and texts are bytes.
     Physical,
     /// The raw values of the wire, after the sign rule: the smallest integer type that holds
     /// all that the field allows.
@@ -78,7 +78,10 @@ impl Cells {
     /// Return an empty column for a field.
     pub(crate) fn new(field: &Field, numbers: Numbers) -> Self {
         if numbers == Numbers::Physical {
-            return Self::F64(Vec::new());
+            return match field.shape {
+                Shape::Numbers => Self::F64(Vec::new()),
+                Shape::Bytes | Shape::Text(..) => Self::U8(Vec::new()),
+            };
         }
         let (least, most) = field.raw_range();
         let holds = |from: i64, to: i64| from <= least && most <= to;

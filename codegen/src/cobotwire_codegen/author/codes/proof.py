@@ -14,6 +14,14 @@ EXPLANATIONS = (
         "command: blink",
     ),
     Explanation(
+        "bad-start-value",
+        "A start value is not a value that its query can report, or lies outside a limit.",
+        "A simulated device would report what no device can.",
+        "Give fields of the reply with legal values, as a vector of the reply has them.",
+        "get_angle: {angle: 1000}",
+        "get_angle: {angle: 10}",
+    ),
+    Explanation(
         "vector-differs",
         "The values of a vector encode to other bytes than its frame.",
         "Either the spec or the vector is wrong, and tests are generated from both.",

@@ -90,11 +90,13 @@ EXPLANATIONS = (
     ),
     Explanation(
         "unsupported-type",
-        "An output target (C, Wireshark, construct, the decoder page) cannot express a type.",
+        "An output target (construct) cannot express a message.",
         "Code that misreads a field is worse than no code.",
-        "Generate the targets that support the type; all of them are optional.",
-        "cobotwire-gen build robot.yaml --out robot --c firmware",
-        "cobotwire-gen build robot.yaml --out robot",
+        "Put the field of variable length after the field that holds the count.",
+        "- {name: rest, type: note}\n- {name: size, type: count}\n"
+        "- {name: data, type: blob, count: size}",
+        "- {name: size, type: count}\n- {name: rest, type: note}\n"
+        "- {name: data, type: blob, count: size}",
     ),
     Explanation(
         "bad-unit",

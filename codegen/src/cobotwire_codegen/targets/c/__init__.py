@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Edition, Enum, Quantity
+from cobotwire_codegen.model import Bits, Edition, Enum, Listed, Quantity, Type
 from cobotwire_codegen.render import Files, environment
 from cobotwire_codegen.targets.c import names
+from cobotwire_codegen.targets.c.frame import FrameFacts
+from cobotwire_codegen.targets.c.groups import groups
 from cobotwire_codegen.targets.c.messages import Message, quantities
 from cobotwire_codegen.targets.c.tables import Tables
-from cobotwire_codegen.targets.support import require_plain
 
 
 def render_c(edition: Edition, templates: Path | None = None) -> Files:
     """Return the edition's header and source; ``templates`` replace the shipped ones."""
-    require_plain(edition, "C")
     jinja = environment(templates)
     jinja.filters.update(comment=names.comment, c_string=names.string, rows=names.rows)
     jinja.filters.update(integer=names.integer)
@@ -25,11 +25,13 @@ def render_c(edition: Edition, templates: Path | None = None) -> Files:
         "edition": edition,
         "p": edition.name,
         "P": edition.name.upper(),
+        "f": FrameFacts(edition),
         "tables": tables,
         "enums": list(_enums(tables.messages)),
+        "groups": list(groups(edition.name, tables.messages)),
         "scaled": list(_scaled(tables.messages)),
-        "maximum_length": lower.maximum_length(edition),
-        "overhead": overhead(edition),
+        "id_format": f"%0{2 * edition.frame.command_number.width}X",
+        "element_bits": 16 if tables.most_elements > 255 else 8,
     }
     return {
         PurePosixPath(f"{edition.name}.{end}"): jinja.get_template(f"c/{name}.j2").render(common)
@@ -37,15 +39,24 @@ def render_c(edition: Edition, templates: Path | None = None) -> Files:
     }
 
 
-def overhead(edition: Edition) -> int:
-    """Return the number of bytes before a frame's command id."""
-    return len(edition.frame.header) + bool(edition.frame.addresses) + 1
-
-
 def _enums(found: list[Message]) -> Iterator[Enum]:
-    """Return the enums in messages, each once."""
-    types = (t for m in found for member in m.members for _, t in lower.cases(member.field))
-    yield from dict.fromkeys(type for type in types if isinstance(type, Enum))
+    """Return the enums in messages, each once; those of bits differ from others in their wire."""
+    seen: set[str] = set()
+    for message in found:
+        for member in message.members:
+            for _, type in lower.cases(member.field):
+                for enum in _enums_in(type):
+                    if enum.name not in seen:
+                        seen.add(enum.name)
+                        yield enum
+
+
+def _enums_in(type: Type) -> Iterator[Enum]:
+    parts = [part for _, part in type.items] if isinstance(type, Bits) else [type]
+    for part in parts:
+        inner = part.of if isinstance(part, Listed) else part
+        if isinstance(inner, Enum):
+            yield inner
 
 
 def _scaled(found: list[Message]) -> Iterator[Quantity]:

@@ -1,17 +1,32 @@
-"""Describes an edition's variants for C: one struct for each, numbered by command id."""
+"""Describes an edition's variants for C: one struct for each, numbered by command id.
+
+Messages that differ only in the number of elements of a list are one variant here.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import Literal
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Edition, Field, Quantity, Type, Value, Variant
+from cobotwire_codegen.model import (
+    Bits,
+    Chars,
+    Command,
+    Edition,
+    Field,
+    Listed,
+    Quantity,
+    Type,
+    Value,
+    Variant,
+)
 from cobotwire_codegen.render.words import allowed
 from cobotwire_codegen.targets.c import names
-from cobotwire_codegen.wire import size
+from cobotwire_codegen.targets.c.storage import Storage, storage
 
 Direction = Literal["request", "reply"]
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
@@ -21,18 +36,26 @@ DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 class Member:
     """A field in the struct of its message; ``index`` counts the raw values before it.
 
-    A constant field has no place in the struct: its ``count`` is 0.
+    A constant has no place in the struct, nor has a field that counts the elements of a list: its
+    ``count`` is 0. The member ``counter`` holds the number of elements of a list if that varies.
     """
 
     field: Field
     index: int
     count: int
+    storage: Storage
+    counter: str
+
+    @property
+    def name(self) -> str:
+        """The member's name in C."""
+        return names.member(self.field.name)
 
     @property
     def declaration(self) -> str:
-        """The member's name, with its shape."""
-        shape = f"[{self.count}]" if isinstance(self.field.type, Value) else ""
-        return names.member(self.field.name) + shape
+        """The member's type, name and dimensions."""
+        shape = "".join(f"[{size}]" for size in self.storage.dimensions)
+        return f"{self.storage.element} {self.name}{shape}"
 
     @property
     def text(self) -> str:
@@ -63,33 +86,55 @@ class Message:
 
     @property
     def count(self) -> int:
-        """The number of raw values in the struct."""
+        """The highest number of raw values in the struct."""
         return sum(member.count for member in self.members)
 
     @property
     def size(self) -> int:
-        """The number of data bytes on the wire."""
-        return sum(size(member.field.type) for member in self.members)
+        """The least number of data bytes on the wire."""
+        return sum(member.field.type.size for member in self.members)
+
+    def sizes(self, most: int) -> set[int]:
+        """Return every number of data bytes that the message can have, up to ``most``."""
+        types = [member.field.type for member in self.members]
+        spans = [range(type.sizes[0], type.sizes[1] + 1) for type in types if type.varies]
+        units = [type.element_size for type in types if type.varies]
+        fixed = sum(type.size for type in types if not type.varies)
+        found = {
+            fixed + sum(count * unit for count, unit in zip(counts, units))
+            for counts in product(*spans)
+        }
+        return {size for size in found if size <= most or not spans}
 
 
 def messages(edition: Edition) -> list[Message]:
-    """Return every variant of every message, sorted by command id, then in the table's order."""
+    """Return every variant of every message, sorted by command id, then in the table's order.
+
+    Replies without an id come last, in the table's order.
+    """
     found = [
-        Message(command, direction, number, _members(variant))
+        Message(command, direction, number, _members(edition.name, variant))
         for command in edition.commands
         for direction in DIRECTIONS
         for number, variant in enumerate(command.variants(direction))
     ]
-    return sorted(found, key=lambda message: message.command.id)
+    return sorted(found, key=lambda message: _order(edition, message))
 
 
-def _members(variant: Variant) -> tuple[Member, ...]:
+def _order(edition: Edition, message: Message) -> tuple[bool, int]:
+    has_id = edition.frame.has_command(message.direction)
+    return not has_id, message.command.id if has_id else 0
+
+
+def _members(prefix: str, variant: Variant) -> tuple[Member, ...]:
     made: list[Member] = []
     index = 0
+    taken = {names.member(field.name) for field in variant}
     for field in variant:
-        shapes = [len(lower.numbers(type)) for _, type in lower.cases(field)]
-        count = max(shapes) if field.const is None else 0
-        made.append(Member(field, index, count))
+        stored = storage(prefix, field)
+        count = stored.count if field.const is None and not field.counts else 0
+        counter = names.counter(field.name, taken) if stored.varies else ""
+        made.append(Member(field, index, count, stored, counter))
         index += count
     return tuple(made)
 
@@ -113,8 +158,10 @@ def quantities(field: Field) -> Iterator[tuple[str, Quantity]]:
 
 
 def _parts(name: str, type: Type) -> Iterator[tuple[str, Quantity]]:
-    if isinstance(type, Value):
-        yield from type.items
+    if isinstance(type, Listed) and not isinstance(type.of, Chars):
+        yield from _parts(name, type.of)
+    elif isinstance(type, Value | Bits):
+        yield from ((part, item) for part, item in type.items if isinstance(item, Quantity))
     elif isinstance(type, Quantity):
         yield name, type
 

@@ -24,6 +24,15 @@ def member(name: str) -> str:
     return f"{name}_" if name in KEYWORDS else name
 
 
+def counter(name: str, taken: set[str]) -> str:
+    """Return the name of the member that counts the elements of a list, and take it."""
+    found = f"{name}_count"
+    while found in taken:
+        found += "_"
+    taken.add(found)
+    return found
+
+
 def integer(value: int) -> str:
     """Return an integer as a constant of a type that is wide enough."""
     # The lowest number of a type has no constant: its minus sign is an operator.

@@ -1,129 +1,142 @@
-"""Expresses the model as calls of construct's classes."""
+"""Expresses the messages of an edition as calls of construct's classes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import (
-    Command,
-    Edition,
-    Enum,
-    Field,
-    Flag,
-    Quantity,
-    Type,
-    Value,
-    Variant,
-)
+from cobotwire_codegen.errors import Problem, SpecError
+from cobotwire_codegen.model import Chars, Command, Edition, Field, Variant
+from cobotwire_codegen.model.frame import Direction
 from cobotwire_codegen.render.literal import Call, Name, literal
-from cobotwire_codegen.wire import size
+from cobotwire_codegen.targets.construct.types import Declaration, Types
 
 Key = tuple[str, str, int]
-
-# The names that the declarations use themselves.
-_OWN_NAMES = {f"frame_{part}" for part in ("header", "length", "id", "footer", "end")}
-_OWN_CONSTANTS = ("HEADER", "FOOTER", "MESSAGES")
+DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 
 
 class Declarations:
-    """The messages and their numbers; equal numbers are declared once, by their type's name."""
+    """The messages of an edition, and the types that they need."""
 
     def __init__(self, edition: Edition) -> None:
-        if edition.frame.check is not None or edition.frame.addresses:
-            raise ValueError(
-                f"{edition.name}: construct needs frames with a footer and without an address"
-            )
-        self._edition = edition
-        self.types: dict[str, Call] = {}
-        self._names: dict[str, str] = {}
+        self._frame = edition.frame
+        self._commands = edition.commands
+        self.types = Types()
 
     def messages(self) -> Iterator[tuple[Key, Call]]:
         """Yield the key and the declaration of each variant of each message."""
-        for command in self._edition.commands:
-            for direction in ("request", "reply"):
-                variants = command.requests if direction == "request" else command.replies
-                for index, variant in enumerate(variants):
-                    key = (command.name, direction, index)
-                    yield key, self._frame(command, variant)
+        for command in self._commands:
+            for direction in DIRECTIONS:
+                for index, variant in enumerate(command.variants(direction)):
+                    yield (
+                        (command.name, direction, index),
+                        self._message(command, direction, variant),
+                    )
 
-    def _frame(self, command: Command, variant: Variant) -> Call:
-        frame = self._edition.frame
-        # The prefix distinguishes these names from fields; some messages have a field named end.
-        data = sum(size(field.type) for field in variant)
-        own = sorted(_OWN_NAMES & {field.name for field in variant})
-        if own:
-            raise ValueError(f"{command.name}: the field {own[0]} has a name of the declarations")
-        parts = {
-            "frame_header": Name("HEADER"),
-            "frame_length": Call("Const", 1 + data + frame.check_size, Name("Byte")),
-            "frame_id": Call("Const", command.id, Name("Byte")),
-            **self._ahead(variant),
-            **{field.name: self._field(field, variant) for field in variant},
-            "frame_footer": Name("FOOTER"),
-            "frame_end": Name("Terminated"),
-        }
-        return Call("Struct", **parts)
-
-    def _ahead(self, variant: Variant) -> dict[str, Call]:
-        """Return declarations that read each selector that follows the field it decides."""
-        found = {}
-        at = len(self._edition.frame.header) + 2
+    def _message(self, command: Command, direction: Direction, variant: Variant) -> Call:
+        length, end = self._length(direction, variant)
+        parts: dict[str, Declaration] = {_own("header", variant): Name("HEADER")}
+        for part in self._frame.layout:
+            if part == "address" and self._frame.address_values:
+                parts[_own("address", variant)] = Name("ADDRESS")
+            elif part == "length":
+                parts[_own("length", variant)] = length
+            elif part == "command" and self._frame.has_command(direction):
+                parts[_own("id", variant)] = Call("Const", command.id, Name("COMMAND"))
         for field in variant:
-            later = variant[variant.index(field) + 1 :]
-            for selector in (other for other in later if other.name == field.selector):
-                between = variant[variant.index(field) : variant.index(selector)]
-                offset = at + sum(size(other.type) for other in between)
-                found[_name_ahead(selector.name)] = Call(
-                    "Pointer", offset, self._plain(selector, selector.type)
-                )
-            at += size(field.type)
-        return found
+            made = self._field(command, direction, field, variant)
+            # Fields with the same later selector read it ahead once: before the first of them.
+            parts |= {name: part for name, part in made.items() if name not in parts}
+        if self._frame.check is not None:
+            parts[_own("check", variant)] = Name("CHECK")
+        if self._frame.footer:
+            parts[_own("footer", variant)] = Name("FOOTER")
+        return Call("Struct", **parts, **{_own("end", variant): end})
 
-    def _field(self, field: Field, variant: Variant) -> Call | Name:
-        if not field.selector:
-            return self._plain(field, field.type)
-        before = [other.name for other in variant[: variant.index(field)]]
-        selector = field.selector if field.selector in before else _name_ahead(field.selector)
+    def _length(self, direction: Direction, variant: Variant) -> tuple[Call, Declaration]:
+        """Return LEN and the end: a constant, or computed from the elements of fields that vary."""
+        base = self._fixed_length(direction, variant)
+        varying = [_elements(field) for field in variant if field.type.varies]
+        if not varying:
+            return Call("Const", base, Name("LENGTH")), Name("Terminated")
+        end = Call("end", _own("length", variant), base, *varying)
+        return Call("length", base, *varying), end
+
+    def _fixed_length(self, direction: Direction, variant: Variant) -> int:
+        """Return LEN of a message in which fields that vary have no elements."""
+        size = sum(field.type.size for field in variant if not field.type.varies)
+        return self._frame.length(size, direction)
+
+    def _field(
+        self, command: Command, direction: Direction, field: Field, variant: Variant
+    ) -> dict[str, Declaration]:
+        """Return the declaration of a field, after that of a selector that is read ahead."""
+        if field.selector:
+            return self._selected(field, variant)
+        count = self._count(command, direction, field, variant)
+        declared = self.types.of(field, field.type, count)
+        if field.counts:
+            declared = Call("counting", field.counts, declared, *_encoding(field, variant))
+        return {field.name: declared}
+
+    def _selected(self, field: Field, variant: Variant) -> dict[str, Declaration]:
+        names = [other.name for other in variant]
+        here, there = names.index(field.name), names.index(field.selector)
+        selector, found = field.selector, {}
+        if there > here:
+            # `check` accepts selectors and cases of one size only.
+            distance = sum(other.type.size for other in variant[here:there])
+            ahead = self.types.of(variant[there], variant[there].type, 1)
+            found[f"{selector}_ahead"] = Call("ahead", selector, distance, ahead)
+            selector = f"{selector}_ahead"
         pairs = [
-            (value, self._plain(field, type)) for when, type in lower.cases(field) for value in when
+            (value, self.types.of(field, type, 1))
+            for when, type in lower.cases(field)
+            for value in when
         ]
-        return Call("pick", selector, *pairs)
+        return {**found, field.name: Call("pick", selector, *pairs)}
 
-    def _plain(self, field: Field, type: Type) -> Call | Name:
-        if isinstance(type, Value):
-            return Call("Struct", **{label: self._number(item) for label, item in type.items})
-        assert isinstance(type, Quantity | Enum | Flag), "other types are refused"
-        number = self._number(type)
-        return number if field.const is None else Call("Const", field.const, number)
-
-    def _number(self, type: Quantity | Enum | Flag) -> Name:
-        """Return the name under which the type's number is declared."""
-        expression = _expression(type)
-        text = literal(expression)
-        if text not in self._names:
-            name = type.name.upper()
-            name += "_" if name in _OWN_CONSTANTS else ""
-            alike = sum(other.rpartition("_")[0] == name or other == name for other in self.types)
-            self._names[text] = f"{name}_{alike + 1}" if alike else name
-            self.types[self._names[text]] = expression
-        return Name(self._names[text])
-
-
-def _expression(type: Quantity | Enum | Flag) -> Call:
-    wire = type.wire
-    little = wire.order == "little"
-    if isinstance(type, Flag):
-        return Call("flag", Call("number", wire.width, little, wire.signed_at, (0, 1)))
-    if isinstance(type, Enum):
-        values = tuple(member.value for member in type.members)
-        number = Call("number", wire.width, little, wire.signed_at, values)
-        return Call("Enum", number, **{member.name: member.value for member in type.members})
-    lowest, highest = map(int, type.bounds)
-    allowed = type.choices or Call("between", lowest, highest)
-    scale = (type.scale.numerator, type.scale.denominator)
-    return Call("number", wire.width, little, wire.signed_at, allowed, *(scale * (scale != (1, 1))))
+    def _count(
+        self, command: Command, direction: Direction, field: Field, variant: Variant
+    ) -> Name | int:
+        """Return how many elements a field has: a number, or a function of the context."""
+        least, most = field.type.sizes
+        if not field.type.varies:
+            return least
+        counter = next((other.name for other in variant if other.counts == field.name), "")
+        if counter:
+            return Name(literal(Call("counted", counter, least, most)))
+        others = []
+        for other in variant:
+            if other.type.varies and other is not field:
+                counter = next(each.name for each in variant if each.counts == other.name)
+                if variant.index(field) < [each.name for each in variant].index(counter):
+                    message = (
+                        f"construct cannot express {field.name} of {command.name}: it ends where "
+                        f"{counter} begins, which says how long the message is"
+                    )
+                    raise SpecError([Problem(field.place, "unsupported-type", message)])
+                others.append((counter, other.type.element_size))
+        base = self._fixed_length(direction, variant)
+        size, length = field.type.element_size, _own("length", variant)
+        return Name(literal(Call("to_the_end", length, base, size, least, most, *others)))
 
 
-def _name_ahead(name: str) -> str:
-    return f"{name}_ahead"
+def _own(part: str, variant: Variant) -> str:
+    """Return the name of a part of the frame; the prefix distinguishes it from fields."""
+    name = f"frame_{part}"
+    while name in {field.name for field in variant}:
+        name += "_"
+    return name
+
+
+def _elements(field: Field) -> tuple[str, int] | tuple[str, int, str]:
+    """Return the name of a field that varies, the size of an element, and a text's encoding."""
+    name, size = field.name, field.type.element_size
+    return (name, size, field.type.encoding) if isinstance(field.type, Chars) else (name, size)
+
+
+def _encoding(field: Field, variant: Variant) -> tuple[str, ...]:
+    """Return the encoding of the text that a field counts, if it is one."""
+    listed = next(other for other in variant if other.name == field.counts)
+    return (listed.type.encoding,) if isinstance(listed.type, Chars) else ()

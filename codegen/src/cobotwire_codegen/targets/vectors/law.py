@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 from cobotwire_codegen.model import Command, Edition, FrameNumber, Variant
-from cobotwire_codegen.targets.vectors.slots import RawValues, slots
+from cobotwire_codegen.targets.vectors.sizes import data_size, fixed_sizes
+from cobotwire_codegen.targets.vectors.slots import RawValues, bad_text_at, slots
 from cobotwire_codegen.wire import check_of, size
 
 Direction = Literal["request", "reply"]
@@ -44,13 +45,16 @@ class Law:
 
     def __init__(self, edition: Edition, direction: Direction) -> None:
         self._frame, self._direction = edition.frame, direction
-        # By id; without ids, all under None.
-        self._variants: dict[int | None, list[tuple[Command, Variant]]] = {}
+        # By id, and by LEN; without ids, all under None.
+        self._variants: dict[int | None, dict[int, list[tuple[Command, Variant]]]] = {}
         for command in edition.commands:
-            for variant in command.variants(direction):
-                self._variants.setdefault(self._key(command.id), []).append((command, variant))
+            for several in command.variants(direction):
+                known = self._variants.setdefault(self._key(command.id), {})
+                for variant in fixed_sizes(several, edition.frame.maximum_data):
+                    length = self._frame.length(data_size(variant), direction)
+                    known.setdefault(length, []).append((command, variant))
         self._data_at = self._frame.data_at(direction)
-        self._lengths = {length for key in self._variants for length in self._lengths_of(key)}
+        self._lengths = {length for known in self._variants.values() for length in known}
 
     def _key(self, id: int) -> int | None:
         return id if self._frame.has_command(self._direction) else None
@@ -92,7 +96,7 @@ class Law:
         key = self._key(self._id(data))
         if key not in self._variants:
             return Fault("unknown-id", self._frame.offset("command"))
-        if self._length(data) not in self._lengths_of(key):
+        if self._length(data) not in self._variants[key]:
             return Fault("bad-length", self._frame.offset("length"))
         return None
 
@@ -128,13 +132,12 @@ class Law:
         if len(data) > end:
             return Fault("trailing", end)
         payload = data[self._data_at : end - self._frame.check_size]
-        return self._read(self._key(self._id(data)), payload)
+        variants = self._variants[self._key(self._id(data))][self._length(data)]
+        return self._read(variants, payload)
 
-    def _read(self, key: int | None, data: bytes) -> Reading | Fault:
+    def _read(self, variants: list[tuple[Command, Variant]], data: bytes) -> Reading | Fault:
         first = None
-        for command, variant in self._variants[key]:
-            if _size(variant) != len(data):
-                continue
+        for command, variant in variants:
             found = self._raw_values(variant, data)
             if not isinstance(found, Fault):
                 return Reading(command, variant, found)
@@ -157,8 +160,11 @@ class Law:
                 if not slot.allows(raw):
                     return Fault("bad-value", self._data_at + at)
                 numbers.append(raw)
-                at += slot.wire.width
+                at += slot.step
             found[field.name] = tuple(numbers)
+            bad = bad_text_at(field, found[field.name])
+            if bad is not None:
+                return Fault("bad-value", self._data_at + starts[field.name] + bad)
         return found
 
     def cut(self, stream: bytes) -> Iterator[Span]:
@@ -187,10 +193,6 @@ class Law:
         if noise:
             yield noise
 
-    def _lengths_of(self, key: int | None) -> set[int]:
-        sizes = (_size(variant) for _, variant in self._variants[key])
-        return {self._frame.length(size, self._direction) for size in sizes}
-
 
 def _starts(variant: Variant) -> list[int]:
     """Return where in the data each field begins."""
@@ -205,7 +207,3 @@ def _unchecked(variant: Variant, data: bytes) -> RawValues:
         for field, at in zip(variant, _starts(variant))
         if not field.selector and (parts := slots(field, variant, {}))
     }
-
-
-def _size(variant: Variant) -> int:
-    return sum(size(field.type) for field in variant)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from typing import NamedTuple
 
-from cobotwire_codegen.model import Command, Edition, Field, Variant
+from cobotwire_codegen.model import Command, Edition, Field, Listed, Variant
 from cobotwire_codegen.targets.vectors.law import Direction
+from cobotwire_codegen.targets.vectors.sizes import fixed_sizes, some
 from cobotwire_codegen.targets.vectors.slots import RawValues, Slot, case_choices, slots
 from cobotwire_codegen.wire import enclose
 
@@ -17,12 +19,17 @@ SHARES = (0.61, 0.23, 0.83, 0.37, 0.71, 0.13, 0.53)
 
 
 class Example(NamedTuple):
-    """A message by its raw values, and its bytes."""
+    """A message by its raw values, and its bytes.
+
+    ``number`` counts the variants of the command's message, as the spec has them: one of lists is
+    the same variant for every number of elements, while ``variant`` has these numbers.
+    """
 
     what: str
     command: Command
     direction: Direction
     variant: Variant
+    number: int
     raw_values: RawValues
     data: bytes
 
@@ -30,7 +37,8 @@ class Example(NamedTuple):
 class Beyond(NamedTuple):
     """A message with one number that the edition does not allow.
 
-    ``data`` is the encoded message, None if no bytes decode to that number.
+    ``data`` is the encoded message, None if no bytes decode to that number. With ``letter`` it is a
+    byte of a text.
     """
 
     example: Example
@@ -38,26 +46,28 @@ class Beyond(NamedTuple):
     element: int
     raw: int
     data: bytes | None
+    letter: bool
 
 
 def examples(edition: Edition) -> Iterator[Example]:
     """Yield every variant and case, with the bounds and choices of every number."""
-    for command, direction, variant in variants(edition):
+    for command, direction, number, variant in variants(edition):
         seen: set[bytes] = set()
         for what, raw_values in _raw_values(variant):
             data = encode(edition, command, direction, variant, raw_values)
             # If a variant has few legal values, its bounds and its choices give the same messages.
             if data not in seen:
                 seen.add(data)
-                yield Example(what, command, direction, variant, raw_values, data)
+                yield Example(what, command, direction, variant, number, raw_values, data)
 
 
-def variants(edition: Edition) -> Iterator[tuple[Command, Direction, Variant]]:
-    """Yield every variant of every framed message."""
+def variants(edition: Edition) -> Iterator[tuple[Command, Direction, int, Variant]]:
+    """Yield every variant of every framed message with its number; of many sizes, yield some."""
     for command in edition.commands:
         for direction in DIRECTIONS:
-            for variant in command.variants(direction):
-                yield command, direction, variant
+            for number, variant in enumerate(command.variants(direction)):
+                for each in some(fixed_sizes(variant, edition.frame.maximum_data)):
+                    yield command, direction, number, each
 
 
 def beyond(edition: Edition, example: Example) -> Iterator[Beyond]:
@@ -76,7 +86,7 @@ def beyond(edition: Edition, example: Example) -> Iterator[Beyond]:
                     if encodable
                     else None
                 )
-                yield Beyond(example, field, element, raw, data)
+                yield Beyond(example, field, element, raw, data, slot.letter)
 
 
 def encode(
@@ -89,8 +99,11 @@ def encode(
     """Return the frame with these raw values, legal or not."""
     data = b""
     for field in variant:
+        word = b""
         for slot, raw in zip(slots(field, variant, raw_values) or (), raw_values[field.name]):
-            data += slot.encode(raw)
+            word = slot.encode(raw, word)
+            if not slot.more:
+                data, word = data + word, b""
     return enclose(edition.frame, command.id, data, direction)
 
 
@@ -100,6 +113,8 @@ def _picks(field: Field, variant: Variant) -> bool:
 
 
 def _outside(slot: Slot) -> Iterator[int]:
+    if slot.takes_nan:
+        return
     if not slot.choices:
         yield slot.lowest - 1
         yield slot.highest + 1
@@ -145,28 +160,52 @@ def _message(variant: Variant, picked: dict[str, int], choose: Choose) -> RawVal
             numbers.append(picked.get(field.name, choose(slot, count)))
             count += 1
         raw_values[field.name] = tuple(numbers)
+        if choose is _ordinary and all(slot.utf8 for slot in parts):
+            raw_values[field.name] = _accented(field, numbers)
     return {field.name: raw_values[field.name] for field in variant}
+
+
+def _accented(field: Field, letters: list[int]) -> tuple[int, ...]:
+    """Return the bytes of texts with ``é`` at the start of each, if it has two bytes."""
+    size = field.type.of.size if isinstance(field.type, Listed) else len(letters)
+    starts = range(0, len(letters), size) if size > 1 else ()
+    for at in starts:
+        letters[at : at + 2] = b"\xc3\xa9"
+    return tuple(letters)
 
 
 def _ordinary(slot: Slot, count: int) -> int:
     share = SHARES[count % len(SHARES)]
     if slot.choices:
         return slot.choices[int(share * len(slot.choices))]
-    return round(slot.lowest + share * (slot.highest - slot.lowest))
+    lowest, highest = slot.ends
+    if slot.letter:
+        lowest, highest = ord("a"), ord("z")
+    # With fractions, since the raw values of a float of eight bytes are beyond those of a double.
+    return round(lowest + Fraction(share) * (highest - lowest))
 
 
 def _nearest(wanted: int) -> Choose:
     def choose(slot: Slot, count: int) -> int:
-        allowed = slot.choices or (min(max(wanted, slot.lowest), slot.highest),)
+        lowest, highest = slot.ends
+        allowed = slot.choices or (min(max(wanted, lowest), highest),)
         return min(allowed, key=lambda raw: abs(raw - wanted))
 
     return choose
 
 
+def _not_a_number(slot: Slot, count: int) -> int:
+    """Return the usual NaN where a float may be one."""
+    if not slot.takes_nan:
+        return _ordinary(slot, count)
+    return 0x7FC0_0000 if slot.wire.width == 4 else 0x7FF8_0000_0000_0000
+
+
 _CHOOSERS: tuple[tuple[str, Choose], ...] = (
     ("ordinary", _ordinary),
-    ("lowest", lambda slot, count: min(slot.choices) if slot.choices else slot.lowest),
-    ("highest", lambda slot, count: max(slot.choices) if slot.choices else slot.highest),
+    ("lowest", lambda slot, count: min(slot.choices) if slot.choices else slot.ends[0]),
+    ("highest", lambda slot, count: max(slot.choices) if slot.choices else slot.ends[1]),
     ("zero", _nearest(0)),
     ("minus one", _nearest(-1)),
+    ("not a number", _not_a_number),
 )

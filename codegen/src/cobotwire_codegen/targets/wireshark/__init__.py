@@ -9,9 +9,9 @@ from jinja2 import Template
 
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, environment
-from cobotwire_codegen.targets.support import require_plain
 from cobotwire_codegen.targets.wireshark.commands import Commands
 from cobotwire_codegen.targets.wireshark.fields import Declared
+from cobotwire_codegen.targets.wireshark.frame import frame_table
 from cobotwire_codegen.targets.wireshark.lua import lua
 
 
@@ -24,12 +24,12 @@ def render_wireshark(editions: Sequence[Edition], templates: Path | None = None)
 
 
 def _dissector(template: Template, edition: Edition) -> str:
-    require_plain(edition, "Wireshark")
     declared = Declared(edition)
     commands = Commands(edition, declared)
     return template.render(
         edition=edition,
         filter=declared.protocol,
+        frame=frame_table(edition.frame),
         declared=declared.all,
         numbers=commands.numbers,
         commands=commands.all,

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import reduce
 from typing import Any, NamedTuple
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Command, Edition, Enum, Field, Type, Value
-from cobotwire_codegen.render.words import units
+from cobotwire_codegen.model import Command, Edition, Field, Type
+from cobotwire_codegen.targets.wireshark.leaves import Leaf, group_kind, leaves
 
 # The dissector declares these names for every edition; no field of a message may have them.
 OWN = frozenset(
@@ -21,57 +22,79 @@ OWN = frozenset(
         *(f"frame.{name}" for name in ("bytes", "header", "address", "length", "id", "check")),
         *("frame.command", "frame.direction", "noise", "noise.reason", "noise.text"),
         *("incomplete", "began_in", "continued_in", "request_in", "response_in", "response_time"),
-        *("bad_value", "missing", "cut_off", "unanswered", "other_edition"),
+        *("bad_value", "missing", "cut_off", "unanswered", "failed", "other_edition"),
     }
 )
-# From narrow to wide: a name that has two types gets the one that holds the values of both.
-_WIDTH = ("BOOLEAN", "UINT32", "INT32", "INT64", "DOUBLE")
+# From narrow to wide: a name that has two types gets one that holds the values of both.
+_WIDTH = (
+    "BOOLEAN",
+    *(f"UINT{bits}" for bits in (8, 16, 24, 32)),
+    *(f"INT{bits}" for bits in (8, 16, 24, 32)),
+    *("INT64", "FLOAT", "DOUBLE"),
+)
+# Fields of these kinds cannot have the name of a number, nor of each other.
+_APART = {"STRING": "text", "BYTES": "bytes", "NONE": "group"}
 
 
 class Shown(NamedTuple):
-    """A field of Wireshark: its display name, its name in filters, its type."""
+    """A field of Wireshark: its display name, its name in filters, its type.
+
+    Some bits of a word have a ``mask``, and ``word`` is the number of bits of the word.
+    """
 
     title: str
     filter: str
     type: str
     words: tuple[tuple[int, str], ...]
     doc: str
+    mask: int = 0
+    word: int = 0
 
 
 class Declared:
     """The distinct fields of an edition, counted from 1 as in Lua."""
 
     def __init__(self, edition: Edition) -> None:
-        """Choose names and types from all commands; ``number`` and ``group`` declare fields."""
+        """Choose names and types from all commands; ``leaf`` and ``group`` declare fields."""
         self.protocol = edition.name.lower()
         self.all: list[Shown] = []
         self._numbers: dict[Shown, int] = {}
         self._ambiguous = _ambiguous(edition)
-        self._types: dict[str, str] = {}
+        self._sorts: dict[str, list[str]] = defaultdict(list)
+        self._kinds: dict[str, set[tuple[str, int]]] = defaultdict(set)
         for command, field in _uses(edition):
-            for number in _all_numbers(field):
-                name = self._filter(command, field, number["name"])
-                self._types[name] = _wider(self._types.get(name, "BOOLEAN"), _type(field, number))
+            for item, kind, mask in _all_kinds(field):
+                self._kinds[self._filter(command, field, item, kind)].add((kind, mask))
 
-    def number(self, command: Command, field: Field, type: Type, number: dict[str, Any]) -> int:
-        """Return the index of the field that shows one number."""
-        name = self._filter(command, field, number["name"])
-        kind = self._types[name]
-        words = _words(type) if kind in ("UINT32", "INT32") else ()
-        unit = f" ({units(number['unit'])})" if number["unit"] else ""
-        title = (number["name"] or field.name) + unit
-        return self._index(Shown(title, name, kind, words, field.doc))
+    def leaf(self, command: Command, field: Field, leaf: Leaf) -> int:
+        """Return the index of the field that shows a leaf."""
+        kind, name, mask = self._declared(command, field, leaf.item, leaf.kind)
+        words = leaf.words if "INT" in kind and kind != "INT64" else ()
+        unit = f" ({leaf.unit})" if leaf.unit else ""
+        title = (leaf.item or field.name) + unit
+        word = 8 * leaf.reading["width"] if mask else 0
+        return self._index(Shown(title, name, kind, words, leaf.doc or field.doc, mask, word))
 
     def group(self, command: Command, field: Field) -> int:
-        """Return the index of the group of a field with several numbers; 0 for a single number."""
-        if not isinstance(field.type, Value):
+        """Return the index of the group of a field with several leaves; 0 if it has none."""
+        kind = group_kind(field.type)
+        if not kind:
             return 0
-        name = self._filter(command, field, "")
-        return self._index(Shown(field.name, name, "NONE", (), field.doc))
+        kind, name, _ = self._declared(command, field, "", kind)
+        return self._index(Shown(field.name, name, kind, (), field.doc))
 
     def text(self, name: str, doc: str) -> int:
         """Return the index of a field of text outside frames."""
         return self._index(Shown(name, self._free(f"text.{name}"), "STRING", (), doc))
+
+    def _declared(
+        self, command: Command, field: Field, item: str, kind: str
+    ) -> tuple[str, str, int]:
+        """Return the type, the filter name and the mask under which a value is declared."""
+        name = self._filter(command, field, item, kind)
+        # Without one mask for all, the dissector passes the number itself.
+        masks = {mask for _, mask in self._kinds[name]} if len(self._kinds[name]) == 1 else {0}
+        return reduce(_wider, sorted({each for each, _ in self._kinds[name]})), name, masks.pop()
 
     def _index(self, shown: Shown) -> int:
         if shown not in self._numbers:
@@ -79,9 +102,14 @@ class Declared:
             self._numbers[shown] = len(self.all)
         return self._numbers[shown]
 
-    def _filter(self, command: Command, field: Field, item: str) -> str:
+    def _filter(self, command: Command, field: Field, item: str, kind: str) -> str:
         name = f"{command.name}.{field.name}" if field.name in self._ambiguous else field.name
-        return self._free(f"{name}.{item}" if item else name)
+        name = f"{name}.{item}" if item else name
+        sort = _APART.get(kind, "")
+        if sort not in self._sorts[name]:
+            self._sorts[name].append(sort)
+        first = sort == self._sorts[name][0]
+        return self._free(name if first else f"{name}_{sort or 'number'}")
 
     def _free(self, name: str) -> str:
         return f"{self.protocol}.{name}{'_' if name in OWN else ''}"
@@ -107,32 +135,31 @@ def _ambiguous(edition: Edition) -> set[str]:
 
 def _meanings(field: Field) -> set[tuple[Any, ...]]:
     return {
-        (number["name"], lower.kind(type), number["unit"], _words(type))
+        (leaf.item, _sort(leaf, type), leaf.unit, leaf.mask, leaf.words)
         for _, type in lower.cases(field)
-        for number in lower.numbers(type)
+        for leaf in leaves(type)
     }
 
 
-def _all_numbers(field: Field) -> Iterator[dict[str, Any]]:
+def _sort(leaf: Leaf, type: Type) -> str:
+    """Return what a leaf is, apart from its width."""
+    return _APART.get(leaf.kind) or lower.kind(type)
+
+
+def _all_kinds(field: Field) -> Iterator[tuple[str, str, int]]:
+    """Yield the item, the kind and the mask of each field that shows a part of a message."""
     for _, type in lower.cases(field):
-        yield from lower.numbers(type)
-
-
-def _words(type: Type) -> tuple[tuple[int, str], ...]:
-    return tuple((m.value, m.name) for m in type.members) if isinstance(type, Enum) else ()
-
-
-def _type(field: Field, number: dict[str, Any]) -> str:
-    if lower.kind(field.type) == "flag":
-        return "BOOLEAN"
-    if (number["multiply"], number["divide"]) != (1, 1):
-        return "DOUBLE"
-    if number["signed_at"] == 256 ** number["width"] - 1:
-        return "UINT32"
-    # An unusual sign rule may need more than 32 bits.
-    return "INT32" if number["signed_at"] < 2**31 else "INT64"
+        if kind := group_kind(type):
+            yield "", kind, 0
+        for leaf in leaves(type):
+            yield leaf.item, leaf.kind, leaf.mask
 
 
 def _wider(one: str, other: str) -> str:
-    wider = max(one, other, key=_WIDTH.index)
-    return "INT64" if {one, other} == {"UINT32", "INT32"} else wider
+    """Return a type that holds the values of two types."""
+    if one in _APART:
+        return one
+    narrow, wide = sorted((one, other), key=_WIDTH.index)
+    if wide.startswith("INT") and narrow.startswith("UINT"):
+        return "INT64"
+    return "DOUBLE" if wide == "FLOAT" and narrow not in ("FLOAT", "BOOLEAN") else wide

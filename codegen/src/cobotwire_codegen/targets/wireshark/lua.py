@@ -41,8 +41,8 @@ def _flat(value: Any) -> str:
         return quoted(value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, int):
-        return str(value)
+    if isinstance(value, int | float):
+        return repr(value)
     if not isinstance(value, (dict, list, tuple)):
         raise TypeError(f"cannot write {value!r} in Lua")
     parts = ", ".join(key + _flat(part) for key, part in _parts(value))

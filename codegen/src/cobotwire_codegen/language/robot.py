@@ -1,0 +1,109 @@
+"""The robot behind an edition: what a simulated one needs to know, apart from its messages."""
+
+from __future__ import annotations
+
+from cobotwire_codegen.language.number_shapes import Exact, Numbers, Real, Whole
+from cobotwire_codegen.language.records import Listed, Named, Record, optional, required
+from cobotwire_codegen.language.shapes import Text
+
+NUMBER = r"[0-9]{1,3}"
+
+
+class Link(Record):
+    """A row of standard Denavit-Hartenberg parameters."""
+
+    offset = required(Real(), "What is added to the joint's angle, in degrees.")
+    alpha = required(Real(), "The angle between the axes of this joint and the next, in degrees.")
+    a = required(Real(), "The distance between these axes, in millimetres.")
+    d = required(Real(), "The shift along the axis of this joint, in millimetres.")
+    turned_by = optional(
+        Named(Real(), NUMBER),
+        "The joints that turn the link, counted from 1, and the degrees that it turns for each "
+        "degree of them: `{2: -1, 3: -1}` for an end that stays level, `{}` for a fixed link. Left "
+        "out: the first joint after those of the links before it turns the link.",
+    )
+    EXAMPLE = "{offset: -90, alpha: 0, a: -110.4, d: 0}"
+
+
+class Geometry(Record):
+    """The geometry of the arm, by which a simulated arm calculates coordinates."""
+
+    links = required(Listed(Link), "The links from the base on: one or more for each joint.")
+    doc = required(Text(), "Where the geometry is taken from.")
+    EXAMPLE = """\
+links:
+  - {offset: 0, alpha: 90, a: 0, d: 131.22}
+  - {offset: -90, alpha: 0, a: -110.4, d: 0}
+doc: Measured on an arm with two joints.
+"""
+
+
+class Motion(Record):
+    """How the arm moves; a simulated arm moves like that."""
+
+    speed = required(Real(), "Degrees a second for each percent of speed.")
+    fastest = required(Real(), "The highest speed of a joint, in degrees a second.")
+    acceleration = required(Real(), "The highest acceleration, in degrees a square second.")
+    near_degrees = optional(Exact(), "How near to its target a joint counts as there, in degrees.")
+    near_millimetres = optional(
+        Exact(), "How near to its target the end counts as there, in millimetres."
+    )
+    doc = required(Text(), "Where the numbers are taken from.")
+    EXAMPLE = """\
+speed: 1.5
+fastest: 150
+acceleration: 200
+doc: Measured on an arm.
+"""
+
+
+class Encoders(Record):
+    """How the encoders of the joints count; the joints of a simulated arm rest on their ticks."""
+
+    ticks = required(Whole(1), "The ticks of a whole turn.")
+    zero = required(Whole(0), "The reading of a joint at 0 degrees.")
+    highest = required(Whole(1), "The highest reading; the lowest is 0.")
+    signs = optional(
+        Numbers(),
+        "For each joint: 1 if its encoder counts up while the angle grows, else -1. Left out: not "
+        "known; a simulated arm counts up.",
+    )
+    doc = required(Text(), "Where the numbers are taken from.")
+    EXAMPLE = "{ticks: 4096, zero: 2048, highest: 4095, signs: [1, -1], doc: Measured on an arm.}"
+
+
+class Gripper(Record):
+    """The gripper of a simulated arm."""
+
+    speed = required(Exact(), "Percent of its way a second, for each percent of speed.")
+    closed = required(Whole(0), "The reading of its encoder when it is closed.")
+    open_ = required(Whole(0), "The reading of its encoder when it is open.")
+    doc = required(Text(), "Where the numbers are taken from.")
+    EXAMPLE = "{speed: 1.5, closed: 2048, open: 2148, doc: Chosen; no source gives them.}"
+
+
+class Servos(Record):
+    """What the servos of a simulated arm report."""
+
+    registers = optional(
+        Named(Whole(0), NUMBER), "The registers by address, and their initial values."
+    )
+    voltage = optional(Exact(), "The supply voltage while the arm has power, in volts.")
+    temperature = optional(Real(), "The temperature, in degrees Celsius.")
+    doc = required(Text(), "Where the numbers are taken from.")
+    EXAMPLE = "{registers: {21: 10}, voltage: 12, temperature: 30, doc: The chart of registers.}"
+
+
+class ErrorCodes(Record):
+    """The numbers that a simulated arm reports when it rejects a motion."""
+
+    joint_limits = required(Numbers(), "For each joint, the number for a target beyond its limit.")
+    no_solution = required(Whole(1), "No joint angles bring the end to the target.")
+    no_straight_line = required(Whole(1), "The joints cannot follow a straight line.")
+    stopped = optional(Whole(0), "A motion was stopped before its target. 0: it has no number.")
+    no_power = optional(Whole(0), "The arm has no power, or not every joint is held. 0: no number.")
+    doc = required(Text(), "Where the numbers are taken from.")
+    EXAMPLE = "{joint_limits: [1, 2], no_solution: 32, no_straight_line: 33, doc: Its manual.}"
+
+
+ROBOT_RECORDS = (Geometry, Link, Motion, Encoders, Gripper, Servos, ErrorCodes)

@@ -1,0 +1,114 @@
+"""The robot behind an edition: what a simulated one needs to know, apart from its messages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from cobotwire_codegen.errors import Place
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A row of standard Denavit-Hartenberg parameters, in degrees and millimetres.
+
+    ``turned_by`` holds the joints that turn it, counted from 1, each with its share.
+    """
+
+    offset: Fraction
+    alpha: Fraction
+    a: Fraction
+    d: Fraction
+    turned_by: tuple[tuple[int, Fraction], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """The links of an arm, from the base on."""
+
+    links: tuple[Link, ...]
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """How an arm moves, in degrees and seconds: the speed is that of one percent."""
+
+    speed: Fraction
+    fastest: Fraction
+    acceleration: Fraction
+    near_degrees: Fraction | None
+    near_millimetres: Fraction | None
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class Encoders:
+    """How encoders count: ticks of a turn, readings, and the direction of each joint's."""
+
+    ticks: int
+    zero: int
+    highest: int
+    signs: tuple[int, ...]
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class Gripper:
+    """A gripper: percent of its way a second for each percent, and readings of its encoder."""
+
+    speed: Fraction
+    closed: int
+    open: int
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class Servos:
+    """What servos report: registers by address, volts and degrees Celsius."""
+
+    registers: tuple[tuple[int, int], ...]
+    voltage: Fraction | None
+    temperature: Fraction | None
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorCodes:
+    """The numbers of rejected motions."""
+
+    joint_limits: tuple[int, ...]
+    no_solution: int
+    no_straight_line: int
+    stopped: int
+    no_power: int
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class StartValues:
+    """What a query reports before anything has set it."""
+
+    place: Place
+    query: str
+    values: tuple[tuple[str, object], ...]
+
+
+Part = Geometry | Motion | Encoders | Gripper | Servos | ErrorCodes
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """The parts that an edition states; None or empty: it does not."""
+
+    geometry: Geometry | None = None
+    motion: Motion | None = None
+    encoders: Encoders | None = None
+    gripper: Gripper | None = None
+    servos: Servos | None = None
+    error_codes: ErrorCodes | None = None
+    joint_limits: tuple[tuple[Fraction, Fraction], ...] = ()
+    start_angles: tuple[Fraction, ...] = ()
+    start_values: tuple[StartValues, ...] = ()
+    # Why the geometry is not known, where it is not.
+    geometry_unknown: str = ""

@@ -1,0 +1,68 @@
+"""Publish what an edition states about its robot, as a part of ``edition.json``."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from cobotwire_codegen.model import Edition, Geometry, Link, Robot
+from cobotwire_codegen.publish_sections import exact_number
+from cobotwire_codegen.start_values import raw_start_values, reported_fields
+
+Record = dict[str, Any]
+
+
+def robot_parts(edition: Edition) -> Record:
+    """Return the parts that the edition states; those that it does not are None or empty."""
+    robot = edition.robot
+    return {
+        "geometry": robot.geometry and _geometry(robot.geometry),
+        "geometry_unknown": robot.geometry_unknown,
+        **{
+            name: _numbers(getattr(robot, name))
+            for name in ("motion", "encoders", "gripper", "servos", "error_codes")
+        },
+        "joint_limits": [list(map(exact_number, pair)) for pair in robot.joint_limits],
+        "start_angles": [exact_number(angle) for angle in robot.start_angles],
+        "start_values": _start_values(edition, robot),
+    }
+
+
+def _geometry(geometry: Geometry) -> Record:
+    return {
+        "links": [_link(link, coupled=is_coupled(geometry)) for link in geometry.links],
+        "doc": geometry.doc,
+    }
+
+
+def is_coupled(geometry: Geometry) -> bool:
+    """Return whether a link is turned otherwise than by the joint of the same number."""
+    usual = [((number, Fraction(1)),) for number, _ in enumerate(geometry.links, 1)]
+    return [link.turned_by for link in geometry.links] != usual
+
+
+def _link(link: Link, *, coupled: bool) -> list[Any]:
+    row: list[Any] = [exact_number(part) for part in (link.offset, link.alpha, link.a, link.d)]
+    if coupled:
+        row.append([[joint, exact_number(share)] for joint, share in link.turned_by])
+    return row
+
+
+def _numbers(part: Any) -> Record | None:
+    """Return the fields of a part that are stated."""
+    if part is None:
+        return None
+    fields = ((name, getattr(part, name)) for name in part.__slots__)
+    return {name: _plain(value) for name, value in fields if value not in (None, ())}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return exact_number(value) if isinstance(value, Fraction) else value
+
+
+def _start_values(edition: Edition, robot: Robot) -> Record:
+    """Return raw values, or texts, by query and field."""
+    fields = {command.name: reported_fields(command) for command in edition.commands}
+    return {each.query: raw_start_values(fields[each.query], each) for each in robot.start_values}
