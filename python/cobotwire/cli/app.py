@@ -20,6 +20,8 @@ VERBS = (
     "doctor",
     "monitor",
     "call",
+    "run",
+    "migrate",
     "decode",
     "sim",
     "replay",
@@ -73,5 +75,5 @@ def _print_version(context: click.Context, option: click.Parameter, wanted: bool
 )
 @click.pass_context
 def app(context: click.Context, edition: str) -> None:
-    """Control a myCobot arm, simulate one, and decode its serial traffic."""
+    """Control a robot arm, simulate one, and decode its serial traffic."""
     context.obj = edition

@@ -20,7 +20,7 @@ from cobotwire.client.opening import (
 )
 from cobotwire.client.traffic import TrafficListener
 from cobotwire.protocol.addresses import find_address
-from cobotwire.protocol.errors import CaptureError, CobotwireError, MotionTimeout
+from cobotwire.protocol.errors import CaptureError, CobotwireError
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
@@ -46,8 +46,8 @@ class AsyncClient:
     def __init__(
         self,
         port: str | Transport,
-        *,
         baudrate: int | None = None,
+        *,
         timeout: float | None = None,
         retry: RetryPolicy | None = None,
         limits: Limits | None = None,
@@ -107,9 +107,7 @@ class AsyncClient:
         if error is None:
             await self.close()
             return
-        await self._stop_for(error)
-        for view in self._views.values():
-            await view._stop_for(error)
+        await self._stop_all_for(error)
         try:
             await self.close()
         except CaptureError as incomplete:
@@ -238,6 +236,12 @@ class AsyncClient:
         made.start(self._connection.listeners.add)
         return made
 
+    async def _stop_all_for(self, error: BaseException) -> None:
+        """Send ``stop`` once for an error to each address that was used."""
+        await self._stop_for(error)
+        for view in self._views.values():
+            await view._stop_for(error)
+
     async def _stop_for(self, error: BaseException) -> bool:
         """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
 
@@ -245,8 +249,7 @@ class AsyncClient:
             Whether it was sent.
         """
         stop = self.table.find_role("stop")
-        done = error is self._stopped_for or (isinstance(error, MotionTimeout) and error.stopped)
-        if not self._stops or stop is None or done:
+        if not self._stops or stop is None or error is self._stopped_for:
             return False
         self._stopped_for = error
         # The error is what is reported; one of sending ``stop`` would hide it.

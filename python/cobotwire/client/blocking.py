@@ -21,7 +21,7 @@ from cobotwire.client.opening import (
 )
 from cobotwire.client.traffic import TrafficListener
 from cobotwire.protocol.addresses import find_address
-from cobotwire.protocol.errors import CaptureError, CobotwireError, MotionTimeout
+from cobotwire.protocol.errors import CaptureError, CobotwireError
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
@@ -51,8 +51,8 @@ class Client:
     def __init__(
         self,
         port: str | Transport,
-        *,
         baudrate: int | None = None,
+        *,
         timeout: float | None = None,
         retry: RetryPolicy | None = None,
         limits: Limits | None = None,
@@ -121,9 +121,7 @@ class Client:
         if error is None:
             self.close()
             return
-        self._stop_for(error)
-        for view in self._views.values():
-            view._stop_for(error)
+        self._stop_all_for(error)
         try:
             self.close()
         except CaptureError as incomplete:
@@ -254,6 +252,12 @@ class Client:
         made.start(self._connection.listeners.add)
         return made
 
+    def _stop_all_for(self, error: BaseException) -> None:
+        """Send ``stop`` once for an error to each address that was used."""
+        self._stop_for(error)
+        for view in self._views.values():
+            view._stop_for(error)
+
     def _stop_for(self, error: BaseException) -> bool:
         """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
 
@@ -261,8 +265,7 @@ class Client:
             Whether it was sent.
         """
         stop = self.table.find_role("stop")
-        done = error is self._stopped_for or (isinstance(error, MotionTimeout) and error.stopped)
-        if not self._stops or stop is None or done:
+        if not self._stops or stop is None or error is self._stopped_for:
             return False
         self._stopped_for = error
         # The error is what is reported; one of sending ``stop`` would hide it.

@@ -10,9 +10,15 @@ from typing import Any
 from cobotwire.client.blocking import Client
 from cobotwire.client.events import CAPACITY, EventQueue, Wanted
 from cobotwire.client.opening import check_seconds
-from cobotwire.protocol.errors import ReplyTimeout
+from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout
 from cobotwire.protocol.messages import Request
-from cobotwire.protocol.roles import ANGLES, COORDS, kinds_of, targets_request
+from cobotwire.protocol.roles import (
+    ANGLES,
+    COORDS,
+    gripper_request,
+    kinds_of,
+    targets_request,
+)
 from cobotwire.session import EncodedRequest
 from cobotwire.session.motion import (
     MOTION_SECONDS,
@@ -26,6 +32,9 @@ from cobotwire.session.motion import (
     goal_of,
     until_reached,
 )
+
+# Percent of the fastest, unless the caller says otherwise.
+HOME_SPEED, GRIPPER_SPEED = 10, 50
 
 
 class MovingClient(Client):
@@ -114,6 +123,47 @@ class MovingClient(Client):
                 self._stop_for(error)
                 raise
 
+    def go_home(
+        self, speed: int = HOME_SPEED, *, wait: bool = True, timeout: float = MOTION_SECONDS
+    ) -> None:
+        """Move all joints to 0 degrees, and wait until they are there.
+
+        Args:
+            speed: percent of the fastest.
+            wait: False returns when the request is sent.
+            timeout: seconds to wait at most.
+
+        Raises:
+            UsageError: an argument is not allowed; nothing was sent.
+            LinkError: the transport is gone.
+            MotionTimeout: as in ``move_angles``.
+        """
+        self.move_angles([0.0] * self.table.joints, speed, wait=wait, timeout=timeout)
+
+    def open_gripper(self, speed: int = GRIPPER_SPEED) -> None:
+        """Open the gripper, and return when the request is sent. It drops what it holds.
+
+        Args:
+            speed: percent of the fastest.
+
+        Raises:
+            UsageError: the speed is not allowed, or the edition has no such command.
+            LinkError: the transport is gone.
+        """
+        self._send(gripper_request(self.table, "OPEN", speed))
+
+    def close_gripper(self, speed: int = GRIPPER_SPEED) -> None:
+        """Close the gripper, and return when the request is sent. It can pinch.
+
+        Args:
+            speed: percent of the fastest.
+
+        Raises:
+            UsageError: the speed is not allowed, or the edition has no such command.
+            LinkError: the transport is gone.
+        """
+        self._send(gripper_request(self.table, "CLOSE", speed))
+
     def _move(
         self,
         request: Request[Any],
@@ -163,10 +213,17 @@ class MovingClient(Client):
     def _wait(self, goal: Goal, timeout: float, ended: EventQueue | None) -> None:
         steps = until_reached(self.table, goal, timeout, self._connection.now())
         step = next(steps)
-        with suppress(StopIteration):
+        try:
             while True:
                 outcome = self._take(step, ended)
                 step = steps.send(outcome)
+        except StopIteration:
+            return
+        except MotionTimeout as error:
+            if error.stopped:
+                # This arm needs no further stop for the error; others that it ends do.
+                self._stopped_for = error
+            raise
 
     def _take(self, step: Step, ended: EventQueue | None) -> Outcome:
         now, result = self._connection.now, None

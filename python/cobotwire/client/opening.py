@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypedDict
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
@@ -21,6 +21,17 @@ if TYPE_CHECKING:
 
 OnError = Literal["stop", "leave"]
 RecordPath = str | os.PathLike[str]
+
+
+class SharedOptions(TypedDict, total=False):
+    """The arguments of a client that several arms may have in common."""
+
+    baudrate: int | None
+    timeout: float | None
+    retry: RetryPolicy | None
+    limits: Limits | None
+    codec: codecs.CodecName | None
+    on_error: OnError
 
 
 class Settings(NamedTuple):

@@ -7,11 +7,35 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from cobotwire.codec.events import Counters
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Command, Direction, Table, Variant
+from cobotwire.protocol.table import Command, Direction, Field, Table, Variant
 
 if TYPE_CHECKING:
     import numpy as np
     from typing_extensions import Buffer
+
+
+# The integer types of raw columns with their bounds: smaller before larger, unsigned before signed.
+_INTEGERS = (
+    ("B", 0, 2**8 - 1),
+    ("b", -(2**7), 2**7 - 1),
+    ("H", 0, 2**16 - 1),
+    ("h", -(2**15), 2**15 - 1),
+    ("I", 0, 2**32 - 1),
+    ("i", -(2**31), 2**31 - 1),
+    ("q", -(2**63), 2**63 - 1),
+)
+
+
+def cell_type(field: Field, raw: bool) -> str:
+    """Return the type code of a field's column.
+
+    Bytes and text are bytes, physical values 64-bit floats. Raw values have the smallest integer
+    type that holds every one that the field allows.
+    """
+    if not raw:
+        return "B" if field.kind in ("bytes", "text") else "d"
+    low, high = field.raw_range
+    return next(code for code, least, most in _INTEGERS if least <= low and high <= most)
 
 
 class Spans(NamedTuple):
@@ -52,9 +76,10 @@ class Rows:
     """All messages of one variant in a stream: a column of offsets and a column for each field.
 
     A column is a memoryview of shape ``(n,)``, or ``(n, k)`` for a field that is a row of ``k``
-    numbers. ``offset`` holds 64-bit unsigned integers. Fields hold physical values as float64; with
-    ``raw`` they hold raw values, in the smallest integer type for the values that the field allows.
-    NumPy and Arrow use the same memory.
+    numbers: a list of groups has the numbers of all its groups in a row. It has one dimension if it
+    is empty. ``offset`` holds 64-bit unsigned integers. Fields hold physical values as float64;
+    with ``raw`` they hold raw values, in the smallest integer type for the values that the field
+    allows. Bytes and texts are 8-bit unsigned integers. NumPy and Arrow use the same memory.
     """
 
     def __init__(
@@ -109,34 +134,40 @@ class Rows:
     def to_numpy(self) -> dict[str, np.ndarray[Any, Any]]:
         """Return the columns as arrays on the same memory, by name, ``offset`` included.
 
+        An array has a dimension more for a field of several numbers, and two more for a list of
+        groups or texts, also if there are no rows. Bytes and texts are arrays of ``uint8``.
+
         Raises:
             ImportError: NumPy (the extra ``numpy``) is not installed.
         """
         import numpy as np
 
-        return {name: np.asarray(column) for name, column in self._by_name().items()}
+        rows = len(self)
+        arrays = {"offset": np.asarray(self.offset)}
+        for field, column in zip(self.variant.fields, self._columns):
+            shape = (rows, *field.dimensions)
+            arrays[field.name] = np.asarray(memoryview(column)).reshape(shape)
+        return arrays
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """Return the Arrow PyCapsule stream, which polars, DuckDB, pandas and pyarrow read.
 
-        Each field's unit is its metadata.
+        Bytes are ``binary``, texts ``utf8``, and lists are lists; variants that differ only in the
+        number of elements have the same schema. Each field's unit is its metadata.
 
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.
         """
         from cobotwire.codec.arrow import arrow_table
 
-        fields = self.variant.fields
-        units = {f.name: tuple(dict.fromkeys([n.unit for n in f.numbers])) for f in fields}
         metadata = {
             "command": self.command.name,
             "direction": self.direction,
             "variant": str(self.variant_index),
         }
-        return arrow_table(self._by_name(), units, metadata).__arrow_c_stream__(requested_schema)
-
-    def _by_name(self) -> dict[str, memoryview]:
-        return {"offset": self.offset} | {name: self[name] for name in self.names}
+        columns = [memoryview(column) for column in self._columns]
+        table = arrow_table(self.offset, list(zip(self.variant.fields, columns)), metadata)
+        return table.__arrow_c_stream__(requested_schema)
 
 
 class Columns(Sequence[Rows]):
@@ -154,8 +185,10 @@ class Columns(Sequence[Rows]):
         rejected: Buffer,
         noise: tuple[Buffer, Buffer],
         counters: Counters,
+        raw: bool = False,
     ) -> None:
         self._table = table
+        self._raw = raw
         self._rows = rows
         self._rejected = rejected
         self._noise = noise
@@ -218,10 +251,29 @@ class Columns(Sequence[Rows]):
         if found:
             return found[0]
         chosen = variant or 0
-        # One-dimensional even for rows of numbers: an empty memoryview has no other shape.
         empty = memoryview(b"").cast("Q")
-        columns = [memoryview(b"").cast("d") for _ in variants[chosen].fields]
+        codes: list[Any] = [cell_type(field, self._raw) for field in variants[chosen].fields]
+        columns = [memoryview(b"").cast(code) for code in codes]
         return Rows(self._table.command(command), direction, chosen, empty, columns)
+
+    def to_arrow(self, command: str, direction: Direction = "reply") -> Any:
+        """Return the rows of one message as a ``pyarrow.Table``, in the order of the stream.
+
+        Variants that differ only in the number of elements of bytes, texts or lists are together.
+
+        Raises:
+            ImportError: pyarrow (the extra ``arrow``) is not installed.
+            UsageError: there is no such command, or variants with other fields occurred.
+        """
+        from cobotwire.codec.arrow import in_order
+
+        first = self.rows(command, direction, 0)
+        found = [
+            rows for rows in self if rows.command is first.command and rows.direction == direction
+        ]
+        if len({rows.names for rows in found}) > 1:
+            self.rows(command, direction)
+        return in_order(found or [first])
 
     def __repr__(self) -> str:
         return f"<Columns {list(self._rows)!r}>"

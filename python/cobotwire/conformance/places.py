@@ -24,8 +24,13 @@ class Place:
 
     @property
     def name(self) -> str:
-        """The name for people: ``speed``, ``coords.x``."""
-        part = f".{self.number.name or self.element}" if self.field.many else ""
+        """The name for people: ``speed``, ``coords.x``, ``joints[2].x``, ``data[0]``."""
+        field = self.field
+        if is_list(field):
+            element, at = divmod(self.element, field.each or 1)
+            part = f".{self.number.name}" if self.number.name else f"[{at}]"
+            return f"{field.name}[{element}]{part if field.each else ''}"
+        part = f".{self.number.name or self.element}" if field.many else ""
         return self.field.name + part
 
     def bytes_of(self, data: bytes) -> bytes:
@@ -44,6 +49,12 @@ def places(variant: Variant, picked: Mapping[int, int] | None = None) -> Iterato
         for element, number in enumerate(numbers):
             yield Place(field, number, index, element, start)
             start += number.step
+
+
+def is_list(field: Field) -> bool:
+    """Return whether a field is bytes, text, a list of groups, or a list whose size varies."""
+    varies = field.sizes is not None and not field.counts
+    return field.many and (field.kind in ("bytes", "text") or bool(field.each) or varies)
 
 
 def picks(variant: Variant) -> Iterator[dict[int, int]]:

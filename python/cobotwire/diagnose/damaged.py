@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cobotwire.codec.interface import Codec, Listening
-from cobotwire.diagnose import servo
 from cobotwire.diagnose.findings import Finding
 from cobotwire.diagnose.firmware import starts_message
 from cobotwire.diagnose.frames import DIRECTIONS, FrameStarts
 from cobotwire.diagnose.panic import PANIC
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
+from cobotwire.diagnose.servo import packet_size
 
 # What is wrong, by the framer's reason.
 _DAMAGES = {
@@ -25,9 +25,10 @@ _SLACK = (0, -1, 1, -2, 2)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DamagedFrame(Finding):
-    """The header and id of a command without a legal frame; both are None if it is cut before.
+    """The header and id of a command without a legal frame.
 
-    ``command`` names every command with the id.
+    ``command`` names every command with the id. Both are None if the frame is cut before its id, or
+    if it may be a reply that carries none.
     """
 
     command: str | None
@@ -49,15 +50,16 @@ class DamagedFrames(FrameStarts):
 
     def __init__(self, codec: Codec, listening: Listening) -> None:
         super().__init__(codec, listening)
-        # Every LEN that is legal with an id, in any direction.
-        self._lengths: dict[int, set[int]] = {}
+        # Every LEN that is legal with an id, in any direction; with None that of any message.
+        self._lengths: dict[int | None, set[int]] = {}
         # Nothing tells which one of the commands that share an id it was.
         self._all_names: dict[int, str] = {}
         for command in codec.table.commands:
             legal = {
                 self._format.length(v.size, d) for d in DIRECTIONS for v in command.variants(d)
             }
-            self._lengths.setdefault(command.id, set()).update(legal)
+            for key in (command.id, None):
+                self._lengths.setdefault(key, set()).update(legal)
             before = self._all_names.get(command.id)
             self._all_names[command.id] = f"{before} or {command.name}" if before else command.name
 
@@ -68,14 +70,15 @@ class DamagedFrames(FrameStarts):
             return None
         if len(head) < self._format.head_size:
             return self._start_only(residue, at, limit) if final else Wait.WAIT
-        id, reason = self._format.read_id(head), residue.reason(at)
-        if reason not in _DAMAGES or id not in self._names:
+        id, reason = self._id(head), residue.reason(at)
+        if reason not in _DAMAGES or id not in self._lengths:
             return None
         extent = self._extent(residue, at, id)
         if isinstance(extent, Wait):
             return extent
         spans = residue.spans(at, extent)
-        return DamagedFrame(spans=spans, reason=reason, command=self._all_names[id], id=id)
+        name = None if id is None else self._all_names[id]
+        return DamagedFrame(spans=spans, reason=reason, command=name, id=id)
 
     def _start_only(self, residue: Residue, at: int, limit: int) -> Finding | None:
         """Return the start of a frame that is cut before its id."""
@@ -84,7 +87,7 @@ class DamagedFrames(FrameStarts):
         spans = residue.spans(at, limit)
         return DamagedFrame(spans=spans, reason="truncated", command=None, id=None)
 
-    def _extent(self, residue: Residue, at: int, id: int) -> int | Wait:
+    def _extent(self, residue: Residue, at: int, id: int | None) -> int | Wait:
         """Return the end of the damaged frame: after a footer near a legal end, or else by LEN.
 
         A byte may have been inserted or lost, so the footer is also searched after the end. A
@@ -114,7 +117,7 @@ class DamagedFrames(FrameStarts):
     def _stops(self, residue: Residue, at: int) -> bool | Wait:
         """Return whether something else starts at ``at``, inside a damaged frame."""
         data = residue.data
-        packet = servo.size_of(data[at : at + servo.LONGEST])
+        packet = packet_size(data, at)
         message = starts_message(data[at : at + len(PANIC)])
         if packet or message:
             return True
@@ -125,4 +128,4 @@ class DamagedFrames(FrameStarts):
             return False
         if len(head) < self._format.head_size:
             return False if final else Wait.WAIT
-        return residue.reason(at) in _DAMAGES and self._format.read_id(head) in self._names
+        return residue.reason(at) in _DAMAGES and self._id(head) in self._lengths

@@ -134,11 +134,15 @@ def format_message(message: DecodedMessage) -> str:
     """Return a message on one line: a request like a call, a reply with an arrow before it."""
     values = []
     for field, value in zip(message.variant.fields, message.values):
-        numbers = _numbers(message, field, value)
+        numbers = list(_numbers(message, field, value))
         if field.kind in ("bytes", "text"):
             text = format_bytes(value)
+        elif not field.many:
+            text = format_value(field, *numbers[0])
+        elif numbers and numbers[0][0].bits:
+            text = _format_bits(field, numbers)
         else:
-            text = _format_tuple(numbers) if field.many else format_value(field, *next(numbers))
+            text = _format_tuple(numbers)
         values.append(f"{field.name}={text}")
     arrow = "" if message.direction == "request" else "-> "
     way = "to" if message.direction == "request" else "from"
@@ -146,7 +150,17 @@ def format_message(message: DecodedMessage) -> str:
     return f"{arrow}{message.command.name}({', '.join(values)}){device}"
 
 
-def _format_tuple(numbers: Iterator[tuple[Number, Any]]) -> str:
+def _format_bits(field: Field, numbers: list[tuple[Number, Any]]) -> str:
+    """Return the named bits of a word: a flag only if it is set, ``(ready, level=5)``."""
+    parts = [
+        number.name if number.kind == "flag" else f"{number.name}={format_value(field, number, v)}"
+        for number, v in numbers
+        if v or number.kind != "flag"
+    ]
+    return f"({', '.join(parts)})"
+
+
+def _format_tuple(numbers: list[tuple[Number, Any]]) -> str:
     """Return a tuple that names each unit once: ``(0, 0, 50 millimetres; 0, 0, 0 degrees)``."""
     groups = []
     for unit, group in groupby(numbers, key=lambda pair: pair[0].units):

@@ -75,6 +75,12 @@ class FrameStarts(Recogniser):
         # Of commands that share an id, the first gives the name.
         self._names = {command.id: command.name for command in reversed(codec.table.commands)}
         self.starts = re.escape(self._format.header[:1])
+        self._requests_only = listening == "request"
+
+    def _id(self, head: bytes) -> int | None:
+        """Return the id of a frame; None if it may be a reply, which carries none."""
+        id = self._format.read_id(head)
+        return id if self._format.reply_has_id or self._requests_only else None
 
     def _head(self, residue: Residue, at: int) -> tuple[bytes | None, int, bool]:
         """Return the bytes up to the id, the end of the stretch, and whether that end is final.
@@ -136,7 +142,6 @@ class Frames(FrameStarts):
 
     def _complete(self, residue: Residue, at: int, end: int) -> Finding | None:
         data, spans, reason = residue.data[at:end], residue.spans(at, end), residue.reason(at)
-        id = self._format.read_id(data)
         if self._other is not None and self._other_framer is not None:
             events = [*self._other_framer.feed(data), *self._other_framer.flush()]
             if len(events) == 1 and isinstance(events[0], Frame):
@@ -149,6 +154,8 @@ class Frames(FrameStarts):
                     direction=self._other,
                     sent=False,
                 )
+        # Replies without an id are listed in any case.
+        id = self._format.read_id(data)
         if any(index.has(id) for d, index in self._indexes.items() if d != self._other):
             return None
         events = [*self._any_framer.feed(data), *self._any_framer.flush()]

@@ -1,41 +1,25 @@
-"""Recognise packets of the Feetech servo bus that leak onto the serial line.
+"""Recognise packets of the servo bus that leak onto the serial line.
 
-``FF FF ID LEN INSTRUCTION|ERROR PARAMETERS CHECKSUM``: LEN counts what follows it, and the checksum
-is the inverted low byte of the sum of ID to PARAMETERS. Instructions and error bits are those of
-Feetech's "SCS servo communication protocol" and STS memory table (wiki.aifitlab.com,
-wiki.juxitech.com). Instructions and status packets differ only in the byte after LEN, and an
-error byte may have the value of an instruction.
+:mod:`cobotwire.diagnose.servo_bus` reads them. An instruction and a status packet differ only in
+the byte after LEN, and the error bits of a status packet may have the value of an instruction.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose.findings import Finding
 from cobotwire.diagnose.recogniser import Recogniser
-from cobotwire.diagnose.registers import register_name
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
+from cobotwire.diagnose.servo_bus import Instruction, servo_bus
 
-HEADER = b"\xff\xff"
-BROADCAST = 0xFE
-# Header, id and LEN, which LEN does not count.
-OVERHEAD = 4
-LONGEST = OVERHEAD + 255
-INSTRUCTIONS = {
-    0x01: "ping",
-    0x02: "read",
-    0x03: "write",
-    0x04: "reg write",
-    0x05: "action",
-    0x06: "reset",
-    0x82: "sync read",
-    0x83: "sync write",
-}
-# By bit of the error byte; other bits are never set.
-ERRORS = {0: "voltage", 1: "sensor", 2: "temperature", 3: "current", 5: "overload"}
-ERROR_BITS = sum(1 << bit for bit in ERRORS)
+# The header, and an id, which FF is not. The table knows this too, but is loaded only where this
+# matches; see tests/diagnose/test_servo_bus.py.
+STARTS = rb"\xff(?:\xff(?:[^\xff]|\Z)|\Z)"
+_START = re.compile(STARTS, re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +29,7 @@ class ServoPacket(Finding):
     ``servo`` is 254 for all servos. ``ambiguous``: the packet could also have the other role.
     ``register`` of a status packet is known only if its instruction was received before. ``count``
     is the number of bytes to read from or write to a servo. ``error`` is the error byte of a status
-    packet.
+    packet, and ``errors`` names its bits.
     """
 
     servo: int
@@ -53,6 +37,7 @@ class ServoPacket(Finding):
     ambiguous: bool
     instruction: str | None
     error: int | None
+    errors: tuple[str, ...]
     register: int | None
     register_name: str | None
     count: int | None
@@ -78,7 +63,7 @@ class ServoPacket(Finding):
 
     def example(self) -> str:
         """Describe the packet without its bus."""
-        servo = "all servos" if self.servo == BROADCAST else f"servo {self.servo}"
+        servo = "all servos" if self.servo == servo_bus().every else f"servo {self.servo}"
         if self.role == "status":
             where = "" if self.register is None else f" at {self._register_text()}"
             sent = f" {self.parameters.hex(' ')}{where}" if self.parameters else ""
@@ -98,33 +83,18 @@ class ServoPacket(Finding):
         return f"register 0x{self.register:02X}{name}"
 
     def _errors_text(self) -> str:
-        names = [name for bit, name in ERRORS.items() if (self.error or 0) >> bit & 1]
-        return f", with errors: {', '.join(names)}" if names else ""
+        return f", with errors: {', '.join(self.errors)}" if self.errors else ""
 
 
-def size_of(packet: bytes) -> int | None:
-    """Return the size of the packet that ``packet`` starts with, 6..259, or 0 for no packet.
-
-    None means that more bytes are needed.
-    """
-    if not packet.startswith(HEADER[: len(packet)]):
-        return 0
-    if len(packet) > 2 and packet[2] > BROADCAST:
-        return 0
-    if len(packet) < OVERHEAD:
-        return None
-    size = OVERHEAD + packet[3]
-    if packet[3] < 2:
-        return 0
-    if len(packet) < size:
-        return None
-    return size if ~sum(packet[2 : size - 1]) & 0xFF == packet[size - 1] else 0
+def packet_size(data: bytes, at: int) -> int | None:
+    """Return the size of the packet at ``at``; 0 if there is none, None for too few bytes."""
+    return servo_bus().size(data, at) if _START.match(data, at) else 0
 
 
 class ServoBus(Recogniser):
     """Recognises packets; remembers instructions, as a status packet does not name its register."""
 
-    starts = rb"\xff(?:\xff|\Z)"
+    starts = STARTS
 
     def __init__(self, codec: Codec, listening: Listening) -> None:
         # Servo id to the register and number of bytes that its next status packet holds.
@@ -132,35 +102,35 @@ class ServoBus(Recogniser):
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
         """Recognise the packet at ``at``; a frame may interrupt it, as its checksum is checked."""
-        size = size_of(residue.data[at : at + LONGEST])
+        size = packet_size(residue.data, at)
         if size is None:
             return None if residue.closed else Wait.WAIT
         return self._packet(residue, at, at + size) if size else None
 
     def _packet(self, residue: Residue, start: int, end: int) -> ServoPacket:
-        packet = residue.data[start:end]
-        servo, code, parameters = packet[2], packet[4], packet[5:-1]
-        register, count, servos = _targets(code, parameters)
+        bus, packet = servo_bus(), residue.data[start:end]
+        servo, code, parameters = bus.servo(packet), bus.code(packet), bus.parameters(packet)
+        instruction, status = bus.instruction(packet), bus.status(servo, code)
         # A status packet with the error bits of an instruction is rare: assume an instruction.
-        is_instruction = fits_instruction(servo, code, parameters)
-        is_status = not is_instruction and fits_status(servo, code)
+        is_status = instruction is None and status is not None
+        said = instruction or Instruction(bus.name(code))
+        register, count = said.register, said.size
         if is_status:
-            register, count = self._expected.get(servo, (None, -1))
-            if count != len(parameters):
-                register = None
-            count, servos = None, ()
+            register, expected = self._expected.get(servo, (None, -1))
+            register = register if expected == len(parameters) else None
         return ServoPacket(
             spans=residue.spans(start, end),
             reason=residue.reason(start),
             servo=servo,
             role="status" if is_status else "instruction",
-            ambiguous=is_instruction and fits_status(servo, code),
-            instruction=None if is_status else INSTRUCTIONS.get(code, f"0x{code:02X}"),
+            ambiguous=instruction is not None and status is not None,
+            instruction=None if is_status else said.name,
             error=code if is_status else None,
+            errors=status.errors if is_status and status else (),
             register=register,
-            register_name=None if register is None else register_name(register),
+            register_name=None if register is None else bus.register_name(register) or None,
             count=count,
-            servos=servos,
+            servos=said.servos,
             parameters=parameters,
         )
 
@@ -178,30 +148,5 @@ class ServoBus(Recogniser):
         elif packet.instruction == "read":
             self._expected = {packet.servo: (packet.register, packet.count or 0)}
         else:
-            self._expected = {} if packet.servo == BROADCAST else {packet.servo: (None, 0)}
-
-
-def fits_instruction(servo: int, code: int, parameters: bytes) -> bool:
-    """Return whether the packet has the parameters of an instruction."""
-    size = len(parameters)
-    if code in (0x82, 0x83):
-        return servo == BROADCAST and size >= 3
-    fits = {0x01: size == 0, 0x02: size == 2, 0x03: size >= 2, 0x04: size >= 2}
-    return fits.get(code, code in INSTRUCTIONS and size == 0)
-
-
-def fits_status(servo: int, code: int) -> bool:
-    """Return whether it can be a status packet: an id of one servo, and known error bits."""
-    return servo != BROADCAST and not code & ~ERROR_BITS
-
-
-def _targets(code: int, parameters: bytes) -> tuple[int | None, int | None, tuple[int, ...]]:
-    """Return the register, the number of bytes and the servos that an instruction names."""
-    if code not in (0x02, 0x03, 0x04, 0x82, 0x83) or len(parameters) < 2:
-        return None, None, ()
-    register, count, rest = parameters[0], parameters[1], parameters[2:]
-    if code == 0x82:
-        return register, count, tuple(rest)
-    if code == 0x83:
-        return register, count, tuple(rest[:: count + 1])
-    return register, count if code == 0x02 else len(parameters) - 1, ()
+            every = packet.servo == servo_bus().every
+            self._expected = {} if every else {packet.servo: (None, 0)}

@@ -25,6 +25,7 @@ NO_REPLIES = (
     "rate is right (--baudrate 1000000 or 115200)"
 )
 LOST = "retries make up for it; fix the other problems listed here, then check cable and hub"
+NO_COORDS = "a simulated arm sends no coordinates then; from a real arm, the reply was lost"
 LATE = "the arm is busy or the line is slow: use a longer timeout=, or send fewer requests"
 ILLEGAL = "the firmware may use another edition: cobotwire identify URL finds out"
 OTHER_EDITION = "use cobotwire --edition {edition}; in a program, cobotwire.connect(port)"

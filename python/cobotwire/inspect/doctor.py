@@ -179,14 +179,28 @@ class Doctor:
             text = f"no reply to any of {lost} requests"
             found.append(Problem("silence", text, advice.NO_REPLIES))
         elif lost:
-            names = ", ".join(self._unanswered)
-            text = f"no reply in time to {lost} of {report.requests} requests ({names})"
-            found.append(Problem("lost-replies", text, advice.LOST))
+            found += self._lost_replies(lost)
         if report.late:
             text = f"replies after their deadline: {report.late}"
             found.append(Problem("late-replies", text, advice.LATE))
         states = {command.role: report.values.get(command.name) for command in self._queries}
         return found + readiness.problems(self._table, states)
+
+    def _lost_replies(self, lost: int) -> list[Problem]:
+        """Report unanswered requests; a simulated arm of unknown geometry has no coordinates."""
+        found = []
+        coordinates = self._table.find_role("coordinates")
+        known = self._table.robot.geometry is not None
+        if not known and coordinates and coordinates.name in self._unanswered:
+            text = f"no reply to {coordinates.name}; the edition has no geometry of this robot"
+            found.append(Problem("no-coordinates", text, advice.NO_COORDS, serious=False))
+            del self._unanswered[coordinates.name]
+            lost -= 1
+        if lost:
+            names = ", ".join(self._unanswered)
+            text = f"no reply in time to {lost} of {self._report.requests} requests ({names})"
+            found.append(Problem("lost-replies", text, advice.LOST))
+        return found
 
     def _latency_problems(self) -> list[Problem]:
         report = self._report

@@ -1,21 +1,22 @@
 """Find out which edition an arm speaks, and connect to it with the client of that edition.
 
-First a query that every edition has, and for which every arm has a reply. Then the number of
-joints, by the length of the row of angles. Then queries that only some editions have; each legal
-reply rules out the others. If several editions remain, a limit of a joint decides, as the arm
-reports it.
+First a query that every edition has, and for which every arm has a reply: with the frames of most
+editions, then with other frames (:mod:`cobotwire.inspect.frame_families`), until a reply comes.
+Then the number of joints, by the length of the row of angles. Then queries that only some editions
+have; each legal reply rules out the others. If several editions remain, a limit of a joint decides,
+as the arm reports it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
-from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cobotwire import editions
 from cobotwire.client.opening import open_port
+from cobotwire.client.port_memory import PortMemory
 from cobotwire.inspect.evidence import (
     Candidates,
     Evidence,
@@ -24,15 +25,16 @@ from cobotwire.inspect.evidence import (
     limits_apart,
     own_query,
 )
+from cobotwire.inspect.frame_families import Probes, families, with_same_frames
 from cobotwire.protocol.errors import EditionUnknown
 from cobotwire.protocol.table import Command, Table
+from cobotwire.session.leftover import merged
 from cobotwire.transport import Transport
 from cobotwire.transport.tapped import borrowed
 
 if TYPE_CHECKING:
     from cobotwire.client import Client
-    from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
-    from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
+    from cobotwire.editions.clients import AnyAsyncClient, AnyClient
 
 
 class Identification(NamedTuple):
@@ -44,6 +46,7 @@ class Identification(NamedTuple):
         candidates: the editions that the replies allow; empty without a reply.
         firmware: the version of the firmware, such as ``7.3``; empty if the arm does not report it.
         evidence: the queries in the order in which they were sent.
+        baudrate: the bits a second at which they were sent last; 0 if the transport was open.
     """
 
     url: str
@@ -51,6 +54,7 @@ class Identification(NamedTuple):
     candidates: tuple[str, ...]
     firmware: str
     evidence: tuple[Evidence, ...]
+    baudrate: int = 0
 
     @property
     def replied(self) -> bool:
@@ -70,14 +74,16 @@ def other_edition(
     Raises:
         LinkError: the transport is gone.
     """
-    command = own_query(table, _others(table.edition))
+    # A device whose frames differ is no arm of the others, and is not sent their frames.
+    names = with_same_frames(newest_first(), table)
+    others = [editions.load(name).TABLE for name in names if name != table.edition]
+    command = own_query(table, others)
     own = Evidence("", table.edition, False, None, "the edition has no query of its own")
     if command is not None:
         own = ask(client, command, table.edition)
     if own.replied:
         return own, None
-    # A device whose frames differ is no arm of the others, and is not sent their frames.
-    found, against = Candidates(_with_same_frames(newest_first(), table)), None
+    found, against = Candidates(names), None
     for evidence in _narrowed(transport, found, timeout=timeout):
         if against is None and table.edition not in found.proven:
             against = evidence
@@ -105,19 +111,61 @@ def newest_first() -> list[str]:
     )
 
 
-def identify_on(transport: Transport, *, timeout: float | None = None) -> Identification:
+def identify_on(
+    transport: Transport, *, timeout: float | None = None, among: Sequence[str] = ()
+) -> Identification:
     """Find out which edition the arm on an open transport speaks; nothing moves.
+
+    ``among`` are the editions in question; if it is empty, all are.
 
     Raises:
         LinkError: the transport is gone.
     """
-    first = editions.load(newest_first()[0]).TABLE
-    found, powered = Candidates(_with_same_frames(newest_first(), first)), first.in_role("powered")
-    reply = _asked(transport, first.edition, powered, timeout=timeout)
-    evidence = [found.evidence(reply, powered)]
-    if reply.text == "no reply":
+    memory, left = PortMemory(transport), []
+    evidence: list[Evidence] = []
+    probes = Probes(transport)
+    try:
+        for names in families([n for n in newest_first() if not among or n in among]):
+            found = Candidates(names)
+            probes.separate(editions.load(names[0]).TABLE.frame)
+            for name, command in _first_queries(names):
+                reply = _asked(probes.transport, name, command, timeout=timeout)
+                shown = found.evidence(reply, command)
+                if len(names) == 1:
+                    shown = shown._replace(edition=name, shows=f"only {name} has these frames")
+                evidence.append(shown)
+                found.note(command, reply.replied)
+                if reply.text != "no reply":
+                    return _identified(transport, found, evidence, timeout)
+            # A session with other frames forgets what it cannot read.
+            left.append(memory.recall())
         return Identification(transport.url, "", (), "", tuple(evidence))
-    found.note(powered, reply.replied)
+    finally:
+        memory.leave(merged([*left, memory.recall()]))
+
+
+def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
+    """Yield an edition, and a query for which every arm that knows it has a reply.
+
+    It is that of the power; for arms without motors, which have none, that of the version.
+    """
+    tables = {name: editions.load(name).TABLE for name in names}
+    for role in ("powered", "version"):
+        having = [name for name in names if tables[name].find_role(role) is not None]
+        if having:
+            yield having[0], tables[having[0]].in_role(role)
+        if all(tables[name].find_role("powered") is not None for name in names):
+            return
+
+
+def _identified(
+    transport: Transport,
+    found: Candidates,
+    evidence: list[Evidence],
+    timeout: float | None,
+) -> Identification:
+    """Find out which of the editions with the same frames an arm speaks that replies to them."""
+    first = editions.load(found.proven[0]).TABLE
     evidence += _narrowed(transport, found, timeout=timeout)
     edition, firmware = found.known, ""
     version = editions.load(edition or first.edition).TABLE.find_role("version")
@@ -179,21 +227,19 @@ def identify(
 
     Args:
         port: a serial port or a URL; it is closed at the end.
-        baudrate: bits a second; default: that of the editions.
+        baudrate: bits a second; default: those of the editions, 115,200 first.
         timeout: seconds that the arm has for each reply, all attempts included.
 
     Raises:
         UsageError: an argument is not allowed.
         LinkError: the port does not exist, cannot be opened, or disappears.
     """
-    transport = _open(port, baudrate)
-    try:
-        return identify_on(transport, timeout=timeout)
-    finally:
-        transport.close()
+    found, transport = _found(port, baudrate, timeout)
+    transport.close()
+    return found
 
 
-def connect(port: str, *, baudrate: int | None = None, **options: Any) -> MyCobot280 | MyCobot:
+def connect(port: str, *, baudrate: int | None = None, **options: Any) -> AnyClient:
     """Find out which edition an arm speaks; return a client of that edition, which holds the port.
 
         with cobotwire.connect("/dev/ttyACM0") as arm:
@@ -204,7 +250,7 @@ def connect(port: str, *, baudrate: int | None = None, **options: Any) -> MyCobo
 
     Args:
         port: a serial port or a URL.
-        baudrate: bits a second; default: that of the editions.
+        baudrate: bits a second; default: those of the editions, 115,200 first.
         options: further arguments of the client, such as ``timeout``, ``limits`` and ``record``.
 
     Raises:
@@ -212,20 +258,20 @@ def connect(port: str, *, baudrate: int | None = None, **options: Any) -> MyCobo
         LinkError: the port does not exist, cannot be opened, or disappears.
         EditionUnknown: no arm replied, or its replies do not show its edition.
     """
-    transport = _open(port, baudrate)
+    identified, transport = _found(port, baudrate, options.get("timeout"))
     try:
-        edition = _known(identify_on(transport, timeout=options.get("timeout")))
-        client: Any = editions.load(edition).CLIENT(transport, baudrate=baudrate, **options)
+        edition, rate = _known(identified), identified.baudrate
+        client: Any = editions.load(edition).CLIENT(transport, baudrate=rate, **options)
     except BaseException:
         transport.close()
         raise
-    found: MyCobot280 | MyCobot = client
+    found: AnyClient = client
     return found
 
 
 async def connect_async(
     port: str, *, baudrate: int | None = None, **options: Any
-) -> AsyncMyCobot280 | AsyncMyCobot:
+) -> AnyAsyncClient:
     """Do the same as :func:`connect` for asyncio; return an open client.
 
         async with await cobotwire.connect_async("/dev/ttyACM0") as arm:
@@ -242,9 +288,10 @@ async def connect_async(
 
     timeout = options.get("timeout")
     found = await asyncio.to_thread(identify, port, baudrate=baudrate, timeout=timeout)
-    client: Any = editions.load(_known(found)).ASYNC_CLIENT(port, baudrate=baudrate, **options)
+    edition = editions.load(_known(found))
+    client: Any = edition.ASYNC_CLIENT(port, baudrate=found.baudrate, **options)
     await client.open()
-    opened: AsyncMyCobot280 | AsyncMyCobot = client
+    opened: AnyAsyncClient = client
     return opened
 
 
@@ -255,22 +302,43 @@ def _known(found: Identification) -> str:
     return found.edition
 
 
-def _open(port: str, baudrate: int | None) -> Transport:
-    usual = editions.load(editions.DEFAULT).TABLE.baudrate
-    return open_port(port, usual if baudrate is None else baudrate)
+def _found(
+    port: str, baudrate: int | None, timeout: float | None
+) -> tuple[Identification, Transport]:
+    """Identify the arm at a port; return the open transport with the rate of its reply, too."""
+    evidence: list[Evidence] = []
+    rates = _rates(port, baudrate)
+    while True:
+        rate, names = rates.pop(0)
+        transport = open_port(port, rate)
+        try:
+            found = identify_on(transport, timeout=timeout, among=names)
+        except BaseException:
+            transport.close()
+            raise
+        at = f", at {rate:,} baud" if evidence else ""
+        evidence += [each._replace(shows=each.shows + at) for each in found.evidence]
+        if found.replied or not rates:
+            return found._replace(evidence=tuple(evidence), baudrate=rate), transport
+        transport.close()
 
 
-def _others(name: str) -> list[Table]:
-    return [editions.load(other).TABLE for other in editions.names() if other != name]
+def _rates(port: str, baudrate: int | None) -> list[tuple[int, list[str]]]:
+    """Return the baud rates to try, each with the editions to ask for; none twice.
 
-
-def _with_same_frames(names: list[str], table: Table) -> list[str]:
-    return [name for name in names if _same_frames(editions.load(name).TABLE, table)]
-
-
-def _same_frames(one: Table, other: Table) -> bool:
-    first, second = one.frame, other.frame
-    return replace(first, maximum_length=second.maximum_length) == second
+    At first all are asked for, since a pseudo-terminal or an adapter has its own rate. At another
+    rate, only those are that have the frames of an edition which states this rate.
+    """
+    tables = {name: editions.load(name).TABLE for name in editions.names()}
+    usual = tables[editions.DEFAULT].baudrate
+    if baudrate is not None or not isinstance(port, str) or "://" in port:
+        return [(usual if baudrate is None else baudrate, [])]
+    others = sorted({table.baudrate for table in tables.values()} - {usual})
+    stated = {rate: [t for t in tables.values() if t.baudrate == rate] for rate in others}
+    return [(usual, [])] + [
+        (rate, [name for table in stated[rate] for name in with_same_frames([*tables], table)])
+        for rate in others
+    ]
 
 
 def _version(table: Table) -> bool:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Address, Table
+from cobotwire.protocol.table import Address, Command, Table
 
 # Repliers that are no address.
 ANYBODY = -1
 NOBODY = -2
+SOMEBODY = -3
 
 
 def replier_of(address: Address | None) -> int | None:
-    """Return the address byte that a reply to an address must have, ANYBODY or NOBODY."""
+    """Return the address byte that a reply must have, or who replies to a broadcast."""
     if address is None:
         return None
     if address.replies == "own":
         return address.value
-    return ANYBODY if address.replies == "any" else NOBODY
+    return {"any": ANYBODY, "one": SOMEBODY, "none": NOBODY}[address.replies]
 
 
 def addresses_of(table: Table) -> tuple[Address, ...]:
@@ -30,6 +31,20 @@ def addresses_of(table: Table) -> tuple[Address, ...]:
 def devices_of(table: Table) -> tuple[Address, ...]:
     """Return the addresses that a single device has: those that are no broadcast."""
     return tuple(address for address in addresses_of(table) if address.replies == "own")
+
+
+def lacks_joints(table: Table, address: Address | None, command: Command) -> str:
+    """Return why a device with fewer joints than its edition cannot have a command; or nothing.
+
+    Rows with a value for each joint belong to the devices with all joints.
+    """
+    if address is None or address.joints in (0, table.joints):
+        return ""
+    fields = (f for each in (*command.request, *command.reply) for f in each.fields)
+    if not any(f.many and len(f.cases[0].numbers) == table.joints for f in fields):
+        return ""
+    has = "joint" if address.joints == 1 else "joints"
+    return f"has rows of {table.joints} values, and {address.name} has {address.joints} {has}"
 
 
 def find_address(table: Table, given: int | str | None) -> Address | None:

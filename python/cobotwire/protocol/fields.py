@@ -76,7 +76,16 @@ class Field:
     @property
     def size(self) -> int:
         """The number of bytes on the wire."""
-        return packed_size(self.cases[0].numbers)
+        numbers = self.cases[0].numbers
+        return len(numbers) if self.kind in ("bytes", "text") else packed_size(numbers)
+
+    @property
+    def dimensions(self) -> tuple[int, ...]:
+        """The shape of the field's numbers in one message; a list of groups has two dimensions."""
+        count = len(self.cases[0].numbers)
+        if not self.many:
+            return ()
+        return (count // self.each, self.each) if self.each else (count,)
 
     @property
     def numbers(self) -> tuple[Number, ...]:
@@ -119,10 +128,11 @@ class Field:
             return bytes(values)
         groups = [values[at : at + self.each] for at in range(0, len(values), self.each or 1)]
         if self.kind == "text":
-            return tuple(map(self._text, groups)) if self.each else self._text(values)
+            return tuple(map(self.text, groups)) if self.each else self.text(values)
         return tuple(map(tuple, groups)) if self.each else tuple(values)
 
-    def _text(self, values: Sequence[int]) -> str:
+    def text(self, values: Sequence[int]) -> str:
+        """Return one text from its bytes, without padding."""
         data = bytes(values)
         if self.padding >= 0:
             data = data.rstrip(bytes([self.padding]))
@@ -158,9 +168,10 @@ class Field:
 
     def meets(self, number: Number, other: Field, other_number: Number) -> bool:
         """Return whether a raw value is legal in a number of this field and in one of another."""
-        for one, two, end in ((self, other, other_number), (other, self, number)):
-            if one.choices:
-                return any(two.allows(end, raw) for raw in one.choices)
+        ends = ((self, number, other, other_number), (other, other_number, self, number))
+        for one, here, two, there in ends:
+            if choices := one.choices or here.choices:
+                return any(two.allows(there, raw) for raw in choices)
         lowest = max(number.minimum, other_number.minimum)
         return lowest <= min(number.maximum, other_number.maximum)
 

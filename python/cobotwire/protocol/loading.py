@@ -12,14 +12,13 @@ from math import inf
 from typing import Any
 
 from cobotwire.protocol.numbers import raw_of_float
+from cobotwire.protocol.robot import load_robot
 from cobotwire.protocol.table import (
     Address,
     Case,
     Check,
     Command,
     Crc,
-    Dimensions,
-    Dynamics,
     Field,
     FieldKind,
     FrameFormat,
@@ -45,7 +44,11 @@ def load_table(package: str) -> Table:
     Raises:
         ValueError: another version of cobotwire-gen made the package.
     """
-    document = _document(package)
+    return table_of(_document(package), package)
+
+
+def table_of(document: Record, package: str = "") -> Table:
+    """Return the table of a document like ``edition.json``; its package has the message types."""
     edition, frame = document["edition"], document["frame"]
     reader = _Reader(document, package)
     return Table(
@@ -55,9 +58,8 @@ def load_table(package: str) -> Table:
         frame["baudrate"],
         load_frame(frame),
         tuple([reader.command(record) for record in document["commands"]]),
-        _dimensions(edition.get("geometry")),
+        load_robot(edition),
         tuple([Address(*address) for address in frame.get("addresses", ())]),
-        _dynamics(edition.get("motion")),
     )
 
 
@@ -97,25 +99,6 @@ def _check(record: Record) -> Check:
     )
 
 
-def _dimensions(record: Record | None) -> Dimensions | None:
-    if record is None:
-        return None
-    links = [(_real(o), _real(alpha), _real(a), _real(d)) for o, alpha, a, d in record["links"]]
-    return Dimensions(tuple(links), tuple(record["encoder_signs"]))
-
-
-def _dynamics(record: Record | None) -> Dynamics | None:
-    if record is None:
-        return None
-    return Dynamics(*(_real(record[name]) for name in Dynamics._fields))
-
-
-def _real(number: int | str) -> float:
-    """Return the nearest float to an exact number, such as ``-552/5``."""
-    numerator, _, denominator = str(number).partition("/")
-    return int(numerator) / int(denominator or 1)
-
-
 def load_places(package: str) -> dict[str, str]:
     """Return the place of each command in the spec: ``file:line``, and where a delta changed it."""
     return {record["name"]: record["place"] for record in _document(package)["commands"]}
@@ -144,7 +127,7 @@ class _Reader:
         self._types: dict[str, Record] = {}
         self._numbers: dict[str, tuple[Number, ...]] = {}
         for type in document["types"]:
-            self._types[type["name"]] = type
+            self._types[type["name"]] = _prepared(type)
         self._deadline = document["frame"]["deadline_ms"]
         self._most = document["frame"]["maximum_data"]
 
@@ -221,7 +204,7 @@ class _Reader:
         each, of = 0, type
         element: tuple[Number, ...] = (BYTE,)
         if type["kind"] == "bits":
-            element = tuple([_bits(number) for number in type["numbers"]])
+            element = type["numbers"]
         elif type["kind"] == "list":
             of = self._type(type["of"])
             if of["kind"] == "text":
@@ -260,7 +243,8 @@ class _Reader:
         if const is not None:
             choices = (const,)
         else:
-            choices = _choices(first)
+            # Each case of a selected quantity has its own choices, in its number.
+            choices = () if selector and first["kind"] == "quantity" else _choices(first)
             labels = tuple([name for name, _, _ in first.get("members", ())])
         return Field(
             record["name"],
@@ -274,11 +258,13 @@ class _Reader:
             "echo" in record,
             const,
             tuple(default) if (default := get("default")) is not None else None,
-            meanings=_tuples(first.get("meanings", ())),
+            meanings=first["meanings"],
         )
 
     def _type(self, reference: str | Record) -> Record:
-        return self._types[reference] if isinstance(reference, str) else reference
+        if isinstance(reference, str):
+            return self._types[reference]
+        return reference if "numbers" in reference else _prepared(reference)
 
     def _numbers_of(self, reference: str | Record) -> tuple[Number, ...]:
         """Return a type's numbers in the order of the wire."""
@@ -324,7 +310,15 @@ class _Reader:
             high,
             get("unit", ""),
             encoding,
+            choices=tuple(get("choices", ())),
         )
+
+
+def _prepared(type: Record) -> Record:
+    """Convert the lists of a type once, not for each field of each variant."""
+    type["meanings"] = _tuples(type.get("meanings", ()))
+    type["numbers"] = tuple([_bits(number) for number in type.get("numbers", ())])
+    return type
 
 
 def _choices(type: Record) -> tuple[int, ...]:

@@ -265,13 +265,13 @@ def _elements(case: Case) -> str:
 def _allowed(field: Field, number: Number) -> str:
     if "flag" in (field.kind, number.kind):
         return "True or False"
-    if number.choices:
+    if number.labels:
         pairs = zip(number.labels, number.choices)
         return ", ".join([f"{label} ({raw})" for label, raw in pairs])
     if field.labels:
         return ", ".join([f"{label} ({raw})" for label, raw in zip(field.labels, field.choices)])
-    if field.choices:
-        return ", ".join(map(str, field.choices))
+    if choices := field.choices or number.choices:
+        return ", ".join(map(str, choices))
     kind = "a number" if number.real else "a whole number"
     unit = f" {number.units}" if number.unit else ""
     if number.takes_not_finite:

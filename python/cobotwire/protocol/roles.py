@@ -82,7 +82,7 @@ class ReachedQuery(NamedTuple):
     Attributes:
         command: the query.
         row: the argument that holds the target.
-        kind: the argument that holds the kind of target; empty if it takes only angles.
+        kind: the argument that holds the kind of target; empty if it takes only one kind.
         kinds: the raw value of each kind that it takes.
     """
 
@@ -100,11 +100,17 @@ class ReachedQuery(NamedTuple):
 def reached_query(table: Table) -> ReachedQuery | None:
     """Return the query in the role ``reached``; None if the edition has none."""
     command = table.find_role("reached")
-    if command is None:
-        return None
+    return None if command is None else as_reached_query(command)
+
+
+def as_reached_query(command: Command) -> ReachedQuery:
+    """Return a command in the role ``reached`` with its arguments."""
     variant = command.request[0]
     row = variant.fields[row_index(variant)].name
     for field in variant.fields:
+        if field.const is not None:
+            kinds = {label: raw for label, raw in KINDS.items() if raw == field.const}
+            return ReachedQuery(command, row, "", kinds)
         if not field.many and field.labels:
             raws = dict(zip(field.labels, field.choices))
             return ReachedQuery(command, row, field.name, {k: raws[k] for k in KINDS if k in raws})
@@ -115,6 +121,19 @@ def kinds_of(table: Table) -> dict[str, int]:
     """Return the number of each kind of target: the edition's own, or else KINDS."""
     query = reached_query(table)
     return KINDS | ({} if query is None else query.kinds)
+
+
+def gripper_request(table: Table, label: str, speed: int) -> Request[Any]:
+    """Return the request that opens (OPEN) or closes (CLOSE) the gripper.
+
+    Raises:
+        UsageError: no command of the edition does that.
+    """
+    command = table.in_role("gripper")
+    state = command.request[0].fields[0]
+    speed_name = command.request[0].fields[1].name
+    raw = state.choices[state.labels.index(label)]
+    return command.request_type(**{state.name: raw, speed_name: speed})
 
 
 def place_role(label: str) -> Role:

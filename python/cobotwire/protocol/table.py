@@ -25,6 +25,7 @@ from cobotwire.protocol.made_messages import (
 )
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.numbers import Number
+from cobotwire.protocol.robot import UNSTATED, Robot
 
 __all__ = [
     "Address",
@@ -32,14 +33,13 @@ __all__ = [
     "Check",
     "Command",
     "Crc",
-    "Dimensions",
     "Direction",
-    "Dynamics",
     "Field",
     "FieldKind",
     "FrameFormat",
     "Number",
     "ReadBack",
+    "Robot",
     "Role",
     "Safety",
     "Table",
@@ -65,6 +65,7 @@ Role = Literal[
     "paused",
     "error",
     "version",
+    "gripper",
     "motion ended",
 ]
 
@@ -177,7 +178,7 @@ class Command:
     @property
     def starts_motion(self) -> bool:
         """Whether it is a motion with arguments; one without ends, pauses or continues a motion."""
-        return self.safety == "motion" and any(variant.fields for variant in self.request)
+        return self.safety == "motion" and all(variant.fields for variant in self.request)
 
     @property
     def requires_reply(self) -> bool:
@@ -213,38 +214,11 @@ class Command:
 
 
 def _word(field: Field, value: int) -> str:
-    """Return a status as a person reads it: ``NO_POWER (3)``."""
+    """Return a status as a person reads it: ``NO_POWER (3)``, or ``3 (the arm has no power)``."""
     if value in field.choices and field.labels:
         return f"{field.labels[field.choices.index(value)]} ({value})"
-    return str(value)
-
-
-class Dimensions(NamedTuple):
-    """The geometry of an arm.
-
-    Attributes:
-        links: standard Denavit-Hartenberg parameters of each joint's link, from the base on: offset
-            and alpha in degrees, a and d in millimetres.
-        encoder_signs: for each joint, whether its encoder counts up (+1) or down (-1) while the
-            angle grows.
-    """
-
-    links: tuple[tuple[float, float, float, float], ...]
-    encoder_signs: tuple[int, ...]
-
-
-class Dynamics(NamedTuple):
-    """How an arm moves.
-
-    Attributes:
-        speed: degrees a second for each percent of speed.
-        fastest: the highest speed of a joint, in degrees a second.
-        acceleration: the highest acceleration, in degrees a square second.
-    """
-
-    speed: float
-    fastest: float
-    acceleration: float
+    meaning = field.meaning(value)
+    return f"{value} ({meaning})" if meaning else str(value)
 
 
 class Address(NamedTuple):
@@ -255,21 +229,24 @@ class Address(NamedTuple):
         value: the byte.
         doc: which device has it.
         replies: to a request, replies come from this address (``own``), from any address
-            (``any``: several devices receive it), or from none (``none``).
+            (``any``: several devices receive it; ``one``: one of them replies for all), or from
+            none (``none``).
+        joints: how many joints the device has; 0: as many as the edition.
     """
 
     name: str
     value: int
     doc: str = ""
-    replies: Literal["own", "any", "none"] = "own"
+    replies: Literal["own", "any", "one", "none"] = "own"
+    joints: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
     """One edition of the protocol.
 
-    ``geometry`` and ``motion`` are None if the edition does not state them. ``addresses`` describes
-    the addresses of ``frame``, in the same order; it is empty if they have no names.
+    ``robot`` is what the edition states apart from its messages. ``addresses`` describes the
+    addresses of ``frame``, in the same order; it is empty if they have no names.
     """
 
     edition: str
@@ -278,9 +255,8 @@ class Table:
     baudrate: int
     frame: FrameFormat
     commands: tuple[Command, ...]
-    geometry: Dimensions | None = None
+    robot: Robot = UNSTATED
     addresses: tuple[Address, ...] = ()
-    motion: Dynamics | None = None
 
     def command(self, name: str) -> Command:
         """Return the command called ``name``.

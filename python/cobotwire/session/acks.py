@@ -1,8 +1,9 @@
 """Acknowledgements: which of the one-way requests that were sent has been acknowledged.
 
-An acknowledgement carries only the command's id. Where several requests of one id were sent and
-some acknowledgements are lost, it is unknown which request each belongs to. So a request counts as
-acknowledged once more acknowledgements have come than the other requests can still have caused.
+An acknowledgement carries the command's id, perhaps a constant and arguments of the request. Where
+several requests with the same of these were sent and some acknowledgements are lost, it is unknown
+which request each belongs to. So a request counts as acknowledged once more acknowledgements have
+come than the other requests can still have caused.
 It may seem unacknowledged although it was, never the reverse, if each acknowledgement comes once
 and in time. An acknowledgement that was lost causes doubt only until it is too late to come.
 """
@@ -18,7 +19,7 @@ from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.addresses import ANYBODY
 from cobotwire.protocol.errors import LinkError, ProtocolError, RequestRefused
 from cobotwire.session.events import FrameEvent
-from cobotwire.session.matching import can_come_from, repliers_meet
+from cobotwire.session.matching import can_come_from, repeats_arguments, replies_differ
 from cobotwire.session.pending import Pending
 from cobotwire.session.policy import GRACE_SECONDS
 from cobotwire.session.request import EncodedRequest, as_call
@@ -84,6 +85,28 @@ class Acknowledged(NamedTuple):
     message: DecodedMessage
 
 
+class _Received:
+    """A frame that may be an acknowledgement, decoded once for each command."""
+
+    def __init__(self, frame: Frame, address: int | None) -> None:
+        self.frame = frame
+        self._address = address
+        self._messages: dict[str, DecodedMessage | None] = {}
+
+    def of(self, request: EncodedRequest) -> DecodedMessage | None:
+        """Return the frame as the acknowledgement of a request; None: it cannot be that."""
+        if not can_come_from(self._address, request):
+            return None
+        name = request.command.name
+        if name not in self._messages:
+            try:
+                self._messages[name] = self.frame.decode("reply", of=name)
+            except ProtocolError:
+                self._messages[name] = None
+        message = self._messages[name]
+        return message if message and repeats_arguments(message, request) else None
+
+
 class _CommandAcks:
     """The requests of one command id, oldest first.
 
@@ -115,12 +138,12 @@ class _CommandAcks:
         return sorted(
             other.until
             for other in self.expected
-            if other is not ack and repliers_meet(other.request, request)
+            if other is not ack and not replies_differ(other.request, request)
         )
 
-    def oldest_of(self, address: int | None) -> ExpectedAck | None:
-        """Return the oldest acknowledgement that this address can send; None: it can send none."""
-        return next((ack for ack in self.expected if can_come_from(address, ack.request)), None)
+    def oldest(self, received: _Received) -> ExpectedAck | None:
+        """Return the oldest acknowledgement that a frame can be; None: it can be none."""
+        return next((ack for ack in self.expected if received.of(ack.request)), None)
 
     def forget_expired(self, now: float) -> None:
         while self.expected and self.expected[0].until <= now:
@@ -164,7 +187,7 @@ class Acks:
             acks.began_at = now
         ack = ExpectedAck(request, now, now + max(within or 0.0, usual), offset)
         for earlier in acks.uncertain:
-            if repliers_meet(earlier.request, request):
+            if not replies_differ(earlier.request, request):
                 insort(earlier.doubts, ack.until)
         if within is None:
             acks.expected.append(ack)
@@ -179,10 +202,9 @@ class Acks:
     def note_copy(self, frame: Frame) -> None:
         """Note a copy of a request, which is a bare acknowledgement unless the line echoes."""
         acks = self._commands.get(frame.command)
-        if acks is not None and len(acks.expected) == 1:
-            [ack] = acks.expected
-            if ack.request.frame == frame.data:
-                acks.copied = ack
+        sent = [] if acks is None else [a for a in acks.expected if a.request.frame == frame.data]
+        if acks is not None and len(sent) == 1 and not acks.doubts_of(sent[0].request, sent[0]):
+            acks.copied = sent[0]
 
     def match(self, frame: Frame, now: float, began_at: float) -> Acknowledged | None:
         """Count a frame that is an acknowledgement; None: it is not one.
@@ -193,34 +215,31 @@ class Acks:
         if acks is None:
             return None
         acks.forget_expired(began_at)
-        address = self._format.address(frame.data)
-        oldest = acks.oldest_of(address)
-        if oldest is None or frame.offset < oldest.offset:
+        received = _Received(frame, self._format.address(frame.data))
+        oldest = acks.oldest(received)
+        message = None if oldest is None else received.of(oldest.request)
+        if oldest is None or message is None or frame.offset < oldest.offset:
             return None
-        try:
-            message = frame.decode("reply", of=oldest.request.command.name)
-        except ProtocolError:
-            return None
-        self._learn(acks, now)
+        self._learn(acks, received, now)
         # Those that learning has shortened are over.
-        settled = acks.oldest_of(address)
+        settled = acks.oldest(received)
         if settled is not None and settled.request.replier != ANYBODY:
             # Several devices may acknowledge a broadcast: it stays until its time is over.
             acks.expected.remove(settled)
         for ack in acks.uncertain:
-            if can_come_from(address, ack.request):
+            if received.of(ack.request):
                 ack.count(frame, began_at)
         self._end_certain(message)
         return Acknowledged(oldest.request, message)
 
-    def _learn(self, acks: _CommandAcks, now: float) -> None:
+    def _learn(self, acks: _CommandAcks, received: _Received, now: float) -> None:
         """Learn whether motions are acknowledged at once.
 
         They are if the acknowledgement of a single motion comes at once. They are too if the newest
         motion always seems to be the acknowledged one for longer than a motion may take: then an
         earlier acknowledgement was lost.
         """
-        newest = acks.expected[-1]
+        newest = next(ack for ack in reversed(acks.expected) if received.of(ack.request))
         if newest.request.command.safety != "motion" or now - newest.sent_at >= GRACE_SECONDS:
             return
         single = acks.began_at == newest.sent_at

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from cobotwire.session.alignment import Part
@@ -29,3 +30,12 @@ class Leftover(NamedTuple):
     def empty(self) -> bool:
         """Whether the line is aligned and silent."""
         return not self.late and not self.parts
+
+
+def merged(leftovers: Iterable[Leftover]) -> Leftover:
+    """Return what several sessions left on the same port."""
+    found = list(leftovers)
+    return Leftover(
+        tuple(late for each in found for late in each.late),
+        tuple(part for each in found for part in each.parts),
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cobotwire.codec.interface import DecodedMessage, Frame
-from cobotwire.protocol.addresses import ANYBODY
+from cobotwire.protocol.addresses import ANYBODY, SOMEBODY
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command, Table, Variant
 from cobotwire.session.request import EncodedRequest
@@ -11,12 +11,13 @@ from cobotwire.session.request import EncodedRequest
 
 def can_come_from(address: int | None, request: EncodedRequest) -> bool:
     """Return whether a reply of this address can belong to the request."""
-    return request.replier == address or request.replier == ANYBODY
+    return request.replier in (address, ANYBODY, SOMEBODY)
 
 
 def repliers_meet(one: EncodedRequest, other: EncodedRequest) -> bool:
     """Return whether a reply of one address can belong to both requests."""
-    return one.replier == other.replier or ANYBODY in (one.replier, other.replier)
+    repliers = (one.replier, other.replier)
+    return one.replier == other.replier or ANYBODY in repliers or SOMEBODY in repliers
 
 
 def repeats_arguments(message: DecodedMessage, request: EncodedRequest) -> bool:

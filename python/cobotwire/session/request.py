@@ -6,7 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec, Frame
-from cobotwire.protocol.addresses import NOBODY, address_name, find_address, replier_of
+from cobotwire.protocol.addresses import (
+    NOBODY,
+    address_name,
+    find_address,
+    lacks_joints,
+    replier_of,
+)
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.rejection import reject_radians
@@ -19,7 +25,8 @@ class EncodedRequest(NamedTuple):
 
     ``arguments`` are those that a reply can repeat, with the values that it would repeat; empty
     where no reply repeats any. ``text`` follows some requests outside the frame. ``replier`` is
-    the address that its reply must have, ANYBODY or NOBODY; None if frames have no address.
+    the address that its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY,
+    NOBODY); None if frames have no address.
     Without ``reply_has_id`` its reply is known only by address and size.
     """
 
@@ -109,6 +116,10 @@ class RequestEncoder:
             command = self._codec.table.command(name)
             if self._replier == NOBODY and command.requires_reply:
                 raise _unanswered(name, self._to)
+            why = lacks_joints(self._codec.table, self._to, command)
+            if why and self._to is not None:
+                message = f"{name}() {why}"
+                raise UsageError("address", self._to.name, message=message)
             found = self._commands[name] = command, _can_repeat(command)
         return found
 

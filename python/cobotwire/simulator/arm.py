@@ -8,11 +8,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import DecodedMessage
 from cobotwire.protocol.addresses import devices_of, find_address
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.messages import Reply
-from cobotwire.protocol.roles import row_index
+from cobotwire.protocol.messages import Event, Reply
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
@@ -20,16 +18,17 @@ from cobotwire.simulator.behaviour import Behaviour, Sized, own
 from cobotwire.simulator.behaviour.by_role import perform_role
 from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.behaviour.registry import Unanswerable
+from cobotwire.simulator.devices import missing_joints, new_state, replies_to
+from cobotwire.simulator.events import Events
 from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.motion.hand import checked
-from cobotwire.simulator.motion_ends import MotionEnds
 from cobotwire.simulator.peer import IDLE_SECONDS
 from cobotwire.simulator.replies import clamped, completed
-from cobotwire.simulator.state import LIKE_280, ArmState
+from cobotwire.simulator.state import ArmState
 
-# A joint's own limits lie within half a turn; wider ones are only what the wire can express.
-HALF_TURN = 180.0
 NOTES_KEPT = 1000
+# This number of a joint stands for all joints.
+EVERY_JOINT = 254
 
 Clock = Callable[[], float]
 EventListener = Callable[[DeviceEvent, bytes], None]
@@ -72,7 +71,7 @@ class SimulatedArm:
         on_note: Callable[[Note], None] | None = None,
         behaviours: Mapping[str, Behaviour] | None = None,
     ) -> None:
-        """Create an arm with every joint at zero.
+        """Create an arm as its edition states it at the start; else with every joint at zero.
 
         Args:
             table: the edition that the arm speaks.
@@ -82,8 +81,8 @@ class SimulatedArm:
             acks: whether the arm sends the acknowledgements that the edition allows.
             powered: whether the arm has power from the start; after a restart it has none.
             geometry: the lengths of the links; None: those that the edition states. If
-                it states none, the arm does not reply to queries of coordinates, rejects motions to
-                coordinates, and its joints do not snap to encoder ticks.
+                it states none, the arm does not reply to queries of coordinates, and rejects
+                motions to coordinates.
             on_note: called with each new note; ``notes`` keeps the last 1000.
             behaviours: what the arm does for its commands, instead of the behaviour that comes with
                 cobotwire; None: those that installed packages provide for the edition (entry
@@ -100,12 +99,12 @@ class SimulatedArm:
         devices: list[int | None] = [device.value for device in devices_of(table)]
         # The state of each device by its address; None where frames have no address.
         self._states: dict[int | None, ArmState] = {
-            address: self._new_state() for address in devices or [None]
+            address: self.new_state(address) for address in devices or [None]
         }
         if powered:
             for state in self._states.values():
                 state.power_on()
-        self.ends = MotionEnds(table, self.codec, clock, self._states)
+        self.events = Events(table, self.codec, clock, self._states)
         self._behaviours = installed(table.edition) if behaviours is None else behaviours
         self._own_connection = ArmConnection(self, on_event)
 
@@ -170,12 +169,25 @@ class SimulatedArm:
         """
         now = self.clock()
         for address, before in self._states.items():
-            self._states[address] = state = self._new_state()
+            self._states[address] = state = self.new_state(address)
             state.angles.place(before.standing(now), now)
             state.gripper.place(before.gripper.position(now), now)
             state.starts = before.starts + 1
             state.hand = before.hand
+        self.events.forget()
         self._own_connection.reset()
+
+    def emit(self, event: Event, address: int | str | None = None, *, after: float = 0.0) -> None:
+        """Send an event to every client, now or ``after`` seconds; any thread may call this.
+
+        ``address`` is that of the device; None: the first.
+
+        Raises:
+            UsageError: the edition has no such event or address, or does not allow its values.
+        """
+        state = self.state if address is None else self.state_at(address)
+        sender = next(key for key, each in self._states.items() if each is state)
+        self.events.emit(event, sender, self.clock() + after)
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -200,6 +212,10 @@ class SimulatedArm:
         """Give up an incomplete request on the arm's own connection; return the replies."""
         return self._own_connection.flush()
 
+    def take_events(self) -> bytes:
+        """Return the events that are due on the arm's own connection."""
+        return self._own_connection.take_events()
+
     def forget_client(self) -> None:
         """Forget an incomplete request on the arm's own connection; its client has left."""
         self._own_connection.forget_client()
@@ -215,17 +231,32 @@ class SimulatedArm:
         state, now = self._states[address], self.clock()
         state.record(now)
         behaviour = self._behaviours.get(command.name) or own(command)
+        elsewhere = self._is_elsewhere(fields)
+        if elsewhere:
+            # The state has no place for it: what is set is only remembered.
+            behaviour, state.at_once = None, command.starts_motion
         try:
             if behaviour is not None:
                 request = behaviour.request_type.from_fields(fields)
                 return behaviour.behave(state, now, request)
             state.remembered.store(self.table, command, fields)
+            if elsewhere:
+                return None
             return self._perform_role(command, state, now, fields)
         finally:
-            self.ends.watch(command, address)
+            self.events.watch(command, address)
+            for event, at in state.emitted:
+                self.events.emit(event, address, at)
+            state.emitted.clear()
             for text in state.remarks:
                 self.note(command, text)
             state.remarks.clear()
+
+    def _is_elsewhere(self, fields: Mapping[str, Any]) -> bool:
+        """Return whether a request is for a joint that is not in the arm, as those of a waist."""
+        joint = fields.get("joint")
+        # The servo after the last joint is the gripper's.
+        return isinstance(joint, int) and self.table.joints + 1 < joint < EVERY_JOINT
 
     def _perform_role(
         self, command: Command, state: ArmState, now: float, fields: Mapping[str, Any]
@@ -254,11 +285,9 @@ class SimulatedArm:
         if self._on_note is not None:
             self._on_note(note)
 
-    def _new_state(self) -> ArmState:
-        state = ArmState(self.table.joints, self._geometry, motion=self.table.motion or LIKE_280)
-        for joint, (lowest, highest) in enumerate(_joint_limits(self.table)):
-            state.minimum[joint], state.maximum[joint] = lowest, highest
-        return state
+    def new_state(self, address: int | None = None) -> ArmState:
+        """Return the state after the start of the device that has an address, or of the arm."""
+        return new_state(self.table, self._geometry, address)
 
 
 class ArmConnection:
@@ -267,6 +296,7 @@ class ArmConnection:
     def __init__(self, arm: SimulatedArm, on_event: EventListener | None) -> None:
         self._arm = arm
         self._on_event = on_event
+        self._received = 0
         self.reset()
 
     @property
@@ -277,21 +307,29 @@ class ArmConnection:
     @property
     def wait(self) -> float | None:
         """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
-        return self._arm.ends.wait or (IDLE_SECONDS if self.pending else None)
+        wait = self._arm.events.wait(self._received)
+        return IDLE_SECONDS if wait is None and self.pending else wait
 
     def receive(self, data: bytes) -> bytes:
         """Receive ``data``; return the replies, after the events that are due."""
-        due = self._arm.ends.due()
+        due = self.take_events()
         self._idle_at = self._arm.clock() + IDLE_SECONDS
         return due + self._handle_all(self._session.receive(data))
 
     def flush(self) -> bytes:
         """Give up an incomplete request if nothing more has come; return replies and events."""
-        early = self._arm.ends.wait is not None and self._arm.clock() < self._idle_at
-        due = self._arm.ends.due()
+        waits = self._arm.events.wait(self._received) is not None
+        early = waits and self._arm.clock() < self._idle_at
+        due = self.take_events()
         if early:
             return due
         return due + self._handle_all(self._session.flush())
+
+    def take_events(self) -> bytes:
+        """Return the events that are due for this client."""
+        due = self._arm.events.since(self._received)
+        self._received = self._arm.events.count
+        return due
 
     def restart(self) -> None:
         """Restart the arm, and forget an incomplete request of this client."""
@@ -303,8 +341,9 @@ class ArmConnection:
         self.reset()
 
     def reset(self) -> None:
-        """Forget an incomplete request."""
+        """Forget an incomplete request, and events that this client has not received."""
         self._session = DeviceSession(self._arm.codec)
+        self._received = self._arm.events.count
         self._idle_at = 0.0
 
     def _handle_all(self, events: list[DeviceEvent]) -> bytes:
@@ -318,31 +357,30 @@ class ArmConnection:
 
     def _handle(self, event: DeviceEvent) -> bytes:
         if isinstance(event, RequestReceived):
-            replies = [self._reply_of(event, each) for each in self._receivers(event.message)]
-            return b"".join(replies) if self._is_answered(event.message) else b""
+            message = event.message
+            receivers = self._arm.receivers(message.address)
+            replies = [self._reply_of(event, each) for each in receivers]
+            return b"".join(replies_to(self._arm.table, message.address, replies))
         if isinstance(event, TextReceived):
             for address in self._arm.receivers(event.address):
                 self._arm.perform(event.command, event.fields, address)
         # The document has no error reply: noise and malformed requests get none.
         return b""
 
-    def _receivers(self, message: DecodedMessage) -> tuple[int | None, ...]:
-        return self._arm.receivers(message.address)
-
-    def _is_answered(self, message: DecodedMessage) -> bool:
-        """Return whether the address of a request has replies."""
-        address = find_address(self._arm.table, message.address)
-        return address is None or address.replies != "none"
-
     def _reply_of(self, received: RequestReceived, address: int | None) -> bytes:
         """Perform a request on the device that has an address; return its reply."""
         command, given = received.message.command, received.message.fields
+        missing = missing_joints(self._arm.table, command, given, address)
+        if missing:
+            self._arm.note(command, f"ignored: {missing}")
+            return b""
         # A command with a text after its frame is performed once the text is complete.
         performed = command.request_text is None
         try:
             reply = self._arm.perform(command, given, address) if performed else None
-        except Unanswerable:
-            self._arm.note(command, "no reply: the geometry of this arm is not known")
+        except Unanswerable as error:
+            why = str(error) or self._arm.table.robot.why_no_geometry
+            self._arm.note(command, f"no reply: {why}")
             return b""
         if not command.requires_reply and not (command.ack and self._arm.acks):
             return b""
@@ -357,14 +395,3 @@ class ArmConnection:
             self._arm.note(command, "replied with the nearest value that the wire can express")
             nearest = clamped(command, result, fields)
             return self._session.encode_reply(command.name, nearest, address)
-
-
-def _joint_limits(table: Table) -> list[tuple[float, float]]:
-    """Return the edition's limits of each joint; empty if it states only the wire's."""
-    for command in table.commands:
-        if command.role == "joint targets":
-            variant = command.request[0]
-            numbers = variant.fields[row_index(variant)].cases[0].numbers
-            limits = [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
-            return limits if all(high <= HALF_TURN for _, high in limits) else []
-    return []

@@ -26,13 +26,29 @@ class MotionEnds:
         """Report motions of ``states``, which are the devices by their addresses."""
         self._event = table.find_role("motion ended")
         self._codec, self._clock, self._states = codec, clock, states
+        self._gives_reasons = self._event is not None and self._event.accepted == (0,)
         self._watched: set[int | None] = set()
+        # How motions ended that did not reach their target, by the address of the device.
+        self._failed: dict[int | None, int] = {}
 
     def watch(self, command: Command, address: int | None) -> None:
         """Note that a device has performed a command: if it moves now, the end is reported."""
-        moves = self._states[address].angles.moving(self._clock())
-        if self._event is not None and command.starts_motion and moves:
+        state = self._states[address]
+        rejection, state.rejection = state.rejection, None
+        at_once, state.at_once = state.at_once, False
+        if self._event is None:
+            return
+        codes = state.error_codes
+        if command.role == "stop" and address in self._watched:
+            self._failed[address] = codes.stopped
+        elif at_once or (command.starts_motion and state.angles.moving(self._clock())):
             self._watched.add(address)
+        elif command.starts_motion and rejection is not None:
+            self._failed[address] = rejection or (
+                codes.no_solution if state.held else codes.no_power
+            )
+            if self._gives_reasons:
+                self._watched.add(address)
 
     @property
     def wait(self) -> float | None:
@@ -48,6 +64,9 @@ class MotionEnds:
             if not self._states[address].angles.moving(now):
                 self._watched.discard(address)
                 fields = completed(self._event, {}, {}, usual=1)
+                status = self._failed.pop(address, None)
+                if status is not None and self._gives_reasons:
+                    fields[self._event.reply[0].fields[-1].name] = status
                 values = list(fields.values())
                 sent += self._codec.encode(self._event.name, "reply", values, address=address)
         return sent

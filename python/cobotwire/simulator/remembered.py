@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from cobotwire.protocol.fields import named_fields
 from cobotwire.protocol.table import Command, Table
 
 Arguments = frozenset[tuple[str, Any]]
@@ -33,10 +34,14 @@ class Remembered:
             for name, source in pairs
             if not isinstance(source, str) or source in fields
         }
-        asked = {each.name for variant in query.request for each in variant.fields}
+        asked = set(named_fields(query.request))
         key = (query.name, _hashable({n: v for n, v in fields.items() if n in asked}))
         # Newest last, so that it is found last.
         self.values[key] = {**self.values.pop(key, {}), **stated}
+
+    def begin(self, query: str, field: str, value: Any) -> None:
+        """Let a query report a value until something else is set."""
+        self.values.setdefault((query, frozenset()), {})[field] = value
 
     def recall(self, query: Command, fields: Mapping[str, Any]) -> dict[str, Any]:
         """Return the remembered fields of a query's reply; of two values the newer one."""
@@ -49,9 +54,10 @@ class Remembered:
 
 
 def _reported(query: Command) -> list[str]:
-    """Return the names of the fields of a query's reply that do not repeat its request."""
-    names = [each.name for variant in query.reply for each in variant.fields if not each.echo]
-    return list(dict.fromkeys([*names, *(query.text.fields if query.text is not None else ())]))
+    """Return the fields of a query's reply that are neither constants nor repeat its request."""
+    fields = named_fields(query.reply)
+    names = [name for name, found in fields.items() if not any(each.echo for each in found)]
+    return [*names, *(query.text.fields if query.text is not None else ())]
 
 
 def _physical(query: Command, name: str, raw: int) -> Any:

@@ -41,7 +41,7 @@ def completed(
 def clamped(
     command: Command, result: Mapping[str, Any], fields: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return the fields of a reply, with each number inside the range that the edition allows."""
+    """Return the fields of a reply; each number becomes the nearest one that the edition allows."""
     kept = dict(fields)
     for field in _variant(command, result).fields:
         if field.counts or field.each or field.kind in ("bytes", "text"):
@@ -54,7 +54,8 @@ def clamped(
 
 
 def _inside(number: Number, value: Any) -> Any:
-    return min(max(value, number.physical(number.minimum)), number.physical(number.maximum))
+    inside = min(max(value, number.physical(number.minimum)), number.physical(number.maximum))
+    return inside if number.real else round(inside)
 
 
 def _variant(command: Command, result: Mapping[str, Any]) -> Variant:

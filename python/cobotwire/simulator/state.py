@@ -2,46 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from cobotwire.protocol.table import Dynamics
-from cobotwire.simulator.kinematics import DEGREES_PER_TICK, Geometry, Pose, flange
-from cobotwire.simulator.kinematics.ticks import (
-    ZERO_TICK,
-    angle_at,
-    encoder_at,
-    inside,
-    on_tick,
-    reported_angles,
-    reported_coords,
+from cobotwire.protocol.messages import Event
+from cobotwire.protocol.robot import (
+    UNSTATED,
+    Dynamics,
+    Encoders,
+    ErrorCodes,
+    Gripper,
+    Robot,
+    Servos,
 )
+from cobotwire.simulator.coordinates import ALL_SIX, pose_with
+from cobotwire.simulator.kinematics import Geometry, Pose, flange
+from cobotwire.simulator.kinematics.ticks import Steps, reported_angles, reported_coords
 from cobotwire.simulator.motion import Axes
 from cobotwire.simulator.motion.hand import TimedPoint
 from cobotwire.simulator.remembered import Remembered
 
-# How an arm moves if its edition does not state it: like the 280.
-LIKE_280 = Dynamics(1.5, 150.0, 200.0)
-# No source defines how a gripper moves: here it opens in two thirds of a second, at full speed from
-# the beginning.
-OPENING_PER_SECOND = 1.5
+NO_STEPS = Steps()
+# What this simulator assumes of a robot if the edition does not state it.
+UNSTATED_MOTION = Dynamics(1.0, 100.0, 200.0)
+UNSTATED_GRIPPER = Gripper(1.0, 0, 100)
+NEAR_DEGREES, NEAR_MILLIMETRES = 0.1, 5.0
+HALF_TURN = 180.0
+# A gripper is at full speed from the beginning, in percent a square second.
 OPENING_ACCELERATION = 10_000.0
-HIGHEST_ENCODER = 4096
 # No source says how often a point is recorded; their number is a word.
 RECORD_EVERY_SECONDS = 0.1
 MOST_POINTS = 32767
 
-# The document's chart of servo registers with their initial values (lines 1280-1291).
-SERVO_REGISTERS = {20: 0, 21: 10, 22: 0, 23: 1, 24: 0}
-
 
 @dataclass
 class ArmState:
-    """Every setting of the arm, and its axes. Angles are in degrees."""
+    """Every setting of the arm, and its axes. Angles are in degrees.
+
+    ``robot`` is what the edition states about the robot, ``geometry`` its links or others.
+    """
 
     joints: int
     geometry: Geometry | None = None
-    motion: Dynamics = LIKE_280
+    robot: Robot = UNSTATED
+    # Where the coordinates of the edition stand among x, y, z, rx, ry and rz.
+    coordinates: tuple[int, ...] = ALL_SIX
+    steps: Steps = NO_STEPS
     powered: bool = False
     connected: bool = True
     free: bool = False
@@ -54,9 +61,9 @@ class ArmState:
     colour: tuple[int, int, int] = (0, 0, 0)
     reference_frame: int = 0
     end_type: int = 0
-    port: int = 9000
-    ssid: str = "MyCobotWiFi2.4G"
-    password: str = "mycobot123"  # noqa: S105  (the document's own example)
+    port: int = 0
+    ssid: str = ""
+    password: str = ""
     tool: tuple[float, ...] = (0.0,) * 6
     world: tuple[float, ...] = (0.0,) * 6
     remembered: Remembered = field(default_factory=Remembered)
@@ -67,8 +74,8 @@ class ArmState:
     basic_pins: dict[int, bool] = field(default_factory=dict)
     # By pin: the frequency in hertz and the duty cycle in 256ths.
     pulses: dict[int, tuple[int, int]] = field(default_factory=dict)
-    gripper_torque: int = 300
-    gripper_current: int = 100
+    gripper_torque: int = 0
+    gripper_current: int = 0
     # The last error; 0: none.
     error: int = 0
     recording: bool = False
@@ -86,6 +93,12 @@ class ArmState:
     gripper: Axes = field(default_factory=lambda: Axes((0.0,), OPENING_ACCELERATION))
     # Why the present request had no effect or waits; the arm turns these remarks into notes.
     remarks: list[str] = field(default_factory=list)
+    # Why the present request was rejected, as an error; 0: for another reason; None: it was not.
+    rejection: int | None = None
+    # Whether the present request started a motion, even if it takes no time.
+    at_once: bool = False
+    # The events of the present request, each with its time.
+    emitted: list[tuple[Event, float]] = field(default_factory=list)
     angles: Axes = field(init=False)
     enabled: list[bool] = field(init=False)
     minimum: list[float] = field(init=False)
@@ -93,12 +106,48 @@ class ArmState:
     registers: list[dict[int, int]] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.angles = Axes((0.0,) * self.joints, self.motion.acceleration)
+        start = self.robot.start_angles or (0.0,) * self.joints
+        self.angles = Axes(start, self.motion.acceleration)
         self.enabled = [False] * self.joints
-        self.minimum = [-165.0] * self.joints
-        self.maximum = [165.0] * self.joints
+        self.minimum = [-HALF_TURN] * self.joints
+        self.maximum = [HALF_TURN] * self.joints
         # One servo more than joints: newer firmware counts the gripper's servo as the last.
-        self.registers = [dict(SERVO_REGISTERS) for _ in range(self.joints + 1)]
+        self.registers = [dict(self.servos.registers) for _ in range(self.joints + 1)]
+
+    @property
+    def motion(self) -> Dynamics:
+        """How the arm moves."""
+        return self.robot.motion or UNSTATED_MOTION
+
+    @property
+    def encoders(self) -> Encoders | None:
+        """How the encoders count; None if the edition does not state it."""
+        return self.robot.encoders
+
+    @property
+    def servos(self) -> Servos:
+        """What the servos report."""
+        return self.robot.servos or Servos()
+
+    @property
+    def gripper_facts(self) -> Gripper:
+        """How fast the gripper moves, and what its encoder reads."""
+        return self.robot.gripper or UNSTATED_GRIPPER
+
+    @property
+    def error_codes(self) -> ErrorCodes:
+        """The numbers of rejected motions; 0 if the edition does not state them."""
+        return self.robot.error_codes or ErrorCodes((0,) * self.joints, 0, 0)
+
+    @property
+    def near(self) -> tuple[float, float]:
+        """How near to a target counts as there, in degrees and in millimetres."""
+        motion = self.motion
+        return motion.near_degrees or NEAR_DEGREES, motion.near_millimetres or NEAR_MILLIMETRES
+
+    def emit(self, event: Event, at: float) -> None:
+        """Let the arm send an event at a time: that of the present request, or a later one."""
+        self.emitted.append((event, at))
 
     def standing(self, now: float) -> tuple[float, ...]:
         """Return where the joints are, on the ticks of their encoders."""
@@ -106,11 +155,20 @@ class ArmState:
 
     def on_ticks(self, angles: tuple[float, ...]) -> tuple[float, ...]:
         """Return where joints would stop if they were sent to angles: on the nearest ticks."""
-        return tuple(map(on_tick, angles)) if self.geometry else angles
+        return tuple(map(self.on_tick, angles))
+
+    def on_tick(self, degrees: float) -> float:
+        """Return the angle of the nearest tick."""
+        return self.encoders.on_tick(degrees) if self.encoders else degrees
+
+    @property
+    def tick_degrees(self) -> float:
+        """The degrees of a tick; 0 if the joints rest anywhere."""
+        return self.encoders.degrees if self.encoders else 0.0
 
     def reported_angles(self, angles: tuple[float, ...]) -> tuple[float, ...]:
         """Return angles as the arm reports them."""
-        return reported_angles(angles) if self.geometry else angles
+        return reported_angles(self.encoders, angles, self.steps) if self.encoders else angles
 
     def limits(self) -> list[tuple[float, float]]:
         """Return the lowest and the highest angle on a tick that each joint may have.
@@ -118,7 +176,9 @@ class ArmState:
         If the first is above the second, no angle is allowed.
         """
         pairs = list(zip(self.minimum, self.maximum))
-        return [inside(low, high) for low, high in pairs] if self.geometry else pairs
+        if self.encoders is None:
+            return pairs
+        return [self.encoders.inside(joint, *pair) for joint, pair in enumerate(pairs)]
 
     @property
     def held(self) -> bool:
@@ -165,22 +225,24 @@ class ArmState:
 
     def servo_speeds(self, now: float) -> tuple[int, ...]:
         """Return how fast each servo turns, in encoder steps per second and direction."""
-        speeds = enumerate(self.angles.speed(now))
-        return tuple(round(self._sign(joint) * v / DEGREES_PER_TICK) for joint, v in speeds)
+        if self.encoders is None:
+            return (0,) * self.joints
+        encoders, speeds = self.encoders, enumerate(self.angles.speed(now))
+        return tuple(round(encoders.sign(joint) * v / encoders.degrees) for joint, v in speeds)
 
     def encoder(self, joint: int, now: float) -> int:
         """Return the encoder of a joint, counted from 0; after the last joint, the gripper's."""
         if joint >= self.joints:
-            return ZERO_TICK + round(self.gripper.position(now)[0])
-        reading = encoder_at(self.angles.position(now)[joint], self._sign(joint))
-        return min(max(reading, 0), HIGHEST_ENCODER)
+            gripper, opening = self.gripper_facts, self.gripper.position(now)[0]
+            return gripper.closed + round(opening * (gripper.open - gripper.closed) / 100)
+        return (
+            self.encoders.reading(joint, self.angles.position(now)[joint]) if self.encoders else 0
+        )
 
-    def angle_at(self, joint: int, encoder: int) -> float:
-        """Return the angle of a joint, counted from 0, for a reading of its encoder."""
-        return angle_at(encoder, self._sign(joint))
-
-    def _sign(self, joint: int) -> int:
-        return self.geometry.encoder_signs[joint] if self.geometry else 1
+    def opening_at(self, encoder: int) -> float:
+        """Return how far the gripper is open, in percent, for a reading of its encoder."""
+        gripper = self.gripper_facts
+        return 100 * (encoder - gripper.closed) / (gripper.open - gripper.closed)
 
     def reported_coords(
         self, angles: tuple[float, ...], *, base: bool = False
@@ -191,7 +253,14 @@ class ArmState:
         reference frame is set.
         """
         pose = self.end(angles, base=base)
-        return None if pose is None else reported_coords(pose.coords)
+        if pose is None:
+            return None
+        coords = reported_coords(pose.coords, self.steps)
+        return tuple(coords[place] for place in self.coordinates)
+
+    def pose_of(self, values: Sequence[float], angles: tuple[float, ...]) -> Pose:
+        """Return the end's pose with coordinates of the edition; the rest is as at ``angles``."""
+        return pose_with(values, self.coordinates, self.end(angles))
 
     def end(self, angles: tuple[float, ...], *, base: bool = False) -> Pose | None:
         """Return the pose of the flange or the tool, in the frame of the base or the world."""

@@ -8,18 +8,12 @@ error.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from cobotwire.simulator.kinematics import Pose, nearest
 from cobotwire.simulator.kinematics.straight import straight_line
-from cobotwire.simulator.kinematics.ticks import on_tick
-from cobotwire.simulator.state import (
-    OPENING_PER_SECOND,
-    ArmState,
-)
+from cobotwire.simulator.state import ArmState
 
-# Errors of get_error_information; 1 to 6 are joints beyond their limits.
-NO_SOLUTION, NO_STRAIGHT_LINE = 32, 33
 # A straight line is solved at points that are at most this far apart.
 STEP_MILLIMETRES, STEP_DEGREES = 5.0, 2.0
 # A joint that would turn more than this between two such points cannot follow, in degrees.
@@ -39,6 +33,7 @@ def reject(arm: ArmState, why: str, error: int = 0) -> bool:
     """Note why a command is rejected or ignored; return False."""
     arm.remarks.append(why)
     arm.error = error or arm.error
+    arm.rejection = error
     return False
 
 
@@ -77,10 +72,12 @@ def go_to_angles(
         if wish != present[joint]:
             if low > high or not arm.minimum[joint] <= wish <= arm.maximum[joint]:
                 why = f"rejected: {wish:.2f} degrees is beyond the limits of joint {joint + 1}"
-                return reject(arm, why, joint + 1)
-            wish = min(max(on_tick(wish) if arm.geometry else wish, low), high)
+                return reject(arm, why, arm.error_codes.joint_limits[joint])
+            wish = min(max(arm.on_tick(wish), low), high)
         goal.append(wish)
     arm.angles.go(goal, rate(arm, speed), now, queue=_queues(arm) if queue is None else queue)
+    # Also if it is there already: then the motion takes no time.
+    arm.at_once = True
     _note_a_pause(arm)
     return True
 
@@ -92,27 +89,43 @@ def go_to_angle(arm: ArmState, joint: int, angle: float, speed: int, now: float)
     return go_to_angles(arm, tuple(target), speed, now)
 
 
-def move_gripper(arm: ArmState, value: int, speed: int, now: float) -> None:
+def go_to_encoders(arm: ArmState, readings: Mapping[int, int], speed: int, now: float) -> bool:
+    """Move joints, counted from 0, to readings of their encoders; return whether the arm obeys."""
+    if arm.encoders is None:
+        return reject(arm, "rejected: the encoders of this arm are not known")
+    target = list(arm.angles.target(now))
+    for joint, reading in readings.items():
+        target[joint] = arm.encoders.angle(joint, reading)
+    return go_to_angles(arm, tuple(target), speed, now)
+
+
+def move_gripper(arm: ArmState, value: float, speed: int, now: float) -> None:
     """Move the gripper to an opening in percent. Like the joints, it needs power to move."""
     if arm.powered and speed > 0:
-        arm.gripper.go((float(value),), OPENING_PER_SECOND * speed, now)
+        arm.gripper.go((float(value),), arm.gripper_facts.speed * speed, now)
     else:
         arm.remarks.append("ignored: the gripper has no power, or its speed is 0")
 
 
 def go_to_coords(
-    arm: ArmState, target: Iterable[float], speed: int, now: float, *, straight: bool = False
+    arm: ArmState,
+    target: Pose | Iterable[float],
+    speed: int,
+    now: float,
+    *,
+    straight: bool = False,
 ) -> bool:
     """Move the end to coordinates, by the joints' shortest way or on a straight line.
 
+    ``target`` is the end's pose, or the coordinates that the edition has.
     Return whether the arm obeys.
     """
     if not may_move(arm, speed):
         return False
     if arm.geometry is None:
-        return reject(arm, "rejected: the geometry of this arm is not known")
-    end = Pose.of(tuple(target))
+        return reject(arm, f"rejected: {arm.robot.why_no_geometry}")
     start = arm.angles.target(now) if _queues(arm) else arm.angles.stop_at(now)
+    end = target if isinstance(target, Pose) else arm.pose_of(tuple(target), start)
     goal = solve(arm, end, start)
     if goal is None:
         return False
@@ -123,7 +136,11 @@ def go_to_coords(
         [] if here is None else _follow(arm, straight_line(here, end, _steps(here, end)), start)
     )
     if not points:
-        return reject(arm, "rejected: the joints cannot follow a straight line", NO_STRAIGHT_LINE)
+        return reject(
+            arm,
+            "rejected: the joints cannot follow a straight line",
+            arm.error_codes.no_straight_line,
+        )
     _go_along(arm, points, speed, now, queue=_queues(arm))
     return True
 
@@ -148,10 +165,12 @@ def jog(
     start = arm.angles.stop_at(now)
     here = arm.end(start)
     if here is None:
-        return reject(arm, "rejected: the geometry of this arm is not known")
+        return reject(arm, f"rejected: {arm.robot.why_no_geometry}")
     points = _follow(arm, (way(here, step * n) for n in range(1, JOG_STEPS)), start, whole=False)
     if not points:
-        return reject(arm, "rejected: the end cannot move in this direction", NO_SOLUTION)
+        return reject(
+            arm, "rejected: the end cannot move in this direction", arm.error_codes.no_solution
+        )
     _go_along(arm, points, speed, now, queue=False)
     return True
 
@@ -163,11 +182,11 @@ def solve(arm: ArmState, end: Pose, start: Point) -> Point | None:
         found = nearest(arm.geometry, arm.flange_for(end), start, arm.limits())
     except ImportError:
         what = "rejected: no exact solution, and the search for a near one needs SciPy"
-        reject(arm, f"{what}: pip install 'cobotwire[sim]'", NO_SOLUTION)
+        reject(arm, f"{what}: pip install 'cobotwire[sim]'", arm.error_codes.no_solution)
         return None
     if found is None:
         coords = ", ".join(f"{value:.2f}" for value in end.coords)
-        reject(arm, f"rejected: no joint angles reach ({coords})", NO_SOLUTION)
+        reject(arm, f"rejected: no joint angles reach ({coords})", arm.error_codes.no_solution)
     return found
 
 
@@ -191,7 +210,8 @@ def _follow(
 def _go_along(arm: ArmState, points: list[Point], speed: int, now: float, *, queue: bool) -> None:
     """Follow points; the last one is on ticks, where servos stop."""
     goal = tuple(
-        min(max(on_tick(angle), low), high) for angle, (low, high) in zip(points[-1], arm.limits())
+        min(max(arm.on_tick(angle), low), high)
+        for angle, (low, high) in zip(points[-1], arm.limits())
     )
     arm.angles.follow([*points[:-1], goal], rate(arm, speed), now, queue=queue)
     _note_a_pause(arm)

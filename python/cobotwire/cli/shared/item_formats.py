@@ -50,7 +50,8 @@ def one_line(reader: FrameReader, paint: Paint | None) -> Format:
 def _reading(reading: Reading) -> str:
     if reading.message is None:
         return f"as a {reading.direction}: {reading.error}"
-    return f"{reading.direction}: {format_message(reading.message)}"
+    word = "event" if reading.message.command.event else reading.direction
+    return f"{word}: {format_message(reading.message)}"
 
 
 def _first_bytes(item: Item) -> str:

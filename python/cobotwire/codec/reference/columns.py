@@ -8,24 +8,13 @@ from contextlib import contextmanager
 from threading import RLock
 from typing import Any
 
-from cobotwire.codec.columns import Columns, Rows, Scan
+from cobotwire.codec.columns import Columns, Rows, Scan, cell_type
 from cobotwire.codec.events import DecodedMessage, Event, Frame, Noise
 from cobotwire.codec.interface import Data
 from cobotwire.codec.reference.framer import ReferenceFramer
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.rejection import reject_shared
 from cobotwire.protocol.table import Direction, Field, Table, Variant
-
-# The integer types of raw columns with their bounds: smaller before larger, unsigned before signed.
-INTEGERS = (
-    ("B", 0, 2**8 - 1),
-    ("b", -(2**7), 2**7 - 1),
-    ("H", 0, 2**16 - 1),
-    ("h", -(2**15), 2**15 - 1),
-    ("I", 0, 2**32 - 1),
-    ("i", -(2**31), 2**31 - 1),
-    ("q", -(2**63), 2**63 - 1),
-)
 
 
 class ReferenceColumnReader:
@@ -100,6 +89,7 @@ class ReferenceColumnReader:
             rejected,
             self._noise.completed(at_end),
             self._framer.counters,
+            self._raw,
         )
 
     def _values(self, frame: Frame, message: DecodedMessage) -> Sequence[Any]:
@@ -113,7 +103,7 @@ class ReferenceColumnReader:
         ]
 
     def _empty(self, variant: Variant) -> list[Any]:
-        return [array(integer_type(field) if self._raw else "d") for field in variant.fields]
+        return [array(cell_type(field, self._raw)) for field in variant.fields]
 
     def _order(self, item: tuple[tuple[int, Direction, int], object]) -> tuple[int, bool, int]:
         (command, direction, variant), _ = item
@@ -167,9 +157,3 @@ def shape(field: Field, column: Any, rows: int) -> Any:
     if not field.many or not len(column):
         return column
     return memoryview(column).cast("B").cast(column.typecode, (rows, len(column) // rows))
-
-
-def integer_type(field: Field) -> str:
-    """Return the smallest integer type that holds every raw value that the field allows."""
-    low, high = field.raw_range
-    return next(code for code, least, most in INTEGERS if least <= low and high <= most)

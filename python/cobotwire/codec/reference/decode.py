@@ -78,6 +78,10 @@ def _values(start: int, message: MessageVariant, data: bytes) -> tuple[object, .
     values: list[object] = []
     offset = start
     for field in message.variant.fields:
+        if field.kind == "bytes":  # all are legal
+            values.append(data[offset : offset + field.size])
+            offset += field.size
+            continue
         case = _case(start, message, field, data)
         parts = _numbers(message, field, case, offset, data)
         bad = field.bad_text_at(parts)

@@ -7,22 +7,30 @@ from collections.abc import Callable, Mapping, Sequence
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.client.history import REMEMBERED, Received
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Table
 from cobotwire.simulator.faults import (
     Duplicated,
     Fault,
     Late,
     Lost,
     Merged,
+    OtherAddress,
     Scenario,
     ServoLeak,
     Split,
+    UnrequestedEvent,
 )
+from cobotwire.simulator.faults.kinds.messages import events_of
 
 # Longer than most clients wait, but shorter than the longest delay in the field notes.
 LATE_SECONDS = 0.6
 PAUSE_SECONDS = 0.05
 # A merged reply waits for the next one, however long that takes.
 A_DAY = 86400.0
+
+# A client that takes another message for its reply sends the next request before this time is over,
+# and the reply still comes in the time that a client must wait.
+SOON_SECONDS = 0.02
 
 # The faults of replies by name. ``every`` and ``first`` select the replies.
 FAULTS: Mapping[str, Callable[[int, int], Fault]] = {
@@ -32,6 +40,12 @@ FAULTS: Mapping[str, Callable[[int, int], Fault]] = {
     "merged": lambda every, first: Merged(every=every, first=first, at_most_seconds=A_DAY),
     "noise": lambda every, first: ServoLeak(every=every, first=first, packets=("status",)),
     "twice": lambda every, first: Duplicated(every=every, first=first),
+    "event": lambda every, first: UnrequestedEvent(
+        every=every, first=first, only="replies", seconds=SOON_SECONDS
+    ),
+    "address": lambda every, first: OtherAddress(
+        every=every, first=first, only="replies", seconds=SOON_SECONDS
+    ),
 }
 
 
@@ -52,6 +66,33 @@ def faulty_replies(delay: float, names: Sequence[str] = (), every: int = 3) -> S
     faults = [FAULTS[name](period, every * turn) for turn, name in enumerate(names, 1)]
     delays = [Late(seconds=delay)] if delay else []
     return Scenario(name="replies of the referee", faults=(*delays, *faults))
+
+
+def possible_faults(table: Table) -> list[str]:
+    """Return the names of the faults that replies of an edition can have."""
+    return [name for name, make in FAULTS.items() if not _lacks(make(1, 1), table)]
+
+
+def require_possible(scenario: Scenario, table: Table) -> None:
+    """Check that the edition has the messages that the faults of a scenario send.
+
+    Raises:
+        UsageError: it has no events, or no second address.
+    """
+    for fault in scenario.faults:
+        lacks = _lacks(fault, table)
+        if lacks:
+            message = f"the edition {table.edition} has no {lacks} for the fault {fault.kind!r}"
+            raise UsageError("misbehave", fault.kind, message=message)
+
+
+def _lacks(fault: Fault, table: Table) -> str:
+    """Return what a fault needs and the edition lacks; empty: nothing."""
+    if isinstance(fault, UnrequestedEvent) and not events_of(table):
+        return "events"
+    if isinstance(fault, OtherAddress) and len(table.frame.addresses) < 2:
+        return "replies of several addresses"
+    return ""
 
 
 class _KnownReply:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from cobotwire import codec as codecs
-from cobotwire.conformance.client.delivery import Delivery, faulty_replies
+from cobotwire.conformance.client.delivery import Delivery, faulty_replies, require_possible
 from cobotwire.conformance.client.groups.frames import missing_text
 from cobotwire.conformance.client.history import History, Received
 from cobotwire.conformance.client.script import SCRIPT, Script, ScriptLine
@@ -50,15 +50,16 @@ class Referee:
             clock: gives the time in seconds.
 
         Raises:
-            UsageError: the edition cannot express a line of the script.
+            UsageError: the edition cannot express a line of the script, or a fault of the scenario.
         """
+        scenario = scenario or faulty_replies(DELAY_SECONDS)
+        require_possible(scenario, table)
         self._clock = clock
         self._started = clock()
         self._arm = SimulatedArm(table, clock=clock, on_event=self._receive, acks=acks)
         self._arm.state.powered = True
         codec = codecs.load(table)
         self._history = History(codec, patience)
-        scenario = scenario or faulty_replies(DELAY_SECONDS)
         self._delivery = Delivery(scenario, codec, self._now)
         self._due = b""
         self._script = None if script is None else Script(codec, script)
@@ -82,12 +83,14 @@ class Referee:
     def receive(self, data: bytes) -> bytes:
         """Take bytes from the client; return what is due by now."""
         self._last_byte = self._arrival = self._now()
+        self._due += self._arm.take_events()
         self._arm.receive(data)
         return self._take_due()
 
     def flush(self) -> bytes:
         """Let time pass; return what is due by now."""
         self._arrival = self._now()
+        self._due += self._arm.take_events()
         silence = self.silence
         if self._arm.wait is not None and silence is not None and silence >= self._arm.wait:
             self._arm.flush()

@@ -89,7 +89,7 @@ def _echoes(table: Table, name: str) -> set[str]:
 def _steps(table: Table, name: str, direction: Any) -> dict[str, float]:
     """Return the finest step of each field, because a codec may round differently from Python."""
     return {
-        field.name: min(number.physical(1) for number in field.numbers)
+        field.name: min((number.physical(1) for number in field.numbers), default=1.0)
         for variant in table.command(name).variants(direction)
         for field in variant.fields
     }
@@ -102,6 +102,9 @@ def _alike(right: Any, given: Any, step: float) -> bool:
             and len(right) == len(given)
             and all(_alike(a, b, step) for a, b in zip(right, given))
         )
+    if isinstance(right, str):
+        # Text, bytes, or a number that is not finite.
+        return isinstance(given, str) and right == given
     try:
         return isinstance(given, int | float) and abs(right - given) <= step / 10
     # A whole number of more than 308 digits.

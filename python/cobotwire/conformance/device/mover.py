@@ -11,7 +11,7 @@ from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.response import ReceivedReply
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.roles import targets_request
-from cobotwire.protocol.table import Command, Role
+from cobotwire.protocol.table import Command, Role, Table
 
 Pose = tuple[float, ...]
 # Shares of each joint's range in the workspace: no two joints are alike, and none is at zero. In
@@ -23,12 +23,18 @@ POSES = (
     (0.44, 0.30, 0.05, 0.78, 0.36, 0.66),
     (0.58, 0.06, 0.72, 0.94, 0.83, 0.52),
 )
-# A joint rests on an encoder tick, 360/4096 degrees, and its angle is truncated to hundredths.
-TICK_DEGREES = 360 / 4096
-ANGLE_TOLERANCE = TICK_DEGREES + 0.01
+# A joint rests on an encoder tick, and its angle is truncated to hundredths. Where the edition does
+# not state the encoders, this much is allowed for a tick, in degrees.
+USUAL_TICK, TRUNCATED = 0.1, 0.01
 # How often a moving arm is polled, and how long one motion may last, in seconds.
 POLL = 0.05
 LONGEST = 30.0
+
+
+def angle_tolerance(table: Table) -> float:
+    """Return how far from its target the angle of a joint at rest may be, in degrees."""
+    encoders = table.robot.encoders
+    return (encoders.degrees if encoders else USUAL_TICK) + TRUNCATED
 
 
 class Mover:
@@ -44,6 +50,7 @@ class Mover:
         self.targets = self._in_role("joint targets")
         self.joints = self._in_role("joints")
         self.speed = self.device.permissions.max_speed or 1
+        self.tolerance = angle_tolerance(self.device.table)
         give_power(self.device)
         self._come_back()
 
@@ -99,7 +106,8 @@ class Mover:
         response = self.device.request(self.joints.request_type())
         if response.valid is None and response.replies:
             return [f"{self.joints.name}: expected legal values; {response.replies[0].error}"]
-        return off_by(self.angles() if response.valid is None else _pose(response.valid), wanted)
+        pose = self.angles() if response.valid is None else _pose(response.valid)
+        return off_by(pose, wanted, self.tolerance)
 
     def _in_role(self, role: Role) -> Command:
         command = self.device.command(role)
@@ -121,12 +129,12 @@ def _pose(reply: ReceivedReply) -> Pose:
     return tuple(reply.message.result)
 
 
-def off_by(pose: Pose, wanted: Pose) -> list[str]:
-    """Describe the joints that are not where they should be."""
+def off_by(pose: Pose, wanted: Pose, tolerance: float) -> list[str]:
+    """Describe the joints that are further from where they should be than the tolerance."""
     return [
         f"joint {at}: sent to {want} degree, is at {have}"
         for at, (have, want) in enumerate(zip(pose, wanted), 1)
-        if abs(have - want) > ANGLE_TOLERANCE
+        if abs(have - want) > tolerance
     ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,12 +13,16 @@ from cobotwire.conformance.device.requests import (
     requests,
     revealing,
 )
-from cobotwire.conformance.places import numbers_of
+from cobotwire.conformance.places import is_list, numbers_of
+from cobotwire.conformance.samples import ordinary, physical_values
+from cobotwire.protocol.fields import named_fields
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Field, Number, Table, Variant
 
 # Texts that differ in every place, of characters that a name may have.
 TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
+# The ordinary values of bytes, texts and lists that are set one after the other.
+TURNS = (0, 7)
 # Both values are multiples of the wire's step, so only floating-point errors are tolerated.
 EXACT = 1e-6
 
@@ -40,8 +44,9 @@ class Setting:
     @property
     def queries(self) -> list[Request[Any]]:
         """The queries of all that can be set: each joint, pin or register in turn."""
-        names = {field.name for field in self.query_variant.fields}
-        fields = tuple(field for field in self.variant.fields if field.name in names)
+        given = {field.name: field for field in self.variant.fields}
+        fields = self.query_variant.fields
+        fields = tuple(f if f.const is not None else given[f.name] for f in fields)
         return requests(self.query, Variant(fields), limits=self._limits)
 
     @property
@@ -55,7 +60,14 @@ class Setting:
 
     def again(self, query: Request[Any], reply: Reply[Any], speed: int = 1) -> Request[Any]:
         """Return the request that sets what a query has reported."""
-        return self._request(query, self._reported(reply), speed)
+        wanted = {name: self._as_sent(name, v) for name, v in self._reported(reply).items()}
+        return self._request(query, wanted, speed)
+
+    def _as_sent(self, name: str, value: Any) -> Any:
+        """Return a reported value as a request takes it: 165 for 165.0, if it is a whole number."""
+        if not isinstance(value, float) or self._field(name).cases[0].numbers[0].real:
+            return value
+        return round(value)
 
     def samples(self, query: Request[Any], old: Reply[Any], speed: int = 1) -> list[Request[Any]]:
         """Return requests that reveal mistakes: ends, both signs, and a difference in each byte.
@@ -69,6 +81,9 @@ class Setting:
         if self.command.request_text is not None:
             return [dict(zip(names, texts)) for texts in TEXTS]
         fields = [self._field(name) for name in names]
+        if any(map(_is_whole, fields)):
+            tried = [physical_values(self.variant, ordinary(self.variant, turn=n)) for n in TURNS]
+            return [{name: given[name] for name in names} for given in tried]
         if len(fields) == 1 and fields[0].choices:
             return [{names[0]: value} for value in fields[0].choices]
         rows = [list(zip(self._numbers(name, query), self._reported_as(name))) for name in names]
@@ -107,6 +122,10 @@ class Setting:
             return ["nothing was reported"]
         found, sent = [], wanted.fields
         for name, value in self._reported(reply).items():
+            if self.command.request_text is None and _is_whole(self._field(name)):
+                if sent[name] != value:
+                    found.append(f"{name}: set {sent[name]!r}, read {value!r}")
+                continue
             for at, (want, have) in enumerate(zip(as_row(sent[name]), as_row(value))):
                 most = (near or {}).get(self._unit(name, at), EXACT)
                 if want != have and not (_number(want) and abs(want - have) <= most):
@@ -153,12 +172,20 @@ def settings_of(table: Table, command: Command) -> list[Setting]:
         return []
     query = table.command(back.query)
     found = []
-    for variant in command.request:
+    for variant in _of_corner_sizes(command.request):
         query_variant = _query_variant(query, variant)
         pairs = _pairs(command, variant, query)
         if query_variant is not None and pairs:
             found.append(Setting(command, variant, query, query_variant, pairs))
     return found
+
+
+def _of_corner_sizes(variants: tuple[Variant, ...]) -> Iterator[Variant]:
+    """Yield the variants; of sizes that vary, only the least and the most elements."""
+    for variant in variants:
+        sized = [field for field in variant.fields if field.sizes and not field.counts]
+        if all(field.dimensions[0] in (field.sizes or ()) for field in sized):
+            yield variant
 
 
 def has_fixed_effect(command: Command) -> bool:
@@ -170,7 +197,7 @@ def has_fixed_effect(command: Command) -> bool:
 def _query_variant(query: Command, variant: Variant) -> Variant | None:
     """Return the fullest variant of the query with all its arguments among the setting's."""
     names = {field.name for field in variant.fields}
-    fitting = [f for f in query.request if {field.name for field in f.fields} <= names]
+    fitting = [f for f in query.request if set(named_fields((f,))) <= names]
     return max(fitting, key=lambda f: len(f.fields), default=None)
 
 
@@ -178,12 +205,18 @@ def _pairs(command: Command, variant: Variant, query: Command) -> tuple[tuple[st
     assert command.read_by is not None
     if command.read_by.fields:
         return tuple((name, str(argument)) for name, argument in command.read_by.fields)
-    reported = {f.name for reply in query.reply for f in reply.fields if not f.echo}
-    return tuple((f.name, f.name) for f in variant.fields if f.name in reported)
+    fields = named_fields(query.reply)
+    reported = {name for name, (one, *_) in fields.items() if not one.echo and not one.counts}
+    return tuple((name, name) for name in named_fields((variant,)) if name in reported)
 
 
 def _is_speed(field: Field) -> bool:
-    return field.cases[0].numbers[0].unit == "percent"
+    return any(number.unit == "percent" for number in field.cases[0].numbers[:1])
+
+
+def _is_whole(field: Field) -> bool:
+    """Return whether a value is set and compared as a whole: bits, bytes, text or a list."""
+    return is_list(field) or any(number.bits for number in field.cases[0].numbers)
 
 
 def _number(value: Any) -> bool:

@@ -60,6 +60,14 @@ class Requester:
         """
         return self._requests.encode_request(request)
 
+    def is_legal(self, data: bytes) -> bool:
+        """Return whether bytes are a legal request of any command."""
+        try:
+            self._codec.decode("request", data)
+        except ProtocolError:
+            return False
+        return True
+
     def describe(self, request: EncodedRequest) -> str:
         """Return a request as a person writes it: ``get_encoder(joint=1)``."""
         return as_call(request, self._codec)

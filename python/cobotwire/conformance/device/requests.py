@@ -8,7 +8,7 @@ from math import ceil, floor
 from typing import Any
 
 from cobotwire.conformance.places import numbers_of, picks
-from cobotwire.conformance.samples import RawValues, named_values, plainest, with_row
+from cobotwire.conformance.samples import RawValues, physical_values, plainest, with_row
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Field, Number, Variant
 
@@ -75,7 +75,7 @@ def requests(
         found.update(
             dict.fromkeys(with_row(base, at, row) for at, rows in enumerate(lists) for row in rows)
         )
-    return [_typed(command, named_values(variant, raw_values)) for raw_values in found]
+    return [_typed(command, _arguments(variant, raw_values)) for raw_values in found]
 
 
 def harmless(command: Command) -> list[Request[Any]]:
@@ -92,7 +92,13 @@ def gentle(command: Command) -> Request[Any]:
 
 def gentle_values(variant: Variant) -> dict[str, Any]:
     """Return the arguments that do the least: the numbers nearest to one step from zero."""
-    return named_values(variant, plainest(variant, near=1))
+    return _arguments(variant, plainest(variant, near=1))
+
+
+def _arguments(variant: Variant, raw_values: RawValues) -> dict[str, Any]:
+    """Return the values of a request by name; messages compute the counts of lists."""
+    counts = {field.name: ... for field in variant.fields if field.counts}
+    return physical_values(variant, raw_values) | counts
 
 
 def _rows(field: Field, numbers: tuple[Number, ...], known: Known) -> list[tuple[int, ...]]:
@@ -101,7 +107,12 @@ def _rows(field: Field, numbers: tuple[Number, ...], known: Known) -> list[tuple
         # The arm can calculate with a row that it reported; any other row may have no reply.
         reported = known.get(units(numbers), (0.0,) * len(numbers))
         raw = [round(number.steps(value)) for number, value in zip(numbers, reported)]
-        return [tuple(number.clamp(value) for number, value in zip(numbers, raw))]
+        return [
+            tuple(
+                value if value in n.choices else next(iter(n.choices), n.clamp(value))
+                for n, value in zip(numbers, raw)
+            )
+        ]
     low, high = numbers[0].minimum, numbers[0].maximum
     if field.choices:
         return [(choice,) for choice in field.choices]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from math import ceil, log10
 from pathlib import Path
 from typing import Any
@@ -94,10 +95,11 @@ def _panels(series: Series) -> list[Panel]:
     panels: list[Panel] = []
     if joints.at:
         names = [f"J{joint + 1}" for joint in range(len(joints.rows[0]))]
-        panels.append(("joints, °", lambda axes: _lines(axes, joints, names, 0)))
-    if coords.at:
-        panels.append(("end, mm", lambda axes: _lines(axes, coords, ["x", "y", "z"], 0)))
-        panels.append(("end, °", lambda axes: _lines(axes, coords, ["rx", "ry", "rz"], 3)))
+        panels.append(("joints, °", lambda axes: _lines(axes, joints, dict(enumerate(names)))))
+    for unit, symbol in (("millimetre", "mm"), ("degree", "°")):
+        shown = {at: coords.names[at] for at, each in enumerate(coords.units) if each == unit}
+        if coords.at and shown:
+            panels.append((f"end, {symbol}", partial(_lines, track=coords, names=shown)))
     each = "per second" if series.axis == "seconds" else "per 1000 bytes"
     panels.append((f"frames received\n{each}", lambda axes: _frames(axes, series)))
     panels.append((f"noise, bytes\n{each}", lambda axes: _noise(axes, series)))
@@ -107,12 +109,14 @@ def _panels(series: Series) -> list[Panel]:
     return panels
 
 
-def _lines(axes: Axes, track: Track, names: Sequence[str], first: int) -> None:
-    for index, name in enumerate(names):
-        values = [row[first + index] for row in track.rows]
+def _lines(axes: Axes, track: Track, names: Mapping[int, str]) -> None:
+    """Draw the numbers of a track that have names, by their places in a row."""
+    for index, (at, name) in enumerate(names.items()):
+        values = [row[at] for row in track.rows]
+        # A seventh line has the colour of the first, and other dashes.
         style: dict[str, Any] = {
             "color": COLOURS[index % 6],
-            "linestyle": DASHES[index % 6],
+            "linestyle": DASHES[(index + index // 6) % 6],
             "linewidth": 1.3,
         }
         # A single value would be an invisible line.

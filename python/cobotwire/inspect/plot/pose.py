@@ -29,7 +29,7 @@ def points(table: Table, angles: Sequence[float]) -> list[Point]:
     """
     geometry = geometry_of(table)
     if geometry is None:
-        message = f"the geometry of the arm of edition {table.edition} is not known"
+        message = f"edition {table.edition}: {table.robot.why_no_geometry}"
         raise UsageError("edition", table.edition, message=message)
     return [BASE, *(frame.origin for frame in frames(geometry, angles))]
 

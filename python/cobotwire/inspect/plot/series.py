@@ -18,8 +18,13 @@ ROLES: tuple[Role, ...] = ("joints", "coordinates")
 
 @dataclass
 class Track:
-    """The replies to one query: their places on the axis, and the numbers of each."""
+    """The replies to one query: their places on the axis, and the numbers of each.
 
+    ``names`` and ``units`` are those of the numbers, as the edition has them.
+    """
+
+    names: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
     at: list[float] = field(default_factory=list)
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
@@ -97,11 +102,13 @@ class _Collector:
 
     def __init__(self, series: Series, codec: Codec) -> None:
         self.series = series
-        self._tracks = {
-            command.id: series.tracks[command.role]
-            for command in codec.table.commands
-            if command.role in ROLES
-        }
+        self._tracks = {}
+        for command in codec.table.commands:
+            if command.role in ROLES:
+                self._tracks[command.id] = track = series.tracks[command.role]
+                numbers = command.reply[0].fields[-1].cases[0].numbers
+                track.names = tuple(number.name for number in numbers)
+                track.units = tuple(number.unit for number in numbers)
 
     def add(self, event: Event, at: float) -> None:
         if isinstance(event, Noise):

@@ -10,18 +10,15 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from cobotwire.protocol.fields import Field
-from cobotwire.protocol.roles import ANGLES, picked, reached_query, row_index
+from cobotwire.protocol.roles import ANGLES, as_reached_query, picked, row_index
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.simulator.behaviour.registry import Unanswerable
-from cobotwire.simulator.kinematics import Pose
+from cobotwire.simulator.coordinates import places_of, pose_with
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_angle, go_to_angles, go_to_coords
 
-# How near to a target counts as reached, in degrees and in millimetres.
-DEGREES, MILLIMETRES = 0.1, 5.0
 # The speed of a motion whose command has no speed, in percent.
 USUAL_SPEED = 50
-SIX = ("x", "y", "z", "rx", "ry", "rz")
 
 Fields = Mapping[str, Any]
 Perform = Callable[[Table, ArmState, float, Command, Fields], Any]
@@ -56,10 +53,12 @@ def _move_joint(table: Table, arm: ArmState, now: float, command: Command, field
 
 def _move_end(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> None:
     row = _row(command)
-    if tuple(number.name for number in row.cases[0].numbers) != SIX:
+    places = places_of(row.cases[0].numbers)
+    if places is None:
         arm.remarks.append("rejected: the arm has no inverse kinematics for these coordinates")
         return
-    go_to_coords(arm, fields[row.name], _speed(command, fields), now)
+    end = pose_with(fields[row.name], places, arm.end(arm.angles.target(now)))
+    go_to_coords(arm, end, _speed(command, fields), now)
 
 
 def _joints(
@@ -72,23 +71,22 @@ def _coordinates(
     table: Table, arm: ArmState, now: float, command: Command, fields: Fields
 ) -> tuple[float, ...]:
     coords = arm.reported_coords(arm.standing(now))
-    numbers = command.reply[0].fields[-1].cases[0].numbers
-    if coords is None or not {number.name for number in numbers} <= set(SIX):
+    if coords is None or places_of(command.reply[0].fields[-1].cases[0].numbers) is None:
         raise Unanswerable
-    return tuple(coords[SIX.index(number.name)] for number in numbers)
+    return coords
 
 
 def _reached(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> bool:
-    query = reached_query(table)
-    assert query is not None, "this command has the role"
-    target, standing = fields[query.row], arm.standing(now)
-    if not query.kind or fields[query.kind] == query.kinds[ANGLES]:
-        return all(abs(have - wish) <= DEGREES for have, wish in zip(standing, target))
+    query = as_reached_query(command)
+    target, standing, (degrees, millimetres) = fields[query.row], arm.standing(now), arm.near
+    kind = fields[query.kind] if query.kind else next(iter(query.kinds.values()))
+    if kind == query.kinds.get(ANGLES):
+        return all(abs(have - wish) <= degrees for have, wish in zip(standing, target))
     end = arm.end(standing)
-    if end is None or len(target) != len(SIX):
+    if end is None or len(target) != len(arm.coordinates):
         raise Unanswerable
-    way, turn = end.distance(Pose.of(target))
-    return way <= MILLIMETRES and turn <= DEGREES
+    way, turn = end.distance(arm.pose_of(target, standing))
+    return way <= millimetres and turn <= degrees
 
 
 def _moving(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> bool:

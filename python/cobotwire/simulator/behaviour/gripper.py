@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.editions.mycobot280.enums import GripperState
-from cobotwire.simulator.behaviour.registry import behaviour, query
+from cobotwire.simulator.behaviour.registry import behaviour, query, reported
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import move_gripper
 
@@ -53,3 +53,4 @@ def set_hts_gripper_torque(
 
 
 query(m.GetHTSGripperTorque, lambda arm, now, request: arm.gripper_torque)
+reported(m.GetHTSGripperTorque, torque="gripper_torque")

@@ -29,7 +29,8 @@ def jog_angle(arm: ArmState, now: float, request: m.JogAngle) -> None:
     forward = request.direction == FORWARD
     inside = target[joint - 1] < high if forward else low < target[joint - 1]
     if low > high or not inside:
-        reject(arm, f"rejected: joint {joint} is at its limit", joint)
+        code = arm.error_codes.joint_limits[joint - 1]
+        reject(arm, f"rejected: joint {joint} is at its limit", code)
         return
     target[joint - 1] = high if forward else low
     go_to_angles(arm, tuple(target), request.speed, now, queue=False)
@@ -44,11 +45,12 @@ def jog_absolute(arm: ArmState, now: float, request: JogAbsolute) -> None:
 @behaviour(m.JogCoord)
 def jog_coord(arm: ArmState, now: float, request: m.JogCoord) -> None:
     """Move the end along an axis, or change one of its angles, until it is stopped."""
-    step = STEP_MILLIMETRES if request.axis <= 3 else STEP_DEGREES
+    place = arm.coordinates[request.axis - 1]
+    step = STEP_MILLIMETRES if place < 3 else STEP_DEGREES
 
     def way(here: Pose, far: float) -> Pose:
         coords = list(here.coords)
-        coords[request.axis - 1] += far
+        coords[place] += far
         return Pose.of(coords)
 
     jog(arm, way, step if request.direction == FORWARD else -step, request.speed, now)

@@ -5,13 +5,9 @@ from __future__ import annotations
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.editions.mycobot280.enums import MovementType, MoveMode, TargetKind
 from cobotwire.simulator.behaviour.registry import Unanswerable, behaviour, known, query, row
-from cobotwire.simulator.kinematics import DEGREES_PER_TICK, Pose
+from cobotwire.simulator.coordinates import pose_with
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_angle, go_to_angles, go_to_coords
-
-# How near to a target counts as reached, according to the notes on kinematics.
-DEGREES, MILLIMETRES = 0.1, 5.0
-
 
 query(m.GetAngles, lambda arm, now, request: row(arm.reported_angles(arm.angles.position(now))))
 
@@ -35,9 +31,8 @@ query(m.GetCoords, lambda arm, now, request: row(known(arm.reported_coords(arm.s
 @behaviour(m.SendCoord)
 def send_coord(arm: ArmState, now: float, request: m.SendCoord) -> None:
     """Move the end along or about one axis; the other coordinates are those of its target."""
-    end = arm.end(arm.angles.target(now))
-    target = list(end.coords) if end else [0.0] * 6
-    target[request.axis - 1] = request.coord
+    end, place = arm.end(arm.angles.target(now)), arm.coordinates[request.axis - 1]
+    target = pose_with((request.coord,), (place,), end)
     go_to_coords(arm, target, request.speed, now, straight=moves_straight(arm))
 
 
@@ -74,16 +69,16 @@ def stop(arm: ArmState, now: float, request: m.Stop) -> None:
 @behaviour(m.IsInPosition)
 def is_in_position(arm: ArmState, now: float, request: m.IsInPosition) -> m.IsInPositionReply:
     """Reply whether the joints, or the end, are at a target."""
-    standing = arm.standing(now)
+    standing, (degrees, millimetres) = arm.standing(now), arm.near
     if request.kind != TargetKind.COORDS:
-        near = (abs(a - b) <= DEGREES for a, b in zip(standing, request.target))
+        near = (abs(a - b) <= degrees for a, b in zip(standing, request.target))
         return m.IsInPositionReply(reached=all(near))
     end = arm.end(standing)
     if end is None:
         raise Unanswerable
-    way, turn = end.distance(Pose.of(request.target))
+    way, turn = end.distance(arm.pose_of(request.target, standing))
     # Each joint rests up to half a tick from the angle that the target requires.
-    reached = way <= MILLIMETRES and turn <= DEGREES + arm.joints * DEGREES_PER_TICK / 2
+    reached = way <= millimetres and turn <= degrees + arm.joints * arm.tick_degrees / 2
     return m.IsInPositionReply(reached=reached)
 
 

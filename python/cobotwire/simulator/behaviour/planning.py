@@ -5,9 +5,9 @@ from __future__ import annotations
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.motion import moves_straight
 from cobotwire.simulator.behaviour.registry import Unanswerable, behaviour, known, query, row
-from cobotwire.simulator.kinematics import Pose
+from cobotwire.simulator.coordinates import pose_with
 from cobotwire.simulator.state import ArmState
-from cobotwire.simulator.targets import go_to_angles, go_to_coords, solve
+from cobotwire.simulator.targets import go_to_coords, go_to_encoders, solve
 
 # The speed at which the simulated arm moves to each recorded point, in percent.
 DRAG_SPEED = 50
@@ -57,24 +57,24 @@ def solve_inv_kinematics(
     if arm.geometry is None:
         raise Unanswerable
     near = tuple(request.angles)
-    found = solve(arm, Pose.of(request.coords), near)
+    found = solve(arm, arm.pose_of(request.coords, near), near)
     return m.SolveInvKinematicsReply(angles=row(near if found is None else found))
 
 
 @behaviour(m.JogIncrementCoord)
 def jog_increment_coord(arm: ArmState, now: float, request: m.JogIncrementCoord) -> None:
     """Move the end along or about an axis by a step from its target."""
-    end = arm.end(arm.angles.target(now))
-    target = list(end.coords) if end else [0.0] * 6
-    target[request.axis - 1] += request.increment
+    end, place = arm.end(arm.angles.target(now)), arm.coordinates[request.axis - 1]
+    present = end.coords[place] if end else 0.0
+    target = pose_with((present + request.increment,), (place,), end)
     go_to_coords(arm, target, request.speed, now, straight=moves_straight(arm))
 
 
 @behaviour(m.SetEncodersDrag)
 def set_encoders_drag(arm: ArmState, now: float, request: m.SetEncodersDrag) -> None:
     """Move all servos to a recorded point."""
-    target = tuple(arm.angle_at(joint, tick) for joint, tick in enumerate(request.encoders))
-    go_to_angles(arm, target, DRAG_SPEED if any(request.speeds) else 0, now)
+    speed = DRAG_SPEED if any(request.speeds) else 0
+    go_to_encoders(arm, dict(enumerate(request.encoders)), speed, now)
 
 
 @behaviour(m.MoveRound)

@@ -19,7 +19,10 @@ from cobotwire.simulator.state import ArmState
 
 
 class Unanswerable(Exception):
-    """The arm does not know what a reply reports, and sends none: its geometry is not stated."""
+    """The arm does not know what a reply reports, and sends none.
+
+    Its text is the reason; without one, the edition does not state the geometry.
+    """
 
 
 class Sized(NamedTuple):
@@ -73,6 +76,12 @@ class Behaviours(dict[str, Behaviour]):
             arm.kept["mode"] = request.mode
     """
 
+    def __init__(self, *given: Any, **more: Behaviour) -> None:
+        """Create the registry; the arguments are those of ``dict``."""
+        super().__init__(*given, **more)
+        # By query and field: the attribute of the state that holds what the query reports.
+        self.attributes: dict[tuple[str, str], str] = {}
+
     def behaviour(
         self, request_type: type[RequestT]
     ) -> Callable[
@@ -105,6 +114,11 @@ class Behaviours(dict[str, Behaviour]):
             reply_type: Any = request_type.reply_type
             return None if found is None else reply_type(found)
 
+    def reported(self, getter: type[Request[Any]], **attributes: str) -> None:
+        """Note which attributes of the state hold the fields that a query reports."""
+        for field, attribute in attributes.items():
+            self.attributes[getter.command, field] = attribute
+
     def stored(
         self, attribute: str, setter: type[Request[None]], getter: type[Request[Any]]
     ) -> None:
@@ -116,23 +130,39 @@ class Behaviours(dict[str, Behaviour]):
             setattr(arm, attribute, value)
 
         self.query(getter, lambda arm, now, request: getattr(arm, attribute))
+        assert getter.reply_type is not None, "a query has a reply"
+        field = str(next(iter(getter.reply_type.__match_args__)))
+        self.reported(getter, **{field: attribute})
 
 
 # The behaviours that come with cobotwire.
 BEHAVIOURS = Behaviours()
 behaviour, query, stored = BEHAVIOURS.behaviour, BEHAVIOURS.query, BEHAVIOURS.stored
+reported = BEHAVIOURS.reported
+
+
+# Behaviours of editions that differ from the 280, by the name of the edition; they come first.
+_FAMILIES: dict[str, Behaviours] = {}
+
+
+def family(editions: Iterable[str], behaviours: Behaviours) -> Behaviours:
+    """Let some editions have behaviours of their own before those of the 280; return these."""
+    _FAMILIES.update(dict.fromkeys(editions, behaviours))
+    return behaviours
 
 
 def own(command: Command) -> Behaviour | None:
     """Return the behaviour of cobotwire for a command; None if there is none.
 
-    A command of another protocol that only shares the name has other arguments; this behaviour
-    would not understand them.
+    A command that only shares the name has other arguments; this behaviour would not understand
+    them.
     """
-    found = BEHAVIOURS.get(command.name)
-    if found is None or command.package.startswith("cobotwire."):
-        return found
-    return found if found.fits(command) else None
+    edition = command.package.rpartition(".")[2]
+    for behaviours in (_FAMILIES.get(edition, Behaviours()), BEHAVIOURS):
+        found = behaviours.get(command.name)
+        if found is not None and found.fits(command):
+            return found
+    return None
 
 
 def known(values: Iterable[float] | None) -> Iterable[float]:

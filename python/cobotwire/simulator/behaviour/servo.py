@@ -5,28 +5,26 @@ from __future__ import annotations
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.editions.mycobot280.enums import ServoDataMode
 from cobotwire.simulator.behaviour.registry import Sized, behaviour, query, row
-from cobotwire.simulator.kinematics.ticks import ZERO_TICK
 from cobotwire.simulator.state import ArmState
-from cobotwire.simulator.targets import go_to_angle, go_to_angles, move_gripper
+from cobotwire.simulator.targets import go_to_encoders, move_gripper
 
 
 @behaviour(m.SetEncoder)
 def set_encoder(arm: ArmState, now: float, request: m.SetEncoder) -> None:
     """Move one servo; the number after the last joint is the gripper.
 
-    No source defines the reading of a gripper's encoder. Here it is the middle of the range when
-    closed, plus one tick for each percent of opening.
+    Its edition states what its encoder reads when it is closed and open.
     """
     joint, encoder = request.joint, request.encoder
     # The request of older editions has no speed; the speed that is set applies.
     own_speed: int | None = request.speed
     speed = arm.speed if own_speed is None else own_speed
     if joint <= arm.joints:
-        go_to_angle(arm, joint, arm.angle_at(joint - 1, encoder), speed, now)
-    elif 0 <= encoder - ZERO_TICK <= 100:
-        move_gripper(arm, encoder - ZERO_TICK, speed, now)
+        go_to_encoders(arm, {joint - 1: encoder}, speed, now)
+    elif 0 <= arm.opening_at(encoder) <= 100:
+        move_gripper(arm, arm.opening_at(encoder), speed, now)
     else:
-        low, high = ZERO_TICK, ZERO_TICK + 100
+        low, high = sorted((arm.gripper_facts.closed, arm.gripper_facts.open))
         arm.remarks.append(f"rejected: the gripper's encoder goes from {low} to {high}")
 
 
@@ -36,8 +34,7 @@ query(m.GetEncoder, lambda arm, now, request: arm.encoder(request.joint - 1, now
 @behaviour(m.SetEncoders)
 def set_encoders(arm: ArmState, now: float, request: m.SetEncoders) -> None:
     """Move all servos."""
-    target = tuple(arm.angle_at(joint, tick) for joint, tick in enumerate(request.encoders))
-    go_to_angles(arm, target, request.speed, now)
+    go_to_encoders(arm, dict(enumerate(request.encoders)), request.speed, now)
 
 
 query(

@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from cobotwire.editions.mycobot.messages import GetSpeed, SetSpeed
 from cobotwire.editions.mycobot280 import messages as m
-from cobotwire.simulator.behaviour.registry import behaviour, query, stored
+from cobotwire.simulator.behaviour.registry import behaviour, query, reported, stored
 from cobotwire.simulator.state import ArmState
-
-# What the firmware of a 280 reports today; the kinematics notes are about firmware 6.5.
-SYSTEM_VERSION = 6.5
-BASIC_VERSION = 2.0
-REVISION = 1
 
 # The tool's point, the world's origin; base or world, flange or tool.
 stored("tool", m.SetToolReference, m.GetToolReference)
@@ -24,9 +19,6 @@ stored("movement_type", m.SetMovementType, m.GetMovementType)
 stored("speed", SetSpeed, GetSpeed)
 # The current at which the gripper protects itself.
 stored("gripper_current", m.SetGripperProtectCurrent, m.GetGripperProtectCurrent)
-query(m.GetModifyVersion, lambda arm, now, request: REVISION)
-query(m.GetSystemVersion, lambda arm, now, request: SYSTEM_VERSION)
-query(m.GetBasicVersion, lambda arm, now, request: BASIC_VERSION)
 # A motion is acknowledged when it is received, not when it ends.
 query(m.CheckAsyncOrSync, lambda arm, now, request: False)
 # The controller starts once at first, and after each panic.
@@ -57,6 +49,9 @@ def set_transponder_mode(
 
 
 query(m.GetTransponderMode, lambda arm, now, request: arm.transparent)
+
+
+reported(m.GetSsidPwd, ssid="ssid", password="password")  # noqa: S106  (an attribute's name)
 
 
 @behaviour(m.GetSsidPwd)

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.registry import behaviour, query, row
-from cobotwire.simulator.state import SERVO_REGISTERS, ArmState
-
-VOLTS = 12.0
-DEGREES_CELSIUS = 30
-# A request for this servo means all servos.
-ALL_SERVOS = 254
-
+from cobotwire.simulator.state import ArmState
 
 # In encoder steps a second.
 query(m.GetServoSpeeds, lambda arm, now, request: row(arm.servo_speeds(now)))
 # No servo has a fault.
 query(m.GetServoStatus, lambda arm, now, request: row((0,) * arm.joints))
 query(
-    m.GetServoVoltages, lambda arm, now, request: row((VOLTS if arm.powered else 0.0,) * arm.joints)
+    m.GetServoVoltages,
+    lambda arm, now, request: row(
+        (arm.servos.voltage or 0.0 if arm.powered else 0.0,) * arm.joints
+    ),
 )
-query(m.GetServoTemps, lambda arm, now, request: row((DEGREES_CELSIUS,) * arm.joints))
+query(
+    m.GetServoTemps,
+    lambda arm, now, request: row((round(arm.servos.temperature or 0),) * arm.joints),
+)
 
 
 @behaviour(m.BackupServoParams)
@@ -33,7 +33,7 @@ def backup_servo_params(arm: ArmState, now: float, request: m.BackupServoParams)
 def restore_servo_params(arm: ArmState, now: float, request: m.RestoreServoParams) -> None:
     """Restore the registers from the backup; without one, the factory values."""
     for index in _servos(arm, request.servo):
-        arm.registers[index] = dict(arm.backups.get(index, SERVO_REGISTERS))
+        arm.registers[index] = dict(arm.backups.get(index, arm.servos.registers))
 
 
 @behaviour(m.SetFourPiecesZero)
@@ -46,4 +46,5 @@ def set_four_pieces_zero(
 
 
 def _servos(arm: ArmState, servo: int) -> range:
-    return range(arm.joints) if servo == ALL_SERVOS else range(servo - 1, servo)
+    # A number that no joint has means all servos.
+    return range(servo - 1, servo) if servo <= arm.joints else range(arm.joints)

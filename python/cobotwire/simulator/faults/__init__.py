@@ -23,6 +23,7 @@ from cobotwire.simulator.faults.kinds.additions import (
 from cobotwire.simulator.faults.kinds.controller import Panic
 from cobotwire.simulator.faults.kinds.damage import Corrupted, Replaced, WrongId, WrongLength
 from cobotwire.simulator.faults.kinds.loss import Dropped, Frozen, Lost, Silent, Truncated
+from cobotwire.simulator.faults.kinds.messages import OtherAddress, UnrequestedEvent
 from cobotwire.simulator.faults.kinds.timing import Late, Merged, Slow, Split, Stalled
 from cobotwire.simulator.faults.kinds.wiring import FlowControl, Unplugged, WrongBaud
 from cobotwire.simulator.faults.reader import load, loads
@@ -46,6 +47,7 @@ __all__ = [
     "Lost",
     "Merged",
     "Noise",
+    "OtherAddress",
     "Panic",
     "Replaced",
     "Scenario",
@@ -56,6 +58,7 @@ __all__ = [
     "Stalled",
     "Truncated",
     "Unplugged",
+    "UnrequestedEvent",
     "WrongBaud",
     "WrongId",
     "WrongLength",

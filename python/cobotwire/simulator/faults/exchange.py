@@ -106,3 +106,11 @@ def spread(reply: Reply, cuts: Sequence[int], pause: float) -> Reply:
             pieces.append(Piece(pause if number else first, piece.data[begin:end]))
         start += len(piece.data)
     return tuple(pieces)
+
+
+def followed_by(first: Reply, pause: float, reply: Reply) -> Reply:
+    """Return two replies as one; without a pause they are in one piece."""
+    if reply and not pause + reply[0].pause:
+        glued = Piece(first[-1].pause, first[-1].data + reply[0].data)
+        return (*first[:-1], glued, *reply[1:])
+    return (*first, *(Piece(pause + p.pause if p is reply[0] else p.pause, p.data) for p in reply))

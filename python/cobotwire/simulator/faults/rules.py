@@ -84,9 +84,9 @@ def command(value: Any) -> str | int:
     """Allow the name of a command, or the id of a request that has no name."""
     if isinstance(value, str) and value:
         return str(value)
-    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 0xFF:
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 0xFFFF:
         return int(value)
-    raise ValueError("a command's name, or an id from 0 to 0xFF")
+    raise ValueError("a command's name, or an id from 0 to 0xFFFF")
 
 
 def pairs_of_hex(value: Any) -> bytes:

@@ -23,11 +23,11 @@ def coords_of(geometry: Geometry, angles: Sequence[float]) -> tuple[float, ...]:
 
 
 def frames(geometry: Geometry, angles: Sequence[float]) -> list[Pose]:
-    """Return the frame after each joint, from the base on: the points where links meet."""
+    """Return the frame after each link, from the base on: the points where links meet."""
     xx, xy, xz, yx, yy, yz, zx, zy, zz = 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0
     px = py = pz = 0.0
     found = []
-    for angle, link in zip(angles, geometry.links):
+    for angle, link in zip(geometry.link_angles(angles), geometry.links):
         theta = math.radians(angle + link.offset)
         cos, sin = math.cos(theta), math.sin(theta)
         ca, sa = link.turned

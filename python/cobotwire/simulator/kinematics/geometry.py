@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from cobotwire.protocol.table import Table
 
+Angles = tuple[float, ...]
+
 
 @dataclass(frozen=True)
 class Link:
-    """A row of standard Denavit-Hartenberg parameters, in degrees and millimetres."""
+    """A row of standard Denavit-Hartenberg parameters, in degrees and millimetres.
+
+    ``turned_by`` lists the joints, counted from 0, that turn the link, each with the degrees that
+    the link turns for one degree of the joint. None: the joint of the same number turns it.
+    """
 
     offset: float
     alpha: float
     a: float
     d: float
+    turned_by: tuple[tuple[int, float], ...] | None = None
 
     @cached_property
     def turned(self) -> tuple[float, float]:
@@ -27,28 +35,36 @@ class Link:
 
 @dataclass(frozen=True)
 class Geometry:
-    """An arm with six joints; the second to the fourth are parallel (see ``inverse``).
-
-    Attributes:
-        links: the links, from the base on.
-        encoder_signs: for each joint, whether its encoder counts up (+1) or down (-1) while the
-            angle grows.
-    """
+    """The links of an arm, from the base on."""
 
     links: tuple[Link, ...]
-    encoder_signs: tuple[int, ...]
 
+    @cached_property
+    def coupled(self) -> bool:
+        """Whether a link is turned otherwise than by the joint of the same number."""
+        return any(link.turned_by is not None for link in self.links)
 
-# The inverse kinematics are limited to these axes: alpha of each link, in degrees.
-SOLVED_AXES = (90, 0, 0, 90, -90, 0)
+    @cached_property
+    def turns(self) -> tuple[tuple[tuple[int, float], ...], ...]:
+        """For each link, the joints that turn it, and by how much."""
+        return tuple(
+            ((index, 1.0),) if link.turned_by is None else link.turned_by
+            for index, link in enumerate(self.links)
+        )
+
+    @cached_property
+    def joints(self) -> int:
+        """How many joints turn links."""
+        return 1 + max(joint for turn in self.turns for joint, _ in turn)
+
+    def link_angles(self, angles: Sequence[float]) -> Sequence[float]:
+        """Return how far each link is turned when the joints are at ``angles``."""
+        if not self.coupled:
+            return angles
+        return [sum(angles[joint] * share for joint, share in turn) for turn in self.turns]
 
 
 def geometry_of(table: Table) -> Geometry | None:
-    """Return the geometry that an edition states; None if it states none, or one of another kind.
-
-    A geometry is of another kind if its axes are not those that ``inverse`` solves.
-    """
-    stated = table.geometry
-    if stated is None or tuple(alpha for _, alpha, _, _ in stated.links) != SOLVED_AXES:
-        return None
-    return Geometry(tuple(Link(*link) for link in stated.links), stated.encoder_signs)
+    """Return the geometry that an edition states; None if it states none."""
+    stated = table.robot.geometry
+    return None if stated is None else Geometry(tuple(Link(*link) for link in stated.links))

@@ -1,52 +1,37 @@
-"""Encoder ticks, on which joints stop, and the rounding of what the firmware reports."""
+"""The rounding of what the firmware reports: it truncates to the steps of the wire."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
-TICKS_PER_TURN = 4096
-ZERO_TICK = 2048
-# Exact in binary: any number of ticks is an exact number of degrees.
-DEGREES_PER_TICK = 360 / TICKS_PER_TURN
-# An encoder counts one turn; no joint can be further from its zero than half a turn.
-HALF_TURN = 180.0
+from cobotwire.protocol.robot import Encoders
 
 
-def on_tick(degrees: float) -> float:
-    """Return the angle of the nearest tick."""
-    return round(degrees / DEGREES_PER_TICK) * DEGREES_PER_TICK
+class Steps(NamedTuple):
+    """How many raw values of a reply make a unit; 0: as many as a float holds.
+
+    Attributes:
+        angle: of a degree of a joint.
+        coords: of a millimetre or a degree of x, y, z, rx, ry and rz.
+    """
+
+    angle: float = 0.0
+    coords: tuple[float, ...] = (0.0,) * 6
 
 
-def inside(lowest: float, highest: float) -> tuple[float, float]:
-    """Return the outermost angles on ticks within limits; without any, the first is higher."""
-    lowest, highest = max(lowest, -HALF_TURN), min(highest, HALF_TURN)
-    return (
-        math.ceil(lowest / DEGREES_PER_TICK) * DEGREES_PER_TICK,
-        math.floor(highest / DEGREES_PER_TICK) * DEGREES_PER_TICK,
-    )
+def reported_angles(
+    encoders: Encoders, degrees: Iterable[float], steps: Steps
+) -> tuple[float, ...]:
+    """Return angles as the firmware reports them: on ticks, truncated."""
+    return tuple(_truncated(encoders.on_tick(angle), steps.angle) for angle in degrees)
 
 
-def reported_angles(degrees: Iterable[float]) -> tuple[float, ...]:
-    """Return angles as the firmware reports them: on ticks, truncated to hundredths."""
-    return tuple(
-        math.trunc(100 * round(angle / DEGREES_PER_TICK) * 360 / TICKS_PER_TURN) / 100
-        for angle in degrees
-    )
+def reported_coords(coords: Iterable[float], steps: Steps) -> tuple[float, ...]:
+    """Return six coordinates as the firmware reports them: truncated."""
+    return tuple(_truncated(value, step) for value, step in zip(coords, steps.coords))
 
 
-def reported_coords(coords: Iterable[float]) -> tuple[float, ...]:
-    """Return coordinates as the firmware reports them: truncated to 0.1 mm and 0.01 degrees."""
-    return tuple(
-        math.trunc(value * scale) / scale for value, scale in zip(coords, (10,) * 3 + (100,) * 3)
-    )
-
-
-def encoder_at(degrees: float, sign: int) -> int:
-    """Return the reading of a joint's encoder for an angle of the joint."""
-    return ZERO_TICK + sign * round(degrees / DEGREES_PER_TICK)
-
-
-def angle_at(encoder: int, sign: int) -> float:
-    """Return the angle of a joint for a reading of its encoder."""
-    return sign * (encoder - ZERO_TICK) * DEGREES_PER_TICK
+def _truncated(value: float, step: float) -> float:
+    return math.trunc(value * step) / step if step else value

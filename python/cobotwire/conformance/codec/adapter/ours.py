@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Framer, Noise
 from cobotwire.conformance.codec.questions.question import Json, hexed
+from cobotwire.conformance.samples import plain
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.table import Direction
+from cobotwire.protocol.table import Direction, Field
 
 ABILITIES = [
     *(f"{do} {direction}" for do in ("encode", "decode") for direction in ("request", "reply")),
@@ -87,27 +89,43 @@ def encode_named(
         names = [field.name for field in variant.fields]
         if set(names) != set(fields):
             continue
-        values = [
-            bool(fields[field.name])
-            if field.kind == "flag" and fields[field.name] in (0, 1)
-            else fields[field.name]
-            for field in variant.fields
-        ]
+        values = [value_of(field, fields[field.name]) for field in variant.fields]
+        # The values choose among variants that differ in sizes.
+        sized = any(field.sizes for field in variant.fields)
         try:
-            return codec.encode(command, direction, values, variant=index)
+            return codec.encode(command, direction, values, variant=None if sized else index)
         except UsageError as error:
             rejection = rejection or error
+        if sized:
+            break
     given = ", ".join(sorted(fields)) or "none"
     message = f"no variant of the {direction} of {command} has these fields: {given}"
     raise rejection or UsageError("fields", sorted(fields), message=message)
 
 
+def value_of(field: Field, given: Any) -> Any:
+    """Return a JSON value as the codecs take it; what is no such value stays as it is."""
+    if field.kind == "flag" and given in (0, 1):
+        return bool(given)
+    if field.kind == "bytes" and isinstance(given, str):
+        with suppress(ValueError):
+            return bytes.fromhex(given)
+    if field.kind in ("bytes", "text"):
+        return given
+    if isinstance(given, list):
+        return tuple(
+            value_of(field, part) if field.kind == "flag" else _number(part) for part in given
+        )
+    return _number(given)
+
+
+def _number(given: Any) -> Any:
+    """Return a number of JSON, which writes one that is not finite as text."""
+    if isinstance(given, list):
+        return tuple(map(_number, given))
+    return float(given) if given in ("nan", "inf", "-inf") else given
+
+
 def plain_fields(message: DecodedMessage) -> dict[str, Any]:
     """Return the values of a message by name, as JSON values: flags and enums as integers."""
-    return {name: _plain(value) for name, value in message.fields.items()}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return [_plain(part) for part in value]
-    return value if isinstance(value, float) else int(value)
+    return {name: plain(value) for name, value in message.fields.items()}

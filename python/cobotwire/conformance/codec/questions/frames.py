@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec
@@ -73,8 +74,7 @@ def _encoding(codec: Codec) -> Iterator[Question]:
     """Yield questions with ordinary values, corner values and values between two steps."""
     for variant in variants_of(codec.table):
         for sample in samples(variant.variant):
-            values = named_values(variant.variant, sample.raw_values)
-            yield _encode(codec, variant, sample.name, values)
+            yield from _encode_sample(codec, variant, sample)
         for name, values in _between_steps(variant):
             yield _encode(codec, variant, name, values)
 
@@ -83,11 +83,16 @@ def _rejected_values(codec: Codec) -> Iterator[Question]:
     """Yield values that must be rejected, though the wire could carry most of them."""
     for variant in variants_of(codec.table):
         for sample in illegal_samples(variant.variant):
-            yield _encode(
-                codec, variant, sample.name, named_values(variant.variant, sample.raw_values)
-            )
+            yield from _encode_sample(codec, variant, sample)
         for name, values in _wrong_counts(variant):
             yield _encode(codec, variant, name, values)
+
+
+def _encode_sample(codec: Codec, variant: CommandVariant, sample: Sample) -> Iterator[Question]:
+    """Yield the question that encodes a sample; none if its bytes are no text."""
+    with suppress(UnicodeDecodeError):
+        values = named_values(variant.variant, sample.raw_values)
+        yield _encode(codec, variant, sample.name, values)
 
 
 def _encode(codec: Codec, variant: CommandVariant, name: str, values: Json) -> Question:
@@ -105,8 +110,8 @@ def _between_steps(variant: CommandVariant) -> Iterator[tuple[str, Json]]:
     for field in variant.variant.fields:
         case = variant.variant.raw_case(field, base)
         assert case is not None, "an ordinary selector has a case"
-        number = case.numbers[0]
-        if not number.scaled or field.choices:
+        number = next(iter(case.numbers), None)
+        if number is None or not number.scaled or field.choices or field.each:
             continue
         for steps in _fractions(number):
             value: Any = steps * number.multiply / number.divide
@@ -125,8 +130,12 @@ def _wrong_counts(variant: CommandVariant) -> Iterator[tuple[str, Json]]:
     values = named_values(variant.variant, ordinary(variant.variant))
     for field in _rows(variant.variant):
         row = values[field.name]
-        yield f"{field.name}-one-short", {**values, field.name: row[:-1]}
-        yield f"{field.name}-one-more", {**values, field.name: [*row, row[-1]]}
+        if not row:
+            continue
+        # A byte has two digits.
+        size = 2 if field.kind == "bytes" else 1
+        yield f"{field.name}-one-short", {**values, field.name: row[:-size]}
+        yield f"{field.name}-one-more", {**values, field.name: row + row[-size:]}
 
 
 def _rows(variant: Variant) -> list[Field]:

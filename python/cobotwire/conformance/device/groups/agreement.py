@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.mover import POSES, TICK_DEGREES, Mover
+from cobotwire.conformance.device.mover import POSES, Mover, angle_tolerance
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, request_of, units
 from cobotwire.conformance.places import places
@@ -14,10 +14,8 @@ from cobotwire.protocol.table import Command, Table
 
 AGREES = TestCase("agrees", "While the arm rests, queries of the same quantity agree.")
 
-# The servo position that is a joint's zero.
-ZERO_TICK = 2048
 # The tolerance between two readings of a quantity, by unit: a joint at rest jitters by a tick.
-APART = {"degree": TICK_DEGREES + 0.011, "millimetre": 1.0, "tick": 2.0}
+APART = {"millimetre": 1.0, "tick": 2.0}
 
 Reading = list[tuple[str, str, Any]]
 
@@ -61,12 +59,17 @@ def _reading(probe: Probe, query: Command, *values: Any) -> Reading:
 
 def _compare(probe: Probe, other: Command, mine: Reading, theirs: Reading) -> None:
     """Compare the parts that have the same units as the other's, part by part."""
+    table = probe.device.table
+    encoders, tolerances = table.robot.encoders, {**APART, "degree": angle_tolerance(table) + 0.001}
     for one, two in zip(_matching(mine, theirs), theirs):
         (name, unit, value), (its, its_unit, its_value) = one, two
         if unit == "tick" and its_unit == "degree":
-            value, its_value = abs(value - ZERO_TICK) * TICK_DEGREES, abs(its_value)
+            if encoders is None:
+                continue  # nothing says what a tick is
+            # The direction of an encoder may be unknown.
+            value, its_value = abs(value - encoders.zero) * encoders.degrees, abs(its_value)
         reason = f"{name} is {one[2]} {unit}, but {other.name} reports {its} = {two[2]} {its_unit}"
-        apart = APART.get(its_unit, 0.0)
+        apart = tolerances.get(its_unit, 0.0)
         probe.expect(AGREES, abs(value - its_value) <= apart, f"{probe.command.name}: {reason}")
 
 

@@ -30,6 +30,8 @@ def _shape(command: Command) -> tuple[Field, Field] | None:
     if len(fields) != 3 or any(field.many for field in fields):
         return None
     part, travel, speed = fields
+    if part.cases[0].numbers[0].real:
+        return None
     return (part, travel) if speed.cases[0].numbers[0].unit == "percent" else None
 
 

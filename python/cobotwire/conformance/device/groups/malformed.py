@@ -100,6 +100,9 @@ def _out_of_range(probe: Probe) -> None:
     """Send arguments that the edition does not allow."""
     request = _sample(probe)
     for what, data in _wrong_values(probe.device.table, probe.command, request.frame):
+        # Another constant may mean another command.
+        if probe.device.requester.is_legal(data):
+            continue
         _expect_no_reply(probe, OUT_OF_RANGE, request, what, data)
         _expect_recovery(probe, request, what)
 

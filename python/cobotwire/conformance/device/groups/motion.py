@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
-from cobotwire.conformance.device.mover import ANGLE_TOLERANCE, Mover, Pose, off_by
+from cobotwire.conformance.device.mover import Mover, Pose, off_by
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import Setting, settings_of
 from cobotwire.conformance.device.requests import request_of
@@ -20,7 +20,7 @@ MOVING = TestCase("moving", "The arm reports that it moves while it does, and no
 STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.")
 
 # The tolerance between sent and read values, by unit: one tick, and the end's motion within it.
-NEAR = {"degree": ANGLE_TOLERANCE, "millimetre": 1.5, "tick": 1.0, "percent": 1.0}
+NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}
 # After this time, in seconds, the arm reports that it moves and has not arrived yet.
 UNDER_WAY = 0.1
 
@@ -93,7 +93,8 @@ def _replay(
 ) -> None:
     request_change(probe, target)
     mover.settle(lambda: probe.device.read(query))
-    wrong = motion.differences(target, probe.device.read(query), NEAR)
+    near = {**NEAR, "degree": mover.tolerance}
+    wrong = motion.differences(target, probe.device.read(query), near)
     probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
 
 
@@ -107,9 +108,9 @@ def _stops(probe: Probe) -> None:
     expect_moving(probe, mover, moving, False)
     stopped = mover.angles()
     mover.rest(4 * UNDER_WAY)
-    wrong = off_by(mover.angles(), stopped)
+    wrong = off_by(mover.angles(), stopped, mover.tolerance)
     probe.expect(STOPS, not wrong, f"after {probe.command.name}: {'; '.join(wrong)}")
-    short = bool(off_by(stopped, mover.pose(1)))
+    short = bool(off_by(stopped, mover.pose(1), mover.tolerance))
     probe.expect(STOPS, short, f"{probe.command.name}: expected the arm to stop on its way")
     resume(probe)
 

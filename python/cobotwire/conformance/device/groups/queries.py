@@ -77,8 +77,10 @@ def _judge(probe: Probe, response: Response) -> None:
 
 
 def _expected_frame(table: Table, command: Command) -> str:
-    lengths = " or ".join(f"{table.frame.length(variant.size):02X}" for variant in command.reply)
-    return f"expected a whole frame with id {command.id:02X} and LEN {lengths}"
+    frame = table.frame
+    lengths = " or ".join(f"{frame.length(each.size, 'reply'):02X}" for each in command.reply)
+    id = f" id {command.id:02X} and" if frame.reply_has_id else ""
+    return f"expected a whole frame with{id} LEN {lengths}"
 
 
 def _wrong_echo(call: str, response: Response, reply: ReceivedReply) -> str:

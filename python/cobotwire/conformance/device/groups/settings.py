@@ -99,7 +99,8 @@ def _try(probe: Probe, spot: _Spot, spots: list[_Spot]) -> None:
         reason = f"{spot} reports failure, but {wanted} is read back"
         probe.expect(REPLIED, not failed, reason)
         for other in spots if index == 0 else ():
-            if other is not spot:
+            # What cannot be restored no longer has its old value.
+            if other is not spot and other.restorable:
                 _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
     if spot.restorable:
         _set(probe, spot.old)

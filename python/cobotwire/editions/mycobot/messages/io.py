@@ -38,9 +38,9 @@ class GetDigitalInputReply(Reply[bool], to=GetDigitalInput, wire=("pin", "high")
 class SetColor(Request[None], command="set_color"):
     """Set the colour of the light."""
 
-    red: int
-    green: int
-    blue: int
+    red: int = 0
+    green: int = 0
+    blue: int = 0
 
 
 class SetBasicOutput(Request[None], command="set_basic_output"):

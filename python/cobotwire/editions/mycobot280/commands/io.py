@@ -58,16 +58,16 @@ class IoCommands(Client):
         return self._call(messages.io.GetDigitalInput(pin))
 
     def set_color(
-        self, red: int, green: int, blue: int, *, ack_within: float | None = None
+        self, red: int = 0, green: int = 0, blue: int = 0, *, ack_within: float | None = None
     ) -> None:
         """Set the colour of the light.
 
         Sets the colour of the Atom's light by its three channels, each 0 to 255.
 
         Args:
-            red: One channel of the light; 0 is dark, 255 full (0..255).
-            green: One channel of the light; 0 is dark, 255 full (0..255).
-            blue: One channel of the light; 0 is dark, 255 full (0..255).
+            red: One channel of the light; 0 is dark, 255 full (0..255; default: 0).
+            green: One channel of the light; 0 is dark, 255 full (0..255; default: 0).
+            blue: One channel of the light; 0 is dark, 255 full (0..255; default: 0).
 
         Safety: setting. Command id 0x6A.
         """

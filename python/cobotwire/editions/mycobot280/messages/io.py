@@ -41,9 +41,9 @@ class SetDigitalOutputReply(Reply[None], to=SetDigitalOutput):
 class SetColor(Request[None], command="set_color"):
     """Set the colour of the light."""
 
-    red: int
-    green: int
-    blue: int
+    red: int = 0
+    green: int = 0
+    blue: int = 0
 
 
 class SetColorReply(Reply[None], to=SetColor):

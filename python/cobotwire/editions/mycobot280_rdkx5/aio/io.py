@@ -22,7 +22,7 @@ class AsyncIoCommands(AsyncClient):
         return await self._call(messages.io.GetDigitalInput(pin))
 
     async def set_color(
-        self, red: int, green: int, blue: int, *, ack_within: float | None = None
+        self, red: int = 0, green: int = 0, blue: int = 0, *, ack_within: float | None = None
     ) -> None:
         """Set the colour of the light."""
         await self._send(messages.io.SetColor(red, green, blue), ack_within)

@@ -28,7 +28,7 @@ class AsyncIoCommands(AsyncClient):
         """Read a pin of the Atom."""
         return await self._call(messages.io.GetDigitalInput(pin))
 
-    async def set_color(self, red: int, green: int, blue: int) -> None:
+    async def set_color(self, red: int = 0, green: int = 0, blue: int = 0) -> None:
         """Set the colour of the light."""
         await self._send(messages.io.SetColor(red, green, blue))
 

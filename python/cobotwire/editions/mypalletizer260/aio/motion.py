@@ -47,7 +47,7 @@ class AsyncMotionCommands(AsyncClient):
         """Stop."""
         await self._send(messages.motion.Stop())
 
-    async def is_in_position(self, target: Sequence[float], kind: TargetKind | int) -> bool:
+    async def is_in_position(self, target: Sequence[float], kind: TargetKind | int = 0) -> bool:
         """Check whether a target is reached."""
         return await self._call(messages.motion.IsInPosition(target, kind))
 

@@ -100,7 +100,7 @@ class MotionCommands(Client):
         """
         self._send(messages.motion.Stop())
 
-    def is_in_position(self, target: Sequence[float], kind: TargetKind | int) -> bool:
+    def is_in_position(self, target: Sequence[float], kind: TargetKind | int = 0) -> bool:
         """Check whether a target is reached.
 
         Reports whether the arm is at a target, given as joint angles in degrees, or as coordinates
@@ -110,7 +110,8 @@ class MotionCommands(Client):
             target: Four joint angles or four coordinates, depending on the kind (for ANGLES: 4
                 numbers (j1, j2, j3, j4 -327.68..327.67 degree); for COORDS: 4 numbers (x, y, z
                 -3276.8..3276.7 millimetre; theta -327.68..327.67 degree)).
-            kind: What the four values of a target are (one of ANGLES (0), COORDS (1)).
+            kind: What the four values of a target are (one of ANGLES (0), COORDS (1); default:
+                ANGLES (0)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.

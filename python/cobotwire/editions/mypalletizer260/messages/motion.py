@@ -37,7 +37,7 @@ class IsInPosition(Request[bool], command="is_in_position"):
     """Check whether a target is reached."""
 
     target: Sequence[float]
-    kind: TargetKind | int
+    kind: TargetKind | int = 0
 
 
 class IsInPositionReply(Reply[bool], to=IsInPosition):

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Literal
 
-from cobotwire.simulator.faults.exchange import Piece, Reply, enlarged, joined
+from cobotwire.simulator.faults.exchange import Piece, Reply, enlarged, followed_by, joined
 from cobotwire.simulator.faults.fault import ONLY, Damage, Fault, Moment, Only
 from cobotwire.simulator.faults.noise import COMMAND_ERROR, LEAKS, NOISE, mixed_noise
 from cobotwire.simulator.faults.registry import kind
@@ -143,7 +143,7 @@ class CommandError(Fault):
         """Send the text before the reply, if there is one."""
         moment.report(f"{COMMAND_ERROR.decode().strip()}, {self.times} times")
         texts = tuple(Piece(self.seconds if n else 0.0, COMMAND_ERROR) for n in range(self.times))
-        return _followed_by(texts, self.seconds, reply)
+        return followed_by(texts, self.seconds, reply)
 
 
 @kind("duplicated")
@@ -184,12 +184,4 @@ class Echo(Fault):
     def change_reply(self, reply: Reply, moment: Moment) -> Reply:
         """Send the request, then the reply."""
         moment.report(f"{len(moment.request.data)} bytes of the host come back")
-        return _followed_by((Piece(0.0, moment.request.data),), self.seconds, reply)
-
-
-def _followed_by(first: Reply, pause: float, reply: Reply) -> Reply:
-    """Return two replies as one; without a pause they are in one piece."""
-    if reply and not pause + reply[0].pause:
-        glued = Piece(first[-1].pause, first[-1].data + reply[0].data)
-        return (*first[:-1], glued, *reply[1:])
-    return (*first, *(Piece(pause + p.pause if p is reply[0] else p.pause, p.data) for p in reply))
+        return followed_by((Piece(0.0, moment.request.data),), self.seconds, reply)

@@ -72,9 +72,11 @@ class WrongId(Damage):
     id: int | None = ruled(optional(integer(0, 0xFFFF)), None)
 
     def spoil(self, data: bytes, moment: Moment) -> bytes:
-        """Change the id of the first frame."""
+        """Change the id of the first frame; replies of some formats carry none."""
         frame = moment.frame
         if not data.startswith(frame.header) or len(data) < frame.head_size:
+            return data
+        if not frame.has_id(self.of):
             return data
         right = frame.read_id(data)
         other = right + moment.random.randrange(1, 256**frame.id_number.width)
