@@ -23,24 +23,45 @@
       this.table = table;
       this.directions = directions;
       this.frame = table.frame;
-      // The position of LEN; CMD and DATA follow it.
-      this.at = this.frame.header.length + (this.frame.addresses.length ? 1 : 0);
-      this.checkSize =
-        this.frame.check === "footer" ? this.frame.footer.length : this.frame.check === "sum" ? 1 : 2;
-      this.variants = new Map();
+      this.checkSize = this.frame.check_size;
+      this.check = this.frame.check && checkOf(this.frame.check);
       this.lengths = new Set();
+      // For each direction, the messages by id and by LEN; those without an id are under "".
+      this.ids = new Map(directions.map((direction) => [direction, new Map()]));
       for (const direction of directions) this._index(direction);
+      const longest = Math.max(0, ...this.lengths);
+      this.longest = Math.max(this.frame.overhead + longest, this.frame.head_size);
     }
 
     _index(direction) {
       for (const command of this.table.commands) {
         command[direction].forEach((variant, number) => {
-          const length = 1 + variantSize(variant) + this.checkSize;
-          if (!this.variants.has(command.id)) this.variants.set(command.id, []);
-          this.variants.get(command.id).push({ command, direction, variant, number, length });
-          this.lengths.add(length);
+          const key = this._key(direction, command.id);
+          const ids = this.ids.get(direction);
+          if (!ids.has(key)) ids.set(key, new Map());
+          for (const { counts, size } of this._sizes(variant)) {
+            const length = this.frame.data_at[direction] + size + this.checkSize - this.frame.overhead;
+            if (!ids.get(key).has(length)) ids.get(key).set(length, []);
+            ids.get(key).get(length).push({ command, direction, variant, number, counts });
+            this.lengths.add(length);
+          }
         });
       }
+    }
+
+    _key(direction, id) {
+      return direction === "request" || this.frame.replies_have_id ? id : "";
+    }
+
+    // Return the numbers of elements that the lists of a variant can have, and the size of each.
+    _sizes(variant) {
+      let found = [{ counts: [], size: 0 }];
+      for (const field of variant.fields) {
+        const { least, most } = cobotwire.elements(field);
+        found = found.flatMap(({ counts, size }) => Array.from({ length: most - least + 1 }, (_, more) => (
+          { counts: [...counts, least + more], size: size + cobotwire.fieldSize(field, least + more) })));
+      }
+      return found.length === 1 ? found : found.filter(({ size }) => size <= this.frame.maximum_data);
     }
 
     // Return frames and noise of a complete stream. Each byte is judged on its own; adjacent noise with
@@ -49,12 +70,12 @@
       const events = [];
       let offset = 0;
       while (offset < bytes.length) {
-        const rest = bytes.subarray(offset, offset + this.at + 257);
+        const rest = bytes.subarray(offset, offset + this.longest);
         const fault = this.fault(rest);
         const last = events[events.length - 1];
         if (fault === null) {
-          const size = this.at + 1 + rest[this.at];
-          events.push({ offset, size, frame: rest[this.at + 1] });
+          const size = this.frame.overhead + this._length(rest);
+          events.push({ offset, size, frame: this._id(rest) });
           offset += size;
         } else {
           if (last && last.noise === fault.reason) last.size += 1;
@@ -65,53 +86,83 @@
       return events;
     }
 
+    _number(bytes, part) {
+      const { at, width, order } = this.frame.parts[part];
+      return cobotwire.unsigned(bytes, at, width, order);
+    }
+
+    _length(bytes) {
+      return this._number(bytes, "length");
+    }
+
+    _id(bytes) {
+      return this._number(bytes, "command");
+    }
+
     // Return why `bytes` do not begin with a frame, or null if they do. The reason is "truncated" if
     // more bytes could complete one.
     fault(bytes) {
-      const { header, addresses } = this.frame;
+      const { header, layout, parts } = this.frame;
       for (let index = 0; index < header.length; index += 1) {
         if (index >= bytes.length) return new Rejection("truncated", index, () => "the bytes end in the header");
         if (bytes[index] !== header[index])
           return new Rejection("no-header", index, () => `a frame starts with ${hex(header)}`);
       }
-      if (addresses.length && bytes.length >= this.at && !addresses.includes(bytes[this.at - 1]))
-        return new Rejection("bad-address", this.at - 1, () => `the edition has no address ${hex([bytes[this.at - 1]])}`);
-      if (bytes.length <= this.at)
-        return new Rejection("truncated", bytes.length, () => "the bytes end before LEN");
-      const length = bytes[this.at];
-      if (!this.lengths.has(length))
-        return new Rejection("bad-length", this.at, () => `no message has LEN ${hex([length])}`);
-      if (bytes.length === this.at + 1)
-        return new Rejection("truncated", bytes.length, () => "the bytes end before CMD");
-      return this._endFault(bytes, length, bytes[this.at + 1]);
+      for (const part of layout) {
+        const { at, width } = parts[part];
+        if (bytes.length < at + width)
+          return new Rejection("truncated", bytes.length, () => `the bytes end before ${cobotwire.PARTS[part]}`);
+        const fault = this._partFault(part, at, bytes);
+        if (fault !== null) return fault;
+      }
+      return this._pairFault(bytes) || this._endFault(bytes);
     }
 
-    _endFault(bytes, length, id) {
-      const known = this.variants.get(id);
-      if (!known)
-        return new Rejection("unknown-id", this.at + 1, () => `the edition has no id ${hex([id])}`);
-      if (!known.some((each) => each.length === length))
-        return new Rejection("bad-length", this.at, () => `LEN ${hex([length])} is not legal for ${known[0].command.name}`);
-      const end = this.at + 1 + length;
+    _partFault(part, at, bytes) {
+      const { addresses, layout } = this.frame;
+      if (part === "address" && !addresses.includes(bytes[at]))
+        return new Rejection("bad-address", at, () => `the edition has no address ${hex([bytes[at]])}`);
+      if (part === "length" && !this.lengths.has(this._length(bytes)))
+        return new Rejection("bad-length", at, () => `no message has LEN ${this._length(bytes)}`);
+      // After LEN, the two are judged together.
+      if (part === "command" && layout.indexOf("length") > layout.indexOf("command") && !this._known(this._id(bytes)))
+        return this._unknown(bytes);
+      return null;
+    }
+
+    _known(id) {
+      return this.directions.some((direction) => this.ids.get(direction).has(this._key(direction, id)));
+    }
+
+    _unknown(bytes) {
+      const { at, width } = this.frame.parts.command;
+      return new Rejection("unknown-id", at, () => `the edition has no id ${hex(bytes.subarray(at, at + width))}`);
+    }
+
+    // Return the messages with the id and the LEN of a frame.
+    _messages(bytes) {
+      const [id, length] = [this._id(bytes), this._length(bytes)];
+      return this.directions.flatMap((direction) => {
+        const lengths = this.ids.get(direction).get(this._key(direction, id));
+        return (lengths && lengths.get(length)) || [];
+      });
+    }
+
+    _pairFault(bytes) {
+      if (this._messages(bytes).length) return null;
+      if (!this._known(this._id(bytes))) return this._unknown(bytes);
+      const at = this.frame.parts.length.at;
+      return new Rejection("bad-length", at, () => `LEN ${this._length(bytes)} is not legal for this id`);
+    }
+
+    _endFault(bytes) {
+      const end = this.frame.overhead + this._length(bytes);
       if (bytes.length < end)
         return new Rejection("truncated", bytes.length, () => `bytes missing at the end: ${end - bytes.length}`);
       const check = end - this.checkSize;
-      const right = this._check(bytes.subarray(0, check));
+      const right = [...(this.check ? this.check(bytes.subarray(0, check)) : []), ...this.frame.footer];
       const same = right.every((byte, index) => byte === bytes[check + index]);
       return same ? null : new Rejection("bad-check", check, () => `the frame should end with ${hex(right)}`);
-    }
-
-    _check(body) {
-      if (this.frame.check === "footer") return this.frame.footer;
-      if (this.frame.check === "sum") {
-        return [body.subarray(this.at + 1).reduce((sum, byte) => (sum + byte) & 0xff, 0)];
-      }
-      let crc = 0xffff;
-      for (const byte of body) {
-        crc ^= byte;
-        for (let bit = 0; bit < 8; bit += 1) crc = crc & 1 ? (crc >> 1) ^ 0xa001 : crc >> 1;
-      }
-      return [crc >> 8, crc & 0xff];
     }
 
     // Return every reading of a complete frame that allows its values, the preferred one first.
@@ -119,14 +170,14 @@
     read(bytes) {
       const fault = this.fault(bytes);
       if (fault !== null) throw fault;
-      const end = this.at + 1 + bytes[this.at];
+      const end = this.frame.overhead + this._length(bytes);
       if (bytes.length > end) throw new Rejection("trailing", end, () => "LEN ends the frame before the last byte");
       const readings = [];
       let first = null;
-      for (const each of this.variants.get(bytes[this.at + 1])) {
-        if (each.length !== bytes[this.at]) continue;
+      for (const each of this._messages(bytes)) {
         try {
-          readings.push({ ...each, fields: this._fields(each, bytes) });
+          const start = this.frame.data_at[each.direction];
+          readings.push({ ...each, fields: cobotwire.fieldsOf(each, start, bytes) });
         } catch (error) {
           if (!(error instanceof Rejection)) throw error;
           first = first || error;
@@ -135,73 +186,67 @@
       if (!readings.length) throw first;
       return readings;
     }
+  }
 
-    _fields({ command, variant }, bytes) {
-      let offset = this.at + 2;
-      const starts = variant.fields.map((field) => {
-        const start = offset;
-        offset += fieldSize(field);
-        return start;
+  // Return the function that computes a check from the bytes before it, by the parameters of a CRC
+  // (the Rocksoft model) or by its name.
+  function checkOf({ word, from, width, order, crc }) {
+    const number = crc ? crcOf(crc) : (bytes) => sumOf(word, bytes);
+    return (bytes) => {
+      let rest = BigInt.asUintN(8 * width, number(bytes.subarray(from)));
+      const made = Array.from({ length: width }, () => {
+        const byte = Number(rest & 0xffn);
+        rest >>= 8n;
+        return byte;
       });
-      return variant.fields.map((field, index) => {
-        const numbers = caseOf(command, variant, field, starts, bytes).numbers;
-        let at = starts[index];
-        return {
-          field,
-          numbers: numbers.map((number) => {
-            const found = { number, offset: at, raw: rawAt(number, bytes, at) };
-            if (!allows(field, number, found.raw))
-              throw new Rejection("bad-value", at, () => badValue(command, field, number, found.raw));
-            at += number.width;
-            return { ...found, value: physical(number, found.raw) };
-          }),
-        };
-      });
+      return order === "little" ? made : made.reverse();
+    };
+  }
+
+  function sumOf(word, bytes) {
+    if (word === "xor") return BigInt(bytes.reduce((result, byte) => result ^ byte, 0));
+    if (word.startsWith("fletcher")) {
+      const modulus = word === "fletcher" ? 256 : 255;
+      let [first, second] = [0, 0];
+      for (const byte of bytes) {
+        first = (first + byte) % modulus;
+        second = (second + first) % modulus;
+      }
+      return BigInt(second * 256 + first);
     }
+    const total = BigInt(bytes.reduce((sum, byte) => sum + byte, 0));
+    return { sum: total, "inverted-sum": -1n - total, "negated-sum": -total }[word];
   }
 
-  function caseOf(command, variant, field, starts, bytes) {
-    if (field.selector < 0) return field.cases[0];
-    const selector = variant.fields[field.selector];
-    const start = starts[field.selector];
-    const picked = rawAt(selector.cases[0].numbers[0], bytes, start);
-    const found = field.cases.find((each) => each.when.includes(picked));
-    if (!found)
-      throw new Rejection("bad-value", start, () => badValue(command, selector, selector.cases[0].numbers[0], picked));
-    return found;
+  // The register has at least eight bits, so that a whole byte can be added. If the bits of each byte
+  // come from the lowest on, the whole register is mirrored.
+  function crcOf({ width, refin, refout, ...parameters }) {
+    const [poly, init, xorout] = ["poly", "init", "xorout"].map((name) => BigInt(parameters[name]));
+    const bits = Math.max(width, 8);
+    const placed = (value) => (refin ? mirrored(value, width) : value << BigInt(bits - width));
+    const [polynomial, shift, top] = [placed(poly), BigInt(bits - 8), 1n << BigInt(bits - 1)];
+    const step = (crc) => (refin
+      ? (crc >> 1n) ^ (crc & 1n ? polynomial : 0n)
+      : BigInt.asUintN(bits, crc << 1n) ^ (crc & top ? polynomial : 0n));
+    const steps = Array.from({ length: 256 }, (_, byte) => {
+      let crc = refin ? BigInt(byte) : BigInt(byte) << shift;
+      for (let bit = 0; bit < 8; bit += 1) crc = step(crc);
+      return crc;
+    });
+    return (bytes) => {
+      let crc = placed(init);
+      for (const byte of bytes) {
+        crc = refin
+          ? (crc >> 8n) ^ steps[Number(crc & 0xffn) ^ byte]
+          : BigInt.asUintN(bits, crc << 8n) ^ steps[Number(crc >> shift) ^ byte];
+      }
+      if (!refin) crc >>= BigInt(bits - width);
+      return (refin === refout ? crc : mirrored(crc, width)) ^ xorout;
+    };
   }
 
-  function rawAt(number, bytes, offset) {
-    let unsigned = 0;
-    for (let index = 0; index < number.width; index += 1) {
-      const place = number.order === "big" ? index : number.width - 1 - index;
-      unsigned = unsigned * 256 + bytes[offset + place];
-    }
-    return unsigned > number.signed_at ? unsigned - 256 ** number.width : unsigned;
-  }
-
-  function allows(field, number, raw) {
-    if (field.choices.length) return field.choices.includes(raw);
-    return number.minimum <= raw && raw <= number.maximum;
-  }
-
-  function physical(number, raw) {
-    return (raw * number.multiply) / number.divide;
-  }
-
-  function badValue(command, field, number, raw) {
-    const allowed = field.choices.length
-      ? `one of ${field.choices.join(", ")}`
-      : `${physical(number, number.minimum)}..${physical(number, number.maximum)}`;
-    return `${command.name}: ${field.name} is ${physical(number, raw)}; allowed: ${allowed}`;
-  }
-
-  function fieldSize(field) {
-    return field.cases[0].numbers.reduce((sum, number) => sum + number.width, 0);
-  }
-
-  function variantSize(variant) {
-    return variant.fields.reduce((sum, field) => sum + fieldSize(field), 0);
+  function mirrored(value, width) {
+    return BigInt(`0b${value.toString(2).padStart(width, "0").split("").reverse().join("")}`);
   }
 
   function hex(bytes) {
@@ -228,8 +273,10 @@
     return Uint8Array.from(bytes);
   }
 
-  globalThis.cobotwire = Object.assign(globalThis.cobotwire || { tables: {} }, {
-    // `source` is this code, for a worker: a page that is a file may not load another file into one.
-    Law, Rejection, hex, parse, source: `"use strict";(${law})();`,
+  const known = globalThis.cobotwire || { tables: {} };
+  globalThis.cobotwire = Object.assign(known, {
+    // `source` is this code after that of values.js, for a worker: a page that is a file may not load
+    // another file into one.
+    Law, Rejection, hex, parse, source: `${known.source || ""}"use strict";(${law})();`,
   });
 })();

@@ -2,6 +2,7 @@
 // The page: decode the input whenever it changes, and keep it in the fragment of the address, so
 // that a user can send it as a link.
 (function () {
+  const HERE = document.currentScript.src;
   const REASONS = {
     "no-header": "no frame starts here",
     "bad-address": "a header with an address that the edition lacks",
@@ -95,9 +96,31 @@
   function show(root) {
     const { text, edition, direction, output } = parts(root);
     const directions = direction.value === "both" ? ["request", "reply"] : [direction.value];
-    const table = cobotwire.tables[edition.value];
+    output.setAttribute("aria-busy", "true");
+    const mine = (shows += 1);
+    load(edition.value, (table) => {
+      if (mine === shows) decode(root, table, directions, text.value);
+    });
+  }
+
+  // The number of the newest input.
+  let shows = 0;
+
+  // Give an edition's table to `use`; its script is loaded when it is first needed.
+  function load(name, use) {
+    if (name in cobotwire.tables) {
+      use(cobotwire.tables[name]);
+      return;
+    }
+    const script = element("script", { src: new URL(`tables/${name}.js`, HERE).href });
+    script.addEventListener("load", () => use(cobotwire.tables[name]));
+    document.head.append(script);
+  }
+
+  function decode(root, table, directions, text) {
+    const { output } = parts(root);
     const law = new cobotwire.Law(table, directions);
-    ask(root, { text: text.value, table, directions, first: 0, count: EVENTS }, (answer) => {
+    ask(root, { text, table, directions, first: 0, count: EVENTS }, (answer) => {
       if (answer.problem) {
         const { offset, message } = answer.problem;
         output.replaceChildren(element("p", { class: "problem", role: "alert" },
@@ -171,7 +194,7 @@
     const [reading, ...others] = readings;
     const kinds = roles(law, reading, data);
     const card = element("section", { class: "event frame" },
-      element("h3", {}, `${reading.direction} at ${event.offset}: `,
+      element("h3", {}, `${reading.command.event ? "event" : reading.direction} at ${event.offset}: `,
         element("code", {}, reading.command.name)),
       element("p", {}, `${reading.command.title}.`),
       chips(data, (at) => kinds[at].kind),
@@ -185,31 +208,83 @@
 
   // Return, for each byte of a frame, the part of the frame that it belongs to.
   function roles(law, reading, data) {
-    const end = data.length - law.checkSize;
-    const found = Array.from(data, (byte, at) => {
-      if (at < law.frame.header.length) return { kind: "header", name: "header", start: 0, meaning: "a frame starts here" };
-      if (at < law.at) return { kind: "header", name: "address", start: at, meaning: `${byte}` };
-      if (at === law.at) return { kind: "length", name: "LEN", start: at, meaning: `${byte} bytes follow` };
-      if (at === law.at + 1) return { kind: "command", name: "CMD", start: at, meaning: reading.command.name };
-      return { kind: "footer", name: law.frame.check === "footer" ? "footer" : "check", start: end, meaning: "the frame ends here" };
-    });
-    reading.fields.forEach(({ field, numbers }) => {
-      numbers.forEach(({ number, offset, raw, value }) => {
-        const name = number.name ? `${field.name}.${number.name}` : field.name;
-        const role = { kind: "data", name, start: offset, meaning: format(field, number, raw, value) };
-        for (let at = offset; at < offset + number.width; at += 1) found[at] = role;
-      });
+    const { header, layout, parts, check, footer } = law.frame;
+    const end = data.length - footer.length;
+    const checked = { kind: "footer", name: "check", start: end, meaning: check && check.word };
+    const found = Array.from(data, (byte, at) => (at < header.length ? HEADER : at < end ? checked : FOOTER));
+    for (const part of layout) {
+      // A reply without an id has data in its place.
+      if (parts[part].at >= law.frame.data_at[reading.direction]) continue;
+      const { at, width, order } = parts[part];
+      const number = cobotwire.unsigned(data, at, width, order);
+      fill(found, at, width, { start: at, ...PART_ROLES[part](number, data.length - at - width, reading) });
+    }
+    for (const field of reading.fields) for (const role of fieldRoles(field)) fill(found, role.start, role.width, role);
+    return found;
+  }
+
+  const HEADER = { kind: "header", name: "header", start: 0, meaning: "a frame starts here" };
+  const FOOTER = { kind: "footer", name: "footer", start: 0, meaning: "the frame ends here" };
+  const PART_ROLES = {
+    address: (number) => ({ kind: "header", name: "address", meaning: `${number}` }),
+    length: (number, rest) => ({ kind: "length", name: "LEN", meaning: number === rest ? `${number} bytes follow` : `${number}` }),
+    command: (number, rest, reading) => ({ kind: "command", name: "CMD", meaning: reading.command.name }),
+  };
+
+  function fill(found, start, width, role) {
+    for (let at = start; at < start + width; at += 1) found[at] = role;
+  }
+
+  // Return a role for each number of a field; bytes have one for all, so has each text, and each word
+  // of bits.
+  function fieldRoles({ field, numbers, text }) {
+    const unit = field.kind === "text" && field.repeat > 1 ? field.repeat : numbers.length;
+    if (field.kind === "text" && numbers.length) {
+      return text.map((each, index) => dataRole(
+        text.length > 1 || field.repeat > 1 ? `${field.name}[${index}]` : field.name,
+        numbers[index * unit].offset, unit, JSON.stringify(each)));
+    }
+    if (field.kind === "bytes" && numbers.length) {
+      const noun = `${numbers.length} byte${numbers.length === 1 ? "" : "s"}`;
+      return [dataRole(field.name, numbers[0].offset, numbers.length, noun)];
+    }
+    const each = field.cases[0].numbers.length;
+    const found = [];
+    numbers.forEach((read, place) => {
+      const { number, offset } = read;
+      const element = field.least === undefined ? field.name : `${field.name}[${Math.floor(place / each)}]`;
+      const name = number.name ? `${element}.${number.name}` : element;
+      const meaning = format(field, read);
+      const last = found[found.length - 1];
+      if (!number.bits) found.push(dataRole(name, offset, number.width, meaning));
+      else if (last && last.start === offset) last.meaning += `, ${number.name}: ${meaning}`;
+      else found.push(dataRole(element, offset, number.width, `${number.name}: ${meaning}`));
     });
     return found;
   }
 
-  function format(field, number, raw, value) {
-    if (field.kind === "flag") return raw ? "yes" : "no";
-    const label = field.labels[field.choices.indexOf(raw)];
-    if (field.kind === "enum" && label) return `${label} (${raw})`;
+  function dataRole(name, start, width, meaning) {
+    return { kind: "data", name, start, width, meaning };
+  }
+
+  function format(field, { number, raw, value }) {
+    // A part of a word has a kind of its own.
+    const { kind, choices, labels } = number.bits ? number : field;
+    if (kind === "flag") return raw ? "yes" : "no";
+    const label = labels[choices.indexOf(raw)];
+    if (kind === "enum" && label) return `${label} (${raw})`;
     const unit = UNITS[number.unit] || (number.unit && ` ${number.unit}`);
     const scaled = number.multiply === number.divide ? "" : `  (raw ${raw})`;
-    return `${value}${unit}${scaled}`;
+    return `${number.width === 4 && number.encoding === "float" ? shortest(value) : value}${unit}${scaled}`;
+  }
+
+  // Return the shortest decimal of a float of four bytes.
+  function shortest(value) {
+    for (let digits = 1; digits < 9; digits += 1) {
+      const rounded = Number(value.toPrecision(digits));
+      if (Math.fround(rounded) === value) return rounded;
+    }
+    return value;
   }
 
   function chips(data, kindOf) {
@@ -243,7 +318,7 @@
   }
 
   function build(root) {
-    const editions = Object.keys(cobotwire.tables).sort();
+    const editions = [...new Set([...cobotwire.editions, ...Object.keys(cobotwire.tables)])].sort();
     const option = (value, text) => element("option", { value }, text || value);
     root.append(
       element("label", { for: "decoder-hex" }, "Bytes in hex, as your log shows them"),
@@ -274,7 +349,7 @@
     const { text, edition, direction } = parts(root);
     edition.value = FIRST_EDITION;
     text.value = state.get("hex") || EXAMPLES["get_angles"];
-    if (state.get("edition") in cobotwire.tables) edition.value = state.get("edition");
+    if ([...edition.options].some(({ value }) => value === state.get("edition"))) edition.value = state.get("edition");
     if (["both", "request", "reply"].includes(state.get("direction"))) direction.value = state.get("direction");
     show(root);
   }
