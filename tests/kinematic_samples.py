@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Iterable
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.simulator.kinematics import Geometry, geometry_of
+from cobotwire.protocol.robot import Encoders
+from cobotwire.simulator.kinematics import Geometry, geometry_of, ticks
+from cobotwire.simulator.start import steps
 
 LIMITS = [
     (number.physical(number.minimum), number.physical(number.maximum))
@@ -21,6 +24,27 @@ def _geometry() -> Geometry:
 
 
 MYCOBOT_280 = _geometry()
+
+
+def _encoders() -> Encoders:
+    """Return how the encoders of the 280 count, which its edition states."""
+    found = TABLE.robot.encoders
+    assert found is not None
+    return found
+
+
+ENCODERS = _encoders()
+STEPS = steps(TABLE)
+
+
+def reported_angles(degrees: Iterable[float]) -> tuple[float, ...]:
+    """Return angles as the 280 reports them."""
+    return ticks.reported_angles(ENCODERS, degrees, STEPS)
+
+
+def reported_coords(coords: Iterable[float]) -> tuple[float, ...]:
+    """Return coordinates as the 280 reports them."""
+    return ticks.reported_coords(coords, STEPS)
 
 
 def random_angles(rng: random.Random) -> tuple[float, ...]:

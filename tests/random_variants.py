@@ -6,14 +6,14 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from cobotwire_codegen.model import Command, Edition, Field, Type, Value
+from cobotwire_codegen.model import Command, Edition, Field
+from random_values import as_yaml, of_field
 
 Record = dict[str, Any]
-KINDS = ("joint", "q0", "q1", "flag", "mode", "row")
 
 
 @st.composite
-def several_variants(draw: st.DrawFn, direction: str) -> list[list[Record]]:
+def several_variants(draw: st.DrawFn, direction: str, kinds: list[str]) -> list[list[Record]]:
     """Draw two or three variants of a message with different arguments.
 
     A constant marks each, or else only their lengths differ.
@@ -25,26 +25,26 @@ def several_variants(draw: st.DrawFn, direction: str) -> list[list[Record]]:
         names = draw(st.lists(st.sampled_from("abc"), max_size=3, unique=True))
         if any({f["name"] for f in known} == {"tag", *names} for known in variants):
             continue
-        fields = [{"name": name, "type": draw(st.sampled_from(KINDS))} for name in names]
+        fields = [{"name": name, "type": draw(st.sampled_from(kinds))} for name in names]
         constant = {"name": "tag", "type": "tag", "const": tag + 1}
         variants.append([constant, *fields])
     if len(variants) < 2 or direction == "reply":
         # The reply of a query must carry something.
         for variant in variants:
-            variant.append({"name": "d", "type": draw(st.sampled_from(KINDS))})
+            variant.append({"name": "d", "type": draw(st.sampled_from(kinds))})
     if len(variants) < 2:
         variants.append([{"name": "tag", "type": "tag", "const": 9}])
     return variants
 
 
 @st.composite
-def sharing_queries(draw: st.DrawFn, id: int) -> dict[str, Record]:
+def sharing_queries(draw: st.DrawFn, id: int, kinds: list[str]) -> dict[str, Record]:
     """Draw two queries of one id; a constant tells their requests and their replies apart."""
     made: dict[str, Record] = {}
     for index, name in enumerate(("one", "other")):
         tag = {"name": "tag", "type": "tag", "const": 7 + index}
         bus = {"name": "bus", "type": "joint"}
-        answer = {"name": "answer", "type": draw(st.sampled_from(KINDS))}
+        answer = {"name": "answer", "type": draw(st.sampled_from(kinds))}
         made[name] = {
             "id": id,
             "title": "A query",
@@ -57,22 +57,21 @@ def sharing_queries(draw: st.DrawFn, id: int) -> dict[str, Record]:
     return made
 
 
-def draw_arguments(draw: Any, data: Record, edition: Edition, value: Any) -> None:
-    """Draw defaults for some arguments, and an order for some methods, into a spec's data.
-
-    ``value`` is the strategy of a legal value of a field, as a vector states it.
-    """
+def draw_arguments(draw: Any, data: Record, edition: Edition) -> None:
+    """Draw defaults for some arguments, and an order for some methods, into a spec's data."""
     for command in edition.commands:
         record = data["commands"][command.name]
         rows = record.get("request_variants") or [record.get("request", [])]
         full = command.requests[: len(rows)]
-        needed = [{f.name for f in variant if f.const is None} for variant in full]
+        needed = [{f.name for f in variant if f.const is None and not f.counts} for variant in full]
         for index, (variant, row) in enumerate(zip(full, rows)):
             for field, entry in zip(variant, row):
-                plain = entry.keys() == {"name", "type"} and not _selects(field, variant)
+                # A default is a number, a word, or the numbers of a value type.
+                plain = entry.keys() == {"name", "type"} and bool(field.type.parts)
+                plain = plain and not field.counts and not _selects(field, variant)
                 if plain and draw(st.booleans()) and _stay_apart(full, needed, index, field):
                     needed[index].discard(field.name)
-                    entry["default"] = draw(value(field, field.type))
+                    entry["default"] = as_yaml(draw(of_field(field, field.type)))
         if draw(st.booleans()):
             _draw_order(draw, record, command, full, needed)
 
@@ -85,7 +84,7 @@ def _stay_apart(
     full: tuple[tuple[Field, ...], ...], needed: list[set[str]], index: int, field: Field
 ) -> bool:
     """Return whether no call would fit two variants if a field of one had a default."""
-    names = [{f.name for f in variant if f.const is None} for variant in full]
+    names = [{f.name for f in variant if f.const is None and not f.counts} for variant in full]
     rest = needed[index] - {field.name}
     return all(
         not (rest | needed[other] <= names[index] & names[other])
@@ -101,17 +100,10 @@ def _draw_order(
     full: tuple[tuple[Field, ...], ...],
     needed: list[set[str]],
 ) -> None:
-    names = {f.name for variant in full for f in variant if f.const is None}
+    names = {f.name for variant in full for f in variant if f.const is None and not f.counts}
     optional = {f.name for variant in full for f in variant if f.optional}
     always = sorted(set.intersection(*needed) - optional) if needed else []
     others = sorted(names - {*always})
     if names:
         order = [*draw(st.permutations(always)), *draw(st.permutations(others))]
         record["arguments"] = order
-
-
-def constant(field: Field, type: Type) -> Any:
-    """Return the value of a constant as a vector states it."""
-    assert field.const is not None
-    assert not isinstance(type, Value), "a value type has no constant"
-    return type.from_raw(field.const)

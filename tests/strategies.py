@@ -53,8 +53,8 @@ def variants(table: Table = TABLE) -> st.SearchStrategy[CommandVariant]:
 
 
 def _raw(field: Field, number: Number) -> st.SearchStrategy[int]:
-    if field.choices:
-        return st.sampled_from(field.choices)
+    if choices := field.choices or number.choices:
+        return st.sampled_from(choices)
     return st.integers(number.minimum, number.maximum)
 
 

@@ -23,6 +23,7 @@ ROOMS = (
     "session",
     "client",
     "editions",
+    "pymycobot",
     "simulator",
     "inspect",
     "conformance",
@@ -39,6 +40,7 @@ ONE_IMPORTER = {
     "scipy": ["simulator/kinematics/refine.py"],
     "pyarrow": ["codec/arrow.py"],
     "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
+    "libcst": ["pymycobot/migrate/"],
     "ruamel": ["simulator/faults/nodes.py"],
 }
 

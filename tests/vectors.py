@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from cobotwire_codegen.model import Edition, Vector
+from cobotwire_codegen.model import Edition, Octets, Vector
 from cobotwire_codegen.project import editions
 from cobotwire_codegen.render.vectors_json import plain
 
@@ -66,4 +66,13 @@ def limits(name: str, vector: Vector) -> Iterator[tuple[dict[str, Any], bool]]:
 def fields(name: str, vector: Vector) -> dict[str, Any]:
     """Return a vector's values by name, as the codecs return them."""
     found = {key: plain(edition(name), vector, key, value) for key, value in vector.values}
-    return {key: tuple(v) if isinstance(v, list) else v for key, v in found.items()}
+    command = next(each for each in edition(name).commands if each.name == vector.command)
+    octets = {field.name for field in command.fields if isinstance(field.type, Octets)}
+    return {key: _decoded(v, key in octets) for key, v in found.items()}
+
+
+def _decoded(value: Any, octets: bool) -> Any:
+    """Return a value as the codecs do: rows as tuples, bytes instead of hex digits."""
+    if octets and isinstance(value, str):
+        return bytes.fromhex(value)
+    return tuple(value) if isinstance(value, list) else value

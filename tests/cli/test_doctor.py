@@ -54,11 +54,11 @@ def kinds(report: dict[str, Any]) -> list[str]:
 
 def with_noise(noise: bytes) -> list[list[Step]]:
     """Return the scripts of a healthy arm with noise before one reply."""
-    return [*HEALTHY[:3], [noise, *HEALTHY[3]], *HEALTHY[4:]]
+    return [*HEALTHY[:3], [noise, *HEALTHY[3]], *HEALTHY[4:], [SPEED]]
 
 
 def test_doctor_of_a_healthy_arm_sends_only_queries() -> None:
-    with ScriptedPeer(*HEALTHY) as peer:
+    with ScriptedPeer(*HEALTHY, [SPEED]) as peer:
         result = run(peer.url, "--count", "2")
         requests = peer.received
     assert (result.returncode, result.stderr) == (0, "")
@@ -99,7 +99,7 @@ def test_doctor_of_a_silent_arm_stops_after_three_requests() -> None:
 
 def test_doctor_reports_lost_and_illegal_replies() -> None:
     illegal = bytes.fromhex("FE FE 03 2B 07 FA")
-    code, report = examined([[], [RUNNING], [illegal], *HEALTHY[3:]])
+    code, report = examined([[], [RUNNING], [illegal], *HEALTHY[3:], [SPEED]])
     assert code == 1
     assert kinds(report) == ["illegal-reply", "lost-replies"]
     assert report["problems"][1]["text"] == ("no reply in time to 1 of 7 requests (is_power_on)")
@@ -128,7 +128,7 @@ def test_doctor_works_over_tcp_and_records(tmp_path: Path) -> None:
 
 
 def test_doctor_diagnoses_noise_before_the_first_request() -> None:
-    with ScriptedPeer(*HEALTHY) as peer:
+    with ScriptedPeer(*HEALTHY, [SPEED]) as peer:
         stopping = threading.Event()
 
         def send() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from cobotwire.editions import mycobot280
+from cobotwire.editions import mercury_a1, mycobot280
 from cobotwire.simulator import PtyServer, SimulatedArm
 from command_line import PROGRAM, run_program
 from scripted_peer import ScriptedPeer
@@ -71,6 +71,23 @@ def test_doctor_reports_why_an_arm_does_not_move_and_not_that_it_is_healthy() ->
         _, expected, text = map(str, state.values)
         assert (kind, text.startswith(sentence[:40])) == (expected, True)
         assert f"! {kind}: {sentence}" in human.stdout
+
+
+def test_coordinates_that_a_simulated_arm_cannot_compute_are_not_a_lost_reply() -> None:
+    with PtyServer(SimulatedArm(mercury_a1.TABLE, powered=True)) as server:
+        human = run_program("--edition", "mercury_a1", "doctor", server.url, "--count", "1")
+    assert (human.returncode, human.stderr) == (0, "")
+    assert (
+        "- no-coordinates: no reply to get_coords; the edition has no geometry of" in human.stdout
+    )
+    assert human.stdout.endswith("healthy\n")
+
+
+def test_doctor_names_the_command_that_switches_a_mercury_on() -> None:
+    with PtyServer(SimulatedArm(mercury_a1.TABLE)) as server:
+        human = run_program("--edition", "mercury_a1", "doctor", server.url, "--count", "1")
+    assert human.returncode == 1
+    assert "cobotwire call URL power_on switches it on" in human.stdout
 
 
 def test_motion_that_the_arm_rejects_is_reported_after_it_was_sent() -> None:

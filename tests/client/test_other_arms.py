@@ -117,7 +117,7 @@ def package_kind(package: Any, label: str) -> int:
 def test_arm_moves_as_its_edition_states(tmp_path: Path) -> None:
     stated = "motion: {speed: 10, fastest: 400, acceleration: 100000, doc: Fast.}\nframe:"
     with package_of(SPECS["four joints"].replace("frame:", stated, 1), tmp_path) as package:
-        assert package.TABLE.motion == (10.0, 400.0, 100000.0)
+        assert package.TABLE.robot.motion[:3] == (10.0, 400.0, 100000.0)
         clock = SteppedClock()
         simulated = SimulatedArm(package.TABLE, clock=clock, powered=True)
         arm = package.Trial(MemoryTransport(simulated, clock))

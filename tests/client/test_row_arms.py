@@ -12,7 +12,7 @@ from cobotwire import ReplyTimeout, UsageError
 from cobotwire.editions import load
 from cobotwire.simulator import PtyServer, SimulatedArm
 
-EDITIONS = {"mypalletizer260": 4}
+EDITIONS = {"mypalletizer260": 4, "myarm300": 7}
 
 
 @pytest.fixture(params=EDITIONS)
@@ -39,4 +39,4 @@ def test_joints_move_and_are_waited_for(edition: Any, url: str) -> None:
     with InLoop(edition.ASYNC_CLIENT, url) as arm:
         arm.send_angles(second, 100)
         arm.wait_until_reached(second)
-        assert arm.is_in_position(second, 0)
+        assert arm.is_in_position(second)

@@ -19,11 +19,8 @@ from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
-from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import render_python
-from cobotwire_codegen.targets.c import render_c
-from cobotwire_codegen.targets.wireshark import render_wireshark
 
 HERE = Path(__file__).parent / "families"
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
@@ -155,13 +152,6 @@ def test_both_codecs_refuse_malformed_data_with_the_same_text(
             codecs.load(package.TABLE, name).decode("reply", frame)
         texts.append(str(caught.value))
     assert texts[0] == texts[1]
-
-
-def test_targets_without_the_types_name_the_command_and_the_type(edition: Edition) -> None:
-    for target in (render_c, lambda each: render_wireshark([each])):
-        with pytest.raises(SpecError) as caught:
-            target(edition)
-        assert "cannot express status of get_status: status is bits" in str(caught.value)
 
 
 @pytest.mark.parametrize(

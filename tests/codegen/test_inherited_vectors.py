@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 import vectors
+from cobotwire.protocol.robot import load_robot
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.cli import main
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.model import Edition, Vector
+from cobotwire_codegen.publish import edition_json
 
 SPEC = vectors.ROOT / "spec" / "editions"
 HEAD = """\
@@ -178,5 +181,8 @@ def test_unknown_base_of_a_package_is_reported_with_its_place(
 
 
 def test_delta_with_unknown_geometry_inherits_none(file: Path) -> None:
-    assert built(file).geometry is not None
-    assert built(file, "geometry_unknown: No source gives the links.\n").geometry is None
+    assert built(file).robot.geometry is not None
+    unknown = built(file, "geometry_unknown: No source gives the links.\n")
+    assert unknown.robot.geometry is None
+    robot = load_robot(json.loads(edition_json(unknown))["edition"])
+    assert robot.why_no_geometry.endswith("is not known: No source gives the links.")

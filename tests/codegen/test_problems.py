@@ -118,6 +118,41 @@ def test_file_above_the_limit_of_bytes_is_refused_unread(tmp_path: Path) -> None
     ]
 
 
+def test_files_of_an_edition_are_limited_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "v.yaml").write_text("errata: []\n" + "#" * 5000 + "\n")
+    monkeypatch.setattr("cobotwire_codegen.build.parts.MOST_BYTES_TOGETHER", 10_000)
+    lamp = tmp_path / "lamp.yaml"
+    lamp.write_text(LAMP.replace("vectors:", "errata: [v.yaml, v.yaml]\nvectors:"))
+    assert _problems(lamp) == [
+        f"lamp.yaml:{_line(lamp, 'errata')}:18: too-large: with this file the edition has more "
+        "than 10000 bytes, the limit"
+    ]
+    (tmp_path / "v.yaml").write_text("errata: []\n")
+    monkeypatch.setattr("cobotwire_codegen.build.parts.MOST_NODES_TOGETHER", 400)
+    assert _problems(lamp) == []
+    lamp.write_text(LAMP.replace("vectors:", f"errata: [{'v.yaml, ' * 200}]\nvectors:"))
+    assert "the edition has more than 400 values, the limit" in _problems(lamp)[0]
+
+
+def _line(path: Path, start: str) -> int:
+    lines = path.read_text().splitlines()
+    return next(number for number, line in enumerate(lines, 1) if line.startswith(start))
+
+
+def test_long_chain_of_bases_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "lamp0.yaml").write_text(LAMP)
+    head = "class: Lamp\ntitle: A lamp\ndoc: A lamp.\n"
+    for number in range(1, 13):
+        text = f"edition: lamp{number}\nbase: lamp{number - 1}.yaml\n{head}"
+        (tmp_path / f"lamp{number}.yaml").write_text(text)
+    assert _problems(tmp_path / "lamp10.yaml") == []
+    assert _problems(tmp_path / "lamp12.yaml") == [
+        "lamp2.yaml:2:7: too-large: the edition has more than 10 bases below each other, the limit"
+    ]
+
+
 def test_aliases_that_stand_for_a_billion_values_are_refused_at_once(tmp_path: Path) -> None:
     rows = ["a: &a [x, x, x, x, x, x, x, x, x, x]"]
     rows += [f"{b}: &{b} [{', '.join([f'*{a}'] * 10)}]" for a, b in pairwise("abcdefghi")]

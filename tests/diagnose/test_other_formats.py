@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,9 +16,13 @@ from cobotwire.codec.interface import Codec, Frame, Noise
 from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Item
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
-from cobotwire.protocol.table import FrameFormat
+from cobotwire.protocol.table import Check, FrameFormat, Unsigned
 from frame_format_tables import CRC16_MODBUS, SUM_OF_DATA
 
+# Feetech: replies without an id.
+NO_ID = FrameFormat(
+    b"\xff\xff", b"", 40, Check("inverted-sum", "address"), (1, 7), reply_has_id=False
+)
 FORMATS = [
     FrameFormat(b"\xfe\xfe", b"", 40, CRC16_MODBUS),
     FrameFormat(b"\xfe\xfe", b"", 18, SUM_OF_DATA, (1, 2)),
@@ -25,6 +30,22 @@ FORMATS = [
     FrameFormat(b"AT", b"\xfa", 18),
     FrameFormat(b"\xff\xff", b"\xfa", 18),
     FrameFormat(b"\0\0", b"\r", 18),
+    # u-blox: ids of two bytes before a LEN of two bytes that counts the data only.
+    FrameFormat(
+        b"\xb5\x62",
+        b"",
+        60,
+        Check("fletcher", "command", 2, "little"),
+        layout=("command", "length"),
+        counted=("data",),
+        length_number=Unsigned(2, "little"),
+        id_number=Unsigned(2),
+    ),
+    # Dynamixel 2.0: a header of four bytes, a wide LEN, an address.
+    FrameFormat(
+        b"\xff\xff\xfd\0", b"", 40, CRC16_MODBUS, (1, 2), length_number=Unsigned(2, "little")
+    ),
+    NO_ID,
 ]
 CODECS = [
     codecs.load(table, name)
@@ -74,7 +95,34 @@ def test_truncated_frame_has_the_name_of_its_command(codec: Codec, lost: int) ->
     frame = codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)])
     found = _diagnose(codec, [frame[:-lost]])
     assert isinstance(found[0], DamagedFrame)
+    if not codec.table.frame.reply_has_id:
+        assert (found[0].command, found[0].id, found[0].offset) == (None, None, 0)
+        return
     names = [command.name for command in codec.table.commands if command.id == found[0].id]
     assert (found[0].command, found[0].offset) == (" or ".join(names), 0)
     assert "get_angles" in names
     assert not any(isinstance(item, Frame | Noise) for item in found)
+
+
+@pytest.mark.parametrize("name", ["reference", "native"])
+def test_frames_of_formats_without_ids_in_replies_are_described(name: codecs.CodecName) -> None:
+    codec = codecs.load(replace(TABLE, frame=NO_ID), name)
+    whole = codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)], address=7)
+    sizes = {variant.size for command in TABLE.commands for variant in command.reply}
+    unlisted = NO_ID.enclose(0, bytes(min(set(range(1, 20)) - sizes)), 7, "reply")
+    request = codec.encode("send_angle", "request", [1, 10.0, 50])
+    for stream, described in (
+        (whole[:-3], "damaged frame: its end or check is wrong"),
+        (whole[:-1] + b"\0", "damaged frame: its end or check is wrong"),
+        (unlisted, "damaged frame: its LEN is wrong"),
+        (request, "a request, send_angle: an echo, or another host"),
+    ):
+        found, frame = _diagnose(codec, [stream + whole])
+        assert isinstance(found, Finding)
+        assert (found.describe(), found.data) == (described, stream)
+        assert isinstance(frame, Frame)
+    # A host that listens to requests reads their ids.
+    framer, diagnoser = codec.framer("request"), Diagnoser(codec, "request")
+    [damaged] = diagnoser.feed([*framer.feed(request[:-1]), *framer.flush()]) + diagnoser.flush()
+    assert isinstance(damaged, DamagedFrame)
+    assert damaged.command == "send_angle"

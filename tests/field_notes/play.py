@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, NamedTuple
 
 from both_ways import InLoop
@@ -39,21 +40,29 @@ def open_asyncio(url: str) -> Any:
     return InLoop(AsyncMyCobot280, url)
 
 
+def open_layer(url: str) -> Any:
+    """Open our class with the maker's names."""
+    return _opened(import_module("cobotwire.pymycobot"), url)
+
+
 def open_pymycobot(url: str) -> Any:
     """Open the maker's client. The import is local, since our clients do not need it."""
+    return _opened(import_module("pymycobot"), url)
+
+
+def _opened(library: Any, url: str) -> Any:
     if url.startswith("socket://"):
-        from pymycobot import MyCobot280Socket
-
         host, port = url.removeprefix("socket://").split(":")
-        return MyCobot280Socket(host, int(port))
-    from pymycobot import MyCobot280 as Theirs
-
-    return Theirs(url, "115200")
+        return library.MyCobot280Socket(host, int(port))
+    return library.MyCobot280(url, "115200")
 
 
+# The clients that are called as the maker's library is, and do not know `with`.
+AS_LIBRARY = {"layer", "pymycobot"}
 OPENERS: dict[str, Callable[[str], Any]] = {
     "blocking": open_blocking,
     "asyncio": open_asyncio,
+    "layer": open_layer,
     "pymycobot": open_pymycobot,
 }
 
@@ -67,14 +76,14 @@ def play(case: Case, library: str, url: str, client: int = 0) -> tuple[list[Outc
         arm = OPENERS[library](url)
     except Exception as error:
         return [_failed(error)], 0.0
-    options = library == "pymycobot"
+    options = library in AS_LIBRARY
     started = time.monotonic()
     if case.threads:
         outcomes = _in_threads(case, arm, options)
     else:
         outcomes = _in_turn(case.calls[client :: case.clients], case, arm, options)
     seconds = time.monotonic() - started
-    if library != "pymycobot":
+    if library not in AS_LIBRARY:
         arm.__exit__(None, None, None)
     return outcomes, seconds
 

@@ -10,13 +10,16 @@ from contextlib import ExitStack
 import pytest
 
 import cobotwire
-from cobotwire import EditionUnknown, LinkError, MyCobot280, connect, identify
+from cobotwire import EditionUnknown, LinkError, MyCobot280, codec, connect, identify
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.editions import load, names
 from cobotwire.inspect.identification import identify_on
 from cobotwire.session import RequestReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.faults import Scenario, Silent
+from cobotwire.simulator.memory import MemoryTransport
 from cobotwire.transport import open_transport
 from command_line import run_program
 from scripted_peer import ScriptedPeer
@@ -26,8 +29,13 @@ POWERED = bytes.fromhex("FE FE 03 12 01 FA")
 SPEED = bytes.fromhex("FE FE 03 40 32 FA")
 
 
-# One edition for each kind of evidence: queries, or a limit. Another test identifies all editions.
-KINDS = [("mycobot", "pty"), ("mycobot280", "pty"), ("mycobot280", "tcp"), ("mecharm270", "pty")]
+# One edition for each kind of evidence: queries, frames, or a limit. Another test has all editions.
+KINDS = [("mycobot", "pty"), ("mycobot280", "pty"), ("mybuddy", "tcp"), ("mecharm270", "pty")]
+# Their simulated arms reply to the same queries: what differs needs a geometry, or an argument.
+ALIKE = ("mercury_a1", "mercury_b1", "mercury_x1")
+CANDIDATES: dict[str, tuple[str, ...]] = dict.fromkeys(ALIKE, ALIKE)
+# The M750 has every query of the C650, so only what is missing speaks for the C650.
+CANDIDATES["myarm_c650"] = ("myarm_c650", "myarm_m750")
 
 
 @pytest.fixture(params=KINDS)
@@ -75,7 +83,7 @@ def test_connect_async_returns_an_open_asyncio_client(arm: tuple[str, str]) -> N
 
 def test_connect_without_a_reply_or_a_decision_names_the_queries_and_closes_the_port() -> None:
     with ScriptedPeer() as peer:
-        with pytest.raises(EditionUnknown, match=r"is_power_on: no reply\); .*MyCobot280"):
+        with pytest.raises(EditionUnknown, match=r"is_power_on: no reply; .*MyCobot280"):
             connect(peer.url, timeout=0.1)
         MyCobot280(peer.url).close()
     with ScriptedPeer([POWERED], [ANGLES]) as peer:
@@ -96,10 +104,57 @@ def test_identify_sends_few_queries_and_none_that_changes_something(edition: str
 
     with PtyServer(SimulatedArm(table, on_event=note)) as server:
         found = identify(server.url, timeout=0.15)
-    assert found.edition == edition
+    several = CANDIDATES.get(edition, (edition,))
+    assert found.edition == ("" if len(several) > 1 else edition)
+    assert found.candidates == several
     assert {table.command(name).safety for name in received} == {"query"}
     assert len(received) <= 6
     assert len(found.evidence) <= 8
+
+
+def _at_rate(
+    monkeypatch: pytest.MonkeyPatch, edition: str, right: int
+) -> list[tuple[str, int, MemoryTransport]]:
+    """Serve an arm at one baud rate in memory; return the ports that are opened."""
+    opened: list[tuple[str, int, MemoryTransport]] = []
+
+    def open_at(port: str, rate: int) -> MemoryTransport:
+        clock = SteppedClock()
+        arm = SimulatedArm(load(edition).TABLE, clock=clock)
+        peer = (
+            arm
+            if rate == right
+            else Scenario(name="deaf", faults=(Silent(),)).wrap(
+                arm, codec.load(load(edition).TABLE), clock=clock
+            )
+        )
+        opened.append((port, rate, MemoryTransport(peer, clock)))
+        return opened[-1][2]
+
+    monkeypatch.setattr("cobotwire.inspect.identification.open_port", open_at)
+    return opened
+
+
+def test_arm_at_another_baud_rate_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened = _at_rate(monkeypatch, "mycobot280_rdkx5", 1_000_000)
+    found = identify("/dev/ttyS1", timeout=0.3)
+    assert (found.edition, found.baudrate) == ("mycobot280_rdkx5", 1_000_000)
+    assert found.evidence[-1].shows.endswith(", at 1,000,000 baud")
+    # The frames of the Mercury are not sent at a rate that no Mercury has.
+    assert sum("at 1,000,000 baud" not in each.shows for each in found.evidence) >= 2
+    assert not any("mercury" in e.shows for e in found.evidence if "1,000,000" in e.shows)
+    assert [rate for _, rate, _ in opened] == [115_200, 1_000_000]
+    with connect("/dev/ttyS1", timeout=0.3) as arm:
+        assert type(arm).__name__ == "MyCobot280RDKX5"
+    assert len(opened) == 4
+
+
+def test_given_baud_rate_and_urls_are_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened = _at_rate(monkeypatch, "mycobot280", 57_600)
+    assert identify("/dev/ttyS1", baudrate=57_600, timeout=0.3).edition == "mycobot280"
+    assert not identify("socket://host:1", timeout=0.3).replied
+    assert not identify("/dev/ttyS1", timeout=0.3).replied
+    assert [rate for _, rate, _ in opened] == [57_600, 115_200, 115_200, 1_000_000]
 
 
 def test_identify_verb_prints_edition_firmware_and_evidence(arm: tuple[str, str]) -> None:
@@ -111,6 +166,20 @@ def test_identify_verb_prints_edition_firmware_and_evidence(arm: tuple[str, str]
     assert ("firmware" in first) == (edition != "mycobot")
     assert "is_power_on" in evidence[0]
     assert edition in evidence[-1]
+
+
+def test_arm_with_other_frames_is_recognised_by_them() -> None:
+    simulated = SimulatedArm(load("mercury_a1").TABLE)
+    with TcpServer(simulated.connect) as server:
+        found = identify(server.url, timeout=0.15)
+        with pytest.raises(EditionUnknown, match=r"Its replies allow .*mercury_a1") as caught:
+            connect(server.url, timeout=0.15)
+    assert found.candidates == caught.value.candidates == ALIKE
+    assert [(each.query, each.replied) for each in found.evidence[:3]] == [
+        ("is_power_on", False),
+        ("get_system_version", False),
+        ("is_power_on", True),
+    ]
 
 
 def test_connect_names_the_candidates_if_neither_queries_nor_limits_decide() -> None:
@@ -152,4 +221,6 @@ def test_late_reply_to_a_query_is_left_to_the_next_client_on_the_port() -> None:
         identify_on(transport, timeout=0.05)
         late = [frame.request for frame in PortMemory(transport).recall().late]
         transport.close()
-    assert late == [bytes.fromhex("FE FE 02 12 FA")]
+    # One for each frame format that was tried.
+    assert bytes.fromhex("FE FE 02 12 FA") in late
+    assert bytes.fromhex("FE FE 00 02 12 12") in late

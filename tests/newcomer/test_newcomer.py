@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 import vectors
+from newcomer.installing import run
 
 PROTOCOL = """\
 edition: heater
@@ -68,49 +67,6 @@ with PtyServer(SimulatedArm(TABLE)) as server, Heater(server.url) as heater:
     except ValueError as error:
         print(error)
 """
-
-
-def run(
-    *words: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None
-) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [str(word) for word in words],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=300,
-        cwd=cwd,
-        env=env,
-    )
-
-
-@pytest.fixture(scope="module")
-def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Build both distributions as a release builds them."""
-    folder = tmp_path_factory.mktemp("wheels")
-    build = (sys.executable, "-m", "maturin", "build", "--release", "--quiet", "--out", folder)
-    run(*build, cwd=vectors.ROOT)
-    pip = (sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", folder)
-    run(*pip, vectors.ROOT / "codegen")
-    return sorted(folder.glob("*.whl"))
-
-
-@pytest.fixture(scope="module")
-def fresh(tmp_path_factory: pytest.TempPathFactory, wheels: list[Path]) -> Path:
-    """Install the two wheels into a fresh environment, and return the folder of its programs."""
-    folder = tmp_path_factory.mktemp("fresh") / "venv"
-    run(sys.executable, "-m", "venv", folder)
-    [native] = [wheel for wheel in wheels if wheel.name.startswith("cobotwire-")]
-    others = [wheel for wheel in wheels if wheel != native]
-    run(folder / "bin" / "python", "-m", "pip", "install", "--quiet", native, *others)
-    return folder / "bin"
-
-
-@pytest.fixture
-def environment(fresh: Path) -> dict[str, str]:
-    """Return environment variables without Rust or this repository on the path."""
-    kept = {name: value for name, value in os.environ.items() if name in ("HOME", "LANG")}
-    return {**kept, "PATH": f"{fresh}:/usr/bin:/bin"}
 
 
 def test_package_built_from_one_yaml_file_talks_to_its_simulator(

@@ -7,14 +7,10 @@ each value of its selector. The rest are chosen by hand.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Any
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.protocol.table import Field, Variant
 from pymycobot_requests import REQUESTS as OLDER
-
-Arguments = tuple[Any, ...]
+from robots.arguments import Arguments, as_called, corners
 
 _ANGLES = [[0] * 6, [-168, -140, -150, -150, -155, -180], [168, 140, 150, 150, 160, 180]]
 _COORDS = [
@@ -55,51 +51,9 @@ _AS_BEFORE = {"send_angles", "jog_angle", "jog_coord", "jog_increment", "set_too
 _AS_BEFORE |= {"set_world_reference", "set_servo_data", "get_servo_data", "set_pin_mode"}
 
 
-def as_called(name: str, variant: Variant, values: Arguments) -> Arguments:
-    """Return decoded values as the caller's arguments: lists, integers, and radians."""
-    given = [
-        [_plain(v) for v in value] if field.many else _plain(value)
-        for field, value in zip(variant.fields, values)
-        if field.cases[0].numbers[0].maximum > 0  # otherwise it is a constant, not an argument
-    ]
-    if name == "send_radians":
-        given[0] = [math.radians(degrees) for degrees in values[0]]
-    return tuple(given)
-
-
-def _plain(value: float) -> float:
-    # pymycobot accepts neither a bool for 0 or 1, nor 90.0 as a limit.
-    return int(value) if value == int(value) else value
-
-
-def corners(variant: Variant) -> Iterator[tuple[Any, ...]]:
-    """Return values of a variant: the lowest and the highest, for each value of its selectors."""
-    selectors = {field.selector for field in variant.fields} - {-1}
-    picks = {w for field in variant.fields for case in field.cases for w in case.when}
-    chosen: list[int | None] = [*sorted(picks)]
-    for pick in chosen or [None]:
-        for high in (False, True):
-            yield tuple(
-                pick if index in selectors else end(field, high, pick)
-                for index, field in enumerate(variant.fields)
-            )
-
-
-def end(field: Field, high: bool, pick: int | None = None) -> Any:
-    """Return the lowest or the highest value of a field, in the case that ``pick`` selects."""
-    case = field.case(pick)
-    assert case is not None, f"{field.name} has a case for {pick}"
-    steps = [number.maximum if high else number.minimum for number in case.numbers]
-    if field.choices:
-        steps = [field.choices[-1 if high else 0]]
-    numbers = zip(steps, case.numbers)
-    scaled = [n.physical(step) for step, n in numbers]
-    return tuple(scaled) if field.many else scaled[0]
-
-
 def _requests(name: str) -> list[Arguments]:
     found = [] if name in _NO_CORNERS else [
-        as_called(name, variant, values)
+        as_called(TABLE.command(name), variant, values)
         for variant in TABLE.command(name).request for values in corners(variant)
     ]  # fmt: skip
     if name == "set_ssid_pwd":

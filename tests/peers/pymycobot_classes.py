@@ -22,16 +22,30 @@ with warnings.catch_warnings():
     from pymycobot import (
         CommandGenerator,
         MechArm270,
+        Mercury,
+        MyArm,
+        MyArmC,
+        MyArmM,
+        MyBuddy,
         MyCobot,
         MyCobot280,
         MyCobot280RDKX5,
+        MyCobot320,
         MyPalletizer260,
+        Pro400,
+        Pro450Client,
+        Pro630,
     )
     from pymycobot.common import DataProcessor, read, write
     from pymycobot.error import (
         MechArmDataException,
+        MyArmCDataException,
+        MyArmDataException,
+        MyArmMDataException,
         MyCobot280DataException,
+        MyCobot320DataException,
         MyCobotDataException,
+        calibration_parameters,
     )
 
 __all__ = ["CLASSES", "REJECTIONS", "MyCobot", "MyCobot280", "MyPalletizer260"]
@@ -39,22 +53,42 @@ __all__ += ["peer_on", "recording_client", "without_port", "written"]
 
 CLASSES: dict[str, type[Any]] = {
     "MechArm270": MechArm270,
+    # The class serves three robots; two of them have the same messages.
+    "Mercury (A1)": Mercury,
+    "Mercury (B1, X1)": Mercury,
+    "MyArm": MyArm,
+    "MyArmC": MyArmC,
+    "MyArmM": MyArmM,
+    "MyBuddy": MyBuddy,
     "MyCobot": MyCobot,
     "MyCobot280": MyCobot280,
     "MyCobot280RDKX5": MyCobot280RDKX5,
+    "MyCobot320": MyCobot320,
     "MyPalletizer260": MyPalletizer260,
+    "Pro400": Pro400,
+    "Pro450Client": Pro450Client,
+    "Pro630": Pro630,
 }
 
 # Exceptions that a call raises before it writes: on purpose, for an argument outside its limits; or
 # by accident, for a number that does not fit into its bytes (pyserial raises the last of these).
 REJECTIONS = (
     MechArmDataException,
+    MyArmDataException,
+    MyArmCDataException,
+    MyArmMDataException,
     MyCobotDataException,
     MyCobot280DataException,
+    MyCobot320DataException,
     struct.error,
     TypeError,
     ValueError,
 )
+
+
+def library(name: str) -> Any:
+    """Return a class of the library by its name."""
+    return getattr(sys.modules["pymycobot"], name)
 
 
 def peer_on(name: str, port: Any) -> Any:
@@ -65,6 +99,9 @@ def peer_on(name: str, port: Any) -> Any:
         CommandGenerator.__init__(peer)
         # Each module has its own argument check under this name.
         peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
+    elif issubclass(kind, MyArmC | MyArmM):
+        DataProcessor.__init__(peer)
+        peer.calibration_parameters = partial(calibration_parameters, class_name=kind.__name__)
     else:
         DataProcessor.__init__(peer)
         peer.calibration_parameters = peer.parametric_verification

@@ -17,6 +17,8 @@ class Written(Exception):
 class RecordingPort:
     """The part of ``serial.Serial`` that pymycobot uses until it has written a request."""
 
+    is_open = True
+
     def isOpen(self) -> bool:
         return True
 
@@ -44,6 +46,8 @@ class RecordingTransport:
 
 class ReplyingPort:
     """The part of ``serial.Serial`` that pymycobot uses; every write gets the same reply."""
+
+    is_open = True
 
     def __init__(self, reply: bytes = b"") -> None:
         self.written = b""

@@ -64,7 +64,7 @@ class Rig:
 
     def start_over(self) -> None:
         """Reset the arm and power it; powering it by pymycobot would take 1.5 s in each test."""
-        self.arm.state = ArmState(self.arm.table.joints, self.arm.state.geometry)
+        self.arm.state = self.arm.new_state()
         self.state.powered = True
         self.state.enabled = [True] * self.arm.table.joints
         self.received.clear()

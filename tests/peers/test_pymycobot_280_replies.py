@@ -28,7 +28,8 @@ from pymycobot_280_replies import (
     read_by_pymycobot,
     read_by_us,
 )
-from pymycobot_280_requests import REQUESTS, end
+from pymycobot_280_requests import REQUESTS
+from robots.arguments import end
 from strategies import codec_of
 
 # pymycobot reads the locale in a deprecated way, to print faults in Chinese.

@@ -17,7 +17,7 @@ from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.editions.mycobot280 import MyCobot280 as OurMyCobot280
 from cobotwire.protocol.errors import UsageError
 from pymycobot_280_differences import DIFFERENCES, TEXTS, rejected_by_pymycobot
-from pymycobot_280_requests import COMPOSED, LACKING, LOCAL, REQUESTS, as_called
+from pymycobot_280_requests import COMPOSED, LACKING, LOCAL, REQUESTS
 from pymycobot_classes import (
     REJECTIONS,
     MyCobot280,
@@ -28,6 +28,7 @@ from pymycobot_classes import (
 )
 from pymycobot_difference import M280, PALLETIZER, decoded_by, sent_by, sent_by_us
 from pymycobot_ports import ReplyingPort
+from robots.arguments import as_called
 from strategies import codec_of
 
 COMPARED = [command for command in TABLE.commands if command.name not in LACKING]
@@ -135,7 +136,7 @@ def test_legal_request_equals_pymycobots_bytes_or_pymycobot_rejects_it_by_a_ruli
     variant = data.draw(st.sampled_from(variants))
     name = variant.command.name
     arguments = as_called(
-        name, variant.variant, data.draw(strategies.legal_values(variant.variant))
+        variant.command, variant.variant, data.draw(strategies.legal_values(variant.variant))
     )
     request = written(recording_client(codec_name, OurMyCobot280), name, arguments)
     try:

@@ -12,7 +12,6 @@ import time
 import pytest
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.simulator.state import ArmState
 from pymycobot_classes import MyCobot280
 from pymycobot_rig import READ_BACK, Rig, on_ticks, rig_fixtures
 
@@ -36,7 +35,7 @@ def test_step_of_ten_degrees_moves_the_arm_ten(rig: Rig) -> None:
 
 
 def test_power_on_and_off_read_back(rig: Rig) -> None:
-    rig.arm.state = ArmState(TABLE.joints, rig.state.geometry)
+    rig.arm.state = rig.arm.new_state()
     peer = rig.peer
     assert [peer.is_power_on(), peer.is_servo_enable(3), peer.is_all_servo_enable()] == [0, 0, 0]
     assert peer.power_on() == DONE

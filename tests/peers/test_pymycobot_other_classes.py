@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import pytest
 
-from cobotwire.simulator.kinematics import DEGREES_PER_TICK
+from kinematic_samples import ENCODERS
 from pymycobot_classes import MyCobot280, MyPalletizer260
 from pymycobot_rig import Rig, on_ticks, rig_fixtures
 
@@ -33,7 +33,7 @@ def test_280_angle_between_steps_is_truncated_where_ours_is_rounded(cobot: Rig) 
     cobot.peer.send_angle(1, 0.58, 100, _async=True)
     cobot.settle()
     cobot.advance(60)
-    assert cobot.angles[0] == 6 * DEGREES_PER_TICK != pytest.approx(0.58, abs=0.05)
+    assert cobot.angles[0] == 6 * ENCODERS.degrees != pytest.approx(0.58, abs=0.05)
     assert cobot.peer.get_angles()[0] == 0.52
 
 

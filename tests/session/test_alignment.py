@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -11,10 +9,10 @@ from hypothesis import strategies as st
 import json_tables
 import strategies
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec, Frame
+from cobotwire.codec.interface import Codec
 from cobotwire.editions import mycobot, mycobot280
-from cobotwire.protocol.frame_format import FrameFormat
 from cobotwire.session.alignment import Alignment, Part
+from request_parsers import PARSERS, Parser, by_the_law
 
 TABLES = {
     "mycobot": mycobot.TABLE,
@@ -22,46 +20,6 @@ TABLES = {
     "CRC": json_tables.sample("crc"),
     "sum and address": json_tables.sample("sum"),
 }
-Parser = Callable[[Codec, bytes], list[bytes]]
-
-
-def by_the_law(codec: Codec, data: bytes) -> list[bytes]:
-    """Parse as our own codec does."""
-    framer = codec.framer("request")
-    return [event.data for event in framer.feed(data) if isinstance(event, Frame)]
-
-
-def _check_is_right(format: FrameFormat, frame: bytes) -> bool:
-    end = len(frame) - format.check_size
-    return end > format.overhead and format.end(frame[:end]) == frame[end:]
-
-
-def _by_len(format: FrameFormat, data: bytes, cost: Callable[[int], int]) -> Iterator[bytes]:
-    """Trust each LEN; discard ``cost(size)`` bytes of a frame with a wrong check."""
-    at = 0
-    while (at := data.find(format.header, at)) >= 0 and at + format.overhead <= len(data):
-        size = format.overhead + data[at + format.length_at]
-        if at + size > len(data):
-            return
-        frame = data[at : at + size]
-        if _check_is_right(format, frame):
-            yield frame
-            at += size
-        else:
-            at += cost(size)
-
-
-def by_any_len(codec: Codec, data: bytes) -> list[bytes]:
-    """Parse with any LEN; continue after the first header byte of a wrong frame."""
-    return list(_by_len(codec.table.frame, data, lambda size: 1))
-
-
-def by_any_len_skipping(codec: Codec, data: bytes) -> list[bytes]:
-    """Parse with any LEN; discard a wrong frame whole, as textbook parsers do."""
-    return list(_by_len(codec.table.frame, data, lambda size: size))
-
-
-PARSERS = (by_the_law, by_any_len, by_any_len_skipping)
 
 
 def holds_a_frame(parser: Parser, codec: Codec, part: bytes) -> bool:

@@ -17,7 +17,7 @@ from cobotwire.conformance.device.read_back import settings_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
-from cobotwire.simulator.behaviour import BEHAVIOURS, external
+from cobotwire.simulator.behaviour import BEHAVIOURS, external, registry
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
@@ -130,6 +130,7 @@ def test_what_read_by_promises_is_remembered_in_every_edition(
 ) -> None:
     for command in list(BEHAVIOURS):
         monkeypatch.delitem(BEHAVIOURS, command)
+    monkeypatch.setattr(registry, "_FAMILIES", {})
     table: Table = editions.load(name).TABLE
     settings = [setting for command in table.commands for setting in settings_of(table, command)]
     assert settings
@@ -138,7 +139,7 @@ def test_what_read_by_promises_is_remembered_in_every_edition(
         fields = {field.name: _highest(field) for field in setting.variant.fields}
         if setting.command.request_text is not None:
             fields |= dict.fromkeys(setting.command.request_text.fields, "text")
-        arm.perform(setting.command, fields, None)
+        arm.perform(setting.command, fields, arm.receivers(None)[0])
         asked = {f.name: fields[f.name] for f in setting.query_variant.fields}
         found = arm.state.remembered.recall(setting.query, asked)
         assert found == {reported: fields[argument] for reported, argument in setting.pairs}

@@ -9,6 +9,7 @@ import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE, TargetKind
+from cobotwire.protocol.robot import UNSTATED
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.kinematics import Pose
@@ -189,9 +190,9 @@ def test_arm_outside_its_limits_stays_there_until_it_is_sent_inside(
     assert bench.query("get_angles")[1] > -148.35
 
 
-def test_arm_without_geometry_moves_joints_and_rejects_coordinates() -> None:
+def test_arm_of_which_nothing_is_stated_moves_joints_and_rejects_coordinates() -> None:
     clock = SteppedClock()
-    arm = SimulatedArm(replace(TABLE, geometry=None), clock=clock)
+    arm = SimulatedArm(replace(TABLE, robot=UNSTATED), clock=clock)
 
     def query(name: str, *values: Any) -> Any:
         reply = arm.receive(REFERENCE.encode(name, "request", values))

@@ -35,8 +35,8 @@ geometry:
     - {offset: -90, alpha: 90, a: 0, d: 64.62}
     - {offset: 90, alpha: -90, a: 0, d: 73.18}
     - {offset: 0, alpha: 0, a: 0, d: 48.6}
-  encoder_signs: [1, 1, 1, 1, 1, 1]
   doc: It stands on a pedestal of a metre.
+encoders: {ticks: 4096, zero: 2048, highest: 4096, signs: [1, 1, 1, 1, 1, 1], doc: All count up.}
 """
 
 
@@ -95,12 +95,9 @@ def test_delta_with_other_joints_does_not_inherit_the_geometry(tmp_path: Path) -
     assert "geometry" not in made.stdout + made.stderr
 
 
-def test_geometry_is_exact_and_other_axes_are_not_solved() -> None:
+def test_geometry_is_exact_and_belongs_to_no_name() -> None:
     known = geometry_of(TABLE)
     assert known is not None
     assert (known.links[0].d, known.links[1].a, known.links[5].d) == (131.22, -110.4, 48.6)
     assert geometry_of(replace(TABLE, edition="another")) == known
-    assert TABLE.geometry is not None
-    offset, _, a, d = TABLE.geometry.links[0]
-    other = ((offset, 45.0, a, d), *TABLE.geometry.links[1:])
-    assert geometry_of(replace(TABLE, geometry=TABLE.geometry._replace(links=other))) is None
+    assert geometry_of(replace(TABLE, robot=TABLE.robot._replace(geometry=None))) is None

@@ -15,14 +15,15 @@ from hypothesis import strategies as st
 
 from cobotwire.simulator.kinematics import Pose, coords_of, flange, nearest
 from cobotwire.simulator.kinematics.straight import straight_line
-from cobotwire.simulator.kinematics.ticks import (
-    DEGREES_PER_TICK,
-    inside,
-    on_tick,
+from kinematic_samples import (
+    ENCODERS,
+    LIMITS,
+    MYCOBOT_280,
+    random_angles,
     reported_angles,
     reported_coords,
+    within_limits,
 )
-from kinematic_samples import LIMITS, MYCOBOT_280, random_angles, within_limits
 
 # Two pairs read from a real arm with firmware 6.5 (the protocol notes on kinematics).
 RECORDED = [
@@ -43,14 +44,14 @@ angles_on_wire = st.tuples(*(st.integers(-18000, 18000).map(lambda n: n / 100) f
 def test_recorded_pairs_of_a_real_arm_are_reproduced_bit_for_bit(
     angles: tuple[float, ...], coords: tuple[float, ...]
 ) -> None:
-    standing = tuple(map(on_tick, angles))
+    standing = tuple(map(ENCODERS.on_tick, angles))
     assert reported_angles(standing) == angles
     assert reported_coords(coords_of(MYCOBOT_280, standing)) == coords
 
 
 def test_two_examples_of_the_document_are_not_a_pair() -> None:
     angles, coords = NO_PAIR
-    standing = tuple(map(on_tick, angles))
+    standing = tuple(map(ENCODERS.on_tick, angles))
     assert reported_angles(standing) == angles, "these stand on ticks"
     _, turn = flange(MYCOBOT_280, standing).distance(Pose.of(coords))
     assert turn > 0.4
@@ -83,10 +84,11 @@ def test_unrolled_product_equals_the_textbook_formula(angles: tuple[float, ...])
 
 @given(angles_on_wire, st.integers(-2048, 2048))
 def test_tick_is_read_back_unchanged(angles: tuple[float, ...], tick: int) -> None:
-    angle = tick * DEGREES_PER_TICK
+    angle, on_tick = tick * ENCODERS.degrees, ENCODERS.on_tick
     assert on_tick(angle) == on_tick(reported_angles((angle,))[0]) == angle
-    assert all(abs(on_tick(one) - one) <= DEGREES_PER_TICK / 2 for one in angles)
-    low, high = inside(*sorted(angles[:2]))
+    assert all(abs(on_tick(one) - one) <= ENCODERS.degrees / 2 for one in angles)
+    assert ENCODERS.angle(2, ENCODERS.reading(2, angle)) == angle
+    low, high = ENCODERS.inside(0, *sorted(angles[:2]))
     assert min(angles[:2]) <= low or low > high
     assert high <= max(angles[:2]) or low > high
 

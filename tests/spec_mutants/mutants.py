@@ -7,7 +7,16 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from cobotwire_codegen.language import Command, RequestText
-from cobotwire_codegen.language.number_shapes import Exact, Numbers, Range, Real, Whole, as_fraction
+from cobotwire_codegen.language.number_shapes import (
+    Exact,
+    Numbers,
+    Range,
+    Ranges,
+    Real,
+    Reals,
+    Whole,
+    as_fraction,
+)
 from cobotwire_codegen.language.shapes import Hex, Known, Names, Shape, Text, Word, YesNo
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
 from cobotwire_codegen.model import Edition, Quantity, Type
@@ -48,7 +57,7 @@ def _wrong(fact: Fact, edition: Edition) -> Wrong:
         yield from _read_by(node, edition)
     elif fact.kind.endswith(".samples"):
         yield from _each_number(node, Numbers())
-    elif isinstance(shape, Range | Numbers) and isinstance(node, Sequence):
+    elif isinstance(shape, Range | Ranges | Reals | Numbers) and isinstance(node, Sequence):
         yield from _each_number(node, shape)
     elif isinstance(shape, Names):
         yield from _names(fact, edition)

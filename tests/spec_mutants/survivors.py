@@ -20,8 +20,12 @@ REASONS = (
         "both are six bytes without a range; only the name of the class differs",
     ),
     (
-        r"motion\.acceleration .*",
+        r"motion\.(acceleration|near_\w+) .*",
         "only the notes on kinematics state it, and only for the simulated arm",
+    ),
+    (
+        r"(gripper\.speed|servos\.temperature|\w+_edition\.start_values) .*",
+        "no source states it: this project has chosen it, as the edition says",
     ),
     (
         r"quantity\.wire .*\.(servo_word|target_servo_speed|frequency|torque|current|encoder)"

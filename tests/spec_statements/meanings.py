@@ -47,6 +47,7 @@ ROLES = (
     ("paused", r"is_paused", r"Reports whether the motion is paused"),
     ("error", r"get_error_information", r"Reads why the arm did not move"),
     ("version", r"get_system_version", r"Reads the version of the firmware"),
+    ("gripper", r"set_gripper_state", r"Opens, closes|Opens or closes"),
 )
 # A command, the query that reads it back, and what the query then reports (None: fields of the same
 # names).

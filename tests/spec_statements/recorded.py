@@ -1,13 +1,15 @@
-"""States the geometry by pairs of angles and coordinates that a real arm reported."""
+"""States facts of the arm by pairs of angles and coordinates that a real arm reported."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from fractions import Fraction
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from cobotwire_codegen.model import Edition, Geometry
+from cobotwire_codegen.model import Edition, Geometry, Quantity
 
 # Angles in degrees, and the coordinates that the arm reported at them (firmware 6.5 of the 280).
 PAIRS = (
@@ -18,6 +20,11 @@ PAIRS = (
     ((95.18, -0.61, -0.61, -0.61, 88.85, -1.31), (15.3, 7.9, 410.7, -90.03, 0.52, 94.04)),
 )
 MILLIMETRES, DEGREES = 0.3, 0.1
+CALIBRATED = 2048
+# The document's chart of registers (lines 1280 to 1291): address, range, initial value.
+CHART = ("20 0-254 0", "21 0-254 10", "22 0-254 0", "23 0-254 1", "24 0-1000 0")
+# The maker's product parameters of the 280 (elephantrobotics/mycobot_docs, commit bd8e1aaf).
+POWER_INPUT = "12V, 5A"
 ARM = "mycobot"  # and its deltas that state no geometry of their own
 
 
@@ -25,11 +32,11 @@ def geometry(edition: Edition) -> Iterator[str]:
     """Report links that put the end elsewhere than the arm reported, or no links at all."""
     if edition.name not in (ARM, "mycobot280"):
         return
-    if edition.geometry is None:
+    if edition.robot.geometry is None:
         yield "the geometry of the arm is known, but the edition does not state it"
         return
     for angles, (x, y, z, *turns) in PAIRS:
-        place, turned = _end(edition.geometry, angles)
+        place, turned = _end(edition.robot.geometry, angles)
         apart = float(np.abs(place - np.array([x, y, z])).max())
         reported = Rotation.from_euler("xyz", turns, degrees=True)
         off = float(np.degrees((turned.inv() * reported).magnitude()))
@@ -53,10 +60,103 @@ def motion(edition: Edition) -> Iterator[str]:
     """
     if edition.name not in (ARM, "mycobot280"):
         return
-    if edition.motion is None:
+    if edition.robot.motion is None:
         yield "the edition of a real arm does not state how it moves"
-    elif edition.motion.speed * 100 != edition.motion.fastest:
+    elif edition.robot.motion.speed * 100 != edition.robot.motion.fastest:
         yield "100 percent of the speed is not the fastest motion"
 
 
-RULES = (geometry, motion)
+def encoders(edition: Edition) -> Iterator[str]:
+    """Report ticks on which a recorded angle is not, or another zero than the maker states.
+
+    The maker's documentation of the calibration says that the present position becomes 2048.
+    """
+    if edition.name not in (ARM, "mycobot280"):
+        return
+    stated = edition.robot.encoders
+    if stated is None or not stated.signs:
+        yield "the encoders of the arm are known, but the edition does not state them"
+        return
+    for angle in (angle for angles, _ in PAIRS for angle in angles):
+        tick = round(angle * stated.ticks / 360)
+        if int(tick * 36000 / stated.ticks) != round(angle * 100):
+            yield f"{angle} is on no tick of {stated.ticks} in a turn"
+    if stated.zero != CALIBRATED:
+        yield f"the encoder reads {stated.zero} at 0 degrees; the maker says {CALIBRATED}"
+    # Positions 0 to 4096 are -180 to 180 degrees.
+    if stated.highest != stated.ticks:
+        yield f"the highest reading is {stated.highest}, not that of half a turn from zero"
+
+
+def joint_limits(edition: Edition) -> Iterator[str]:
+    """Report limits other than the highest angle that the document's examples send."""
+    if edition.name != ARM:
+        return
+    sent = [
+        value
+        for vector in edition.vectors
+        for name, value in vector.values
+        if vector.example and name == "angle" and isinstance(value, int)
+    ]
+    if set(edition.robot.joint_limits) != {(Fraction(-max(sent)), Fraction(max(sent)))}:
+        yield f"the joints may turn up to {max(sent)} degrees in the examples"
+    if len(edition.robot.joint_limits) != edition.joints:
+        yield "each joint has limits"
+
+
+def error_codes(edition: Edition) -> Iterator[str]:
+    """Report numbers of errors that mean something else where the register is explained."""
+    meanings = [
+        (low, high, text)
+        for type in edition.types
+        if isinstance(type, Quantity)
+        for low, high, text in type.meanings
+    ]
+    codes = edition.robot.error_codes
+    if codes is None:
+        if any("joint" in text for _, _, text in meanings):
+            yield "the numbers of errors are explained, but the simulated arm reports none"
+        return
+    wanted = {
+        r"joint .* limit": [*codes.joint_limits],
+        r".* no solution": [codes.no_solution],
+        r".*straight line": [codes.no_straight_line],
+    }
+    for pattern, numbers in wanted.items():
+        [(low, high)] = [(a, b) for a, b, text in meanings if re.match(pattern, text)]
+        if numbers != [*range(low, high + 1)][: len(numbers)]:
+            yield f"{numbers} differ from {low}..{high}, which mean {pattern}"
+
+
+def servos(edition: Edition) -> Iterator[str]:
+    """Report servos that differ from the document's chart, or from the arm's power input."""
+    if edition.name not in (ARM, "mycobot280"):
+        return
+    chart = {int(row.split()[0]): int(row.split()[-1]) for row in CHART}
+    stated = edition.robot.servos
+    if stated is None or dict(stated.registers) != chart:
+        yield f"the registers differ from the document's chart: {chart}"
+    elif stated.voltage is None or f"{stated.voltage}V" != POWER_INPUT.partition(",")[0]:
+        yield f"the servos report {stated.voltage} V, but the power input is {POWER_INPUT}"
+
+
+def gripper(edition: Edition) -> Iterator[str]:
+    """Report a gripper with another zero than the calibrated one, or with no tick for a percent."""
+    if edition.name not in (ARM, "mycobot280"):
+        return
+    stated = edition.robot.gripper
+    if stated is None or (stated.closed, stated.open) != (CALIBRATED, CALIBRATED + 100):
+        yield f"a closed gripper reads {CALIBRATED}, and one tick more for each percent"
+
+
+def account(edition: Edition) -> Iterator[str]:
+    """Report another Wi-Fi account than an example of the reply shows."""
+    if edition.name not in (ARM, "mycobot280"):
+        return
+    shown = {dict(vector.values)["ssid"] for vector in edition.vectors if vector.text}
+    stated = {dict(each.values).get("ssid") for each in edition.robot.start_values}
+    if not shown & stated:
+        yield f"the arm's Wi-Fi is {stated}, in examples {shown}"
+
+
+RULES = (geometry, motion, encoders, joint_limits, error_codes, servos, gripper, account)

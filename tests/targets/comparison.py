@@ -6,11 +6,15 @@ from typing import NamedTuple
 
 
 class Comparison(NamedTuple):
-    """How much was compared for an edition, and every difference in words."""
+    """How much was compared for an edition, and every difference in words.
+
+    ``refused`` counts the vectors with values or bytes that must be refused.
+    """
 
     vectors: int
     fields: int
     differences: list[str]
+    refused: int = 0
 
 
 class ToolMissing(Exception):

@@ -1,4 +1,4 @@
-"""Print vectors, fields and differences for each target and edition; run by ``make targets``.
+"""Compare each target with all vectors of each edition; run by ``make targets``.
 
 The exit code is 1 if there is a difference, 2 if a target could not run.
 """
@@ -12,8 +12,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from strategies import TABLES
+from cobotwire_codegen.project import editions
 from targets.comparison import Comparison, ToolMissing
+from vectors import ROOT
 
 HERE = Path(__file__).parent
 SHOWN = 5
@@ -22,19 +23,20 @@ SHOWN = 5
 def main() -> int:
     """Compare every target; print the table and the differences."""
     console = Console()
-    table = Table("target", "edition", "vectors", "fields", "differences")
+    table = Table("target", "edition", "vectors", "to refuse", "fields", "differences")
     differences: list[str] = []
     missing = False
+    names = sorted(edition.name for edition in editions(ROOT))
     for path in sorted(HERE.glob("*/comparison.py")):
         target = path.parent.name
-        for edition in sorted(TABLES):
+        for edition in names:
             with console.status(f"{target}, {edition}"):
                 found = _compare(target, edition)
             if isinstance(found, ToolMissing):
-                table.add_row(target, edition, "", "", f"not run: {found}")
+                table.add_row(target, edition, "", "", "", f"not run: {found}")
                 missing = True
                 continue
-            counts = (found.vectors, found.fields, len(found.differences))
+            counts = (found.vectors, found.refused, found.fields, len(found.differences))
             table.add_row(target, edition, *(f"{count:,}" for count in counts))
             differences += [f"{target}, {edition}: {text}" for text in found.differences[:SHOWN]]
     console.print(table)

@@ -1,6 +1,20 @@
 """Code that must type-check."""
 
-from cobotwire import AsyncMyCobot, Limits, MyCobot, RetryPolicy, Sample, StreamReport
+from cobotwire import (
+    AsyncMercuryX1,
+    AsyncMyCobot,
+    AsyncTwoArms,
+    Limits,
+    MercuryX1,
+    MyCobot,
+    MyPalletizer260,
+    RetryPolicy,
+    Sample,
+    StreamReport,
+    TwoArms,
+    connect,
+    connect_async,
+)
 from cobotwire.editions.mycobot import (
     Angles,
     Axis,
@@ -69,3 +83,28 @@ async def drive_async(port: str) -> float:
         await other.move_angles([0, 0, 0, 0, 0, 0], 30)
         angles: Angles = await arm.get_angles()
     return angles.j1
+
+
+async def find(port: str) -> float:
+    """Use the client of whatever edition an arm speaks."""
+    async with await connect_async(port) as found:
+        powered: bool = await found.is_power_on()
+    with connect(port, timeout=1.0) as arm:
+        arm.stop()
+        print(powered, arm.get_angles()[0])
+        if isinstance(arm, MyPalletizer260):
+            return arm.get_coords().x
+        return arm.get_angles()[3] if isinstance(arm, MyCobot280) else 0.0
+
+
+def two_arms() -> None:
+    """Open both arms of a robot."""
+    with TwoArms(MercuryX1, "/dev/left_arm", "/dev/right_arm", timeout=1.0) as robot:
+        left: MercuryX1 = robot.left
+        print(left.get_angles().j7, robot.right.get_angles().j7)
+
+
+async def two_arms_async() -> None:
+    """Open both arms of a robot with asyncio."""
+    async with AsyncTwoArms(AsyncMercuryX1, "/dev/left_arm", "/dev/right_arm") as robot:
+        print((await robot.right.get_angles()).j7)

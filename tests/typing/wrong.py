@@ -37,3 +37,20 @@ async def drive_async(arm: AsyncMyCobot) -> None:
     await arm.send_angles("000000", 30)  # wrong
     for sample in arm.stream(GetAngles(), rate=50):  # wrong
         print(sample)
+
+
+def find(port: str) -> None:
+    """Use what only some editions have, and take a client for that of one edition."""
+    arm = cobotwire.connect(port)
+    arm.get_atom_version()  # wrong
+    one: MyCobot = arm  # wrong
+    print(one)
+
+
+def two_arms() -> None:
+    """Mix up classes and options of two arms."""
+    robot = cobotwire.TwoArms(cobotwire.MercuryX1, "/dev/left_arm", "/dev/right_arm")
+    left: MyCobot = robot.left  # wrong
+    print(left, robot.middle)  # wrong
+    cobotwire.TwoArms(cobotwire.AsyncMercuryX1, "/dev/left_arm", "/dev/right_arm")  # wrong
+    cobotwire.TwoArms(cobotwire.MercuryX1, "/dev/left_arm", "/dev/right_arm", speed=1)  # wrong

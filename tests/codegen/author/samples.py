@@ -13,7 +13,7 @@ from cobotwire_codegen.errors import Problem, SpecError
 from in_process import Ended
 
 FOLDER = Path(__file__).parent / "samples"
-EDITIONS = ("lamp.yaml", "lamp2.yaml", "bus.yaml")
+EDITIONS = ("lamp.yaml", "lamp2.yaml", "bus.yaml", "bus2.yaml")
 
 
 def copied(to: Path) -> Path:

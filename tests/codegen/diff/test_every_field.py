@@ -52,10 +52,15 @@ ARGUMENT = model.Field(
 NEW: dict[str, Any] = {
     "text": model.Text(PLACE, "Said", ("a ",), (("b", "B."),), "", 5),
     "request_text": model.Text(PLACE, "", ("a ",), (("b", "B."),), "", 0),
-    "geometry": model.Geometry(
-        (model.Link(Fraction(0), Fraction(90), Fraction(0), Fraction(100)),), (1,), "One link."
-    ),
-    "motion": model.Motion(Fraction(1), Fraction(2), Fraction(3), "So."),
+    "geometry": model.Geometry((), "No link."),
+    "motion": model.Motion(Fraction(1), Fraction(2), Fraction(3), None, None, "So."),
+    "encoders": model.Encoders(360, 180, 360, (), "So."),
+    "gripper": model.Gripper(Fraction(1), 0, 1, "So."),
+    "servos": model.Servos((), None, None, "So."),
+    "error_codes": model.ErrorCodes((), 1, 2, 3, 4, "So."),
+    "joint_limits": ((Fraction(-1), Fraction(1)),),
+    "start_angles": (Fraction(1),),
+    "start_values": (model.StartValues(PLACE, "get_pin", (("level", 1),)),),
     "range": (Fraction(1), Fraction(2)),
     "requests": ((ARGUMENT,),),
     "replies": ((ARGUMENT,),),

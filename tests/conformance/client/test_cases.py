@@ -10,7 +10,13 @@ from hypothesis import strategies as st
 
 import strategies
 from cobotwire.codec.reference import ReferenceCodec
-from cobotwire.conformance.client import FAULTS, SUITE, Referee, ScriptLine, faulty_replies
+from cobotwire.conformance.client import (
+    SUITE,
+    Referee,
+    ScriptLine,
+    faulty_replies,
+    possible_faults,
+)
 from cobotwire.conformance.client.script import SCRIPT
 from cobotwire.conformance.report import Cause, Report
 from cobotwire.editions.mycobot280 import TABLE
@@ -163,7 +169,7 @@ CALLS = st.lists(
 )
 
 
-@given(CALLS, st.sampled_from([*FAULTS, "good"]), st.booleans())
+@given(CALLS, st.sampled_from([*possible_faults(TABLE), "good"]), st.booleans())
 @settings(max_examples=60)
 def test_client_that_sends_its_script_never_fails(
     calls: list[tuple[strategies.CommandVariant, tuple[object, ...]]], fault: str, acks: bool

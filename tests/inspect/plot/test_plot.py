@@ -14,8 +14,9 @@ from cobotwire import codec as codecs
 from cobotwire.capture import Recording, read
 from cobotwire.cli.app import app
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
+from cobotwire.editions.mypalletizer260 import TABLE as PALLETIZER
 from cobotwire.inspect.plot import Series, series_of_bytes, series_of_packets
-from cobotwire.inspect.plot.charts import BARS, bar_width
+from cobotwire.inspect.plot.charts import BARS, bar_width, draw
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 from cobotwire.simulator.faults import Late, Lost, Scenario, ServoLeak
 from cobotwire.transport import TappedTransport
@@ -131,6 +132,18 @@ def test_plot_draws_recordings_and_raw_bytes(tmp_path: Path) -> None:
     png = tmp_path / "arm.PNG"
     assert run(stream, "-o", png).exit_code == 0
     assert png.read_bytes().startswith(b"\x89PNG")
+
+
+def test_coordinates_are_drawn_by_the_names_and_units_of_their_edition(tmp_path: Path) -> None:
+    codec = codecs.load(PALLETIZER)
+    stream = codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0)])
+    stream += codec.encode("get_coords", "reply", [(100.0, 20.0, 90.0, 45.0)])
+    series, path = series_of_bytes([stream], codec), tmp_path / "arm.svg"
+    draw(series, str(path), "four joints")
+    drawn = path.read_text()
+    for text in ("J4", "end, mm", "end, °", "theta"):
+        assert text in drawn, text
+    assert "J5" not in drawn
 
 
 def test_plot_rejects_wrong_file_names_and_interfaces(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from cobotwire.cli.app import app
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.inspect.plot import draw_pose
 from cobotwire.inspect.plot.pose import points
+from cobotwire.protocol.robot import Robot
 from cobotwire.simulator.kinematics import coords_of, geometry_of
 from command_line import PROGRAM
 
@@ -48,9 +49,9 @@ def test_picture_states_joint_angles_and_flange_position(tmp_path: Path) -> None
 
 
 def test_pose_of_an_arm_with_unknown_geometry_is_rejected(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="the geometry of the arm of edition mine is not known"):
+    with pytest.raises(UsageError, match="edition mine: the geometry of this arm is not known"):
         draw_pose(
-            replace(TABLE, edition="mine", geometry=None), [0] * 6, str(tmp_path / "pose.png")
+            replace(TABLE, edition="mine", robot=Robot()), [0] * 6, str(tmp_path / "pose.png")
         )
 
 

@@ -6,7 +6,13 @@ from collections.abc import Sequence
 from random import Random
 
 from cobotwire.codec.reference import ReferenceCodec
-from cobotwire.conformance.client import FAULTS, Referee, ScriptLine, faulty_replies
+from cobotwire.conformance.client import (
+    FAULTS,
+    Referee,
+    ScriptLine,
+    faulty_replies,
+    possible_faults,
+)
 from cobotwire.conformance.client.referee import DELAY_SECONDS
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Table
@@ -47,7 +53,7 @@ class ClientSuite:
 
     def right_runs(self) -> Sequence[str]:
         """Return the names of a correct client's runs: on good lines and with each fault."""
-        lines = ("good", "no-acks", *FAULTS)
+        lines = ("good", "no-acks", *possible_faults(self._table))
         return [f"{lines[number % len(lines)]} {number}" for number in range(RUNS)]
 
     def accept(self, run: str) -> RightRun:

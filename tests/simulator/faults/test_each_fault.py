@@ -23,6 +23,7 @@ from cobotwire.simulator.faults import (
     Lost,
     Merged,
     Noise,
+    OtherAddress,
     Panic,
     Replaced,
     Scenario,
@@ -33,6 +34,7 @@ from cobotwire.simulator.faults import (
     Stalled,
     Truncated,
     Unplugged,
+    UnrequestedEvent,
     WrongBaud,
     WrongId,
     WrongLength,
@@ -108,6 +110,9 @@ PLAYED: list[tuple[Fault, list[bytes | float], list[tuple[float, bytes]]]] = [
     (Silent(nth=(2,), seconds=0), [IS_POWERED, IS_POWERED], [(0.0, OFF)]),
     (Frozen(commands=(0x19,)), [bytes.fromhex("FE FE 02 19 FA"), 900.0, IS_POWERED], []),
     (FlowControl(), [IS_POWERED], [(0.0, OFF)]),
+    # This edition has neither; conformance/client/test_other_messages.py has one with both.
+    (UnrequestedEvent(), [IS_POWERED], [(0.0, OFF)]),
+    (OtherAddress(), [IS_POWERED], [(0.0, OFF)]),
 ]
 
 

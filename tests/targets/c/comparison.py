@@ -10,7 +10,7 @@ from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.c.messages import messages
 from cobotwire_codegen.targets.c.tables import Tables
 from targets.c.compiled import COMPILERS, SANITIZERS, program
-from targets.c.peer import CPeer, Event, Outcome, Read
+from targets.c.peer import CPeer, Event, Outcome, Read, comparable
 from targets.comparison import Comparison, ToolMissing
 from targets.vectors.comparison import PIECES, Record, read
 from vectors import edition as edition_of
@@ -45,6 +45,7 @@ class Judge:
 
     def __init__(self, document: Record, edition: Edition, peer: CPeer) -> None:
         self._document = document
+        self._frame = edition.frame
         self._peer = peer
         self._messages = messages(edition)
         self._bits = Tables(edition).raw_bits
@@ -72,7 +73,8 @@ class Judge:
         ]
         fields = sum(len(f["raw"]) for r in self._document["messages"] for f in r["fields"])
         count = sum(len(records) for _, records in parts.values())
-        return Comparison(count, fields, differences)
+        refused = sum(len(parts[part][1]) for part in ("rejected", "malformed"))
+        return Comparison(count, fields, differences, refused)
 
     def _place(self, record: Record) -> int:
         return self._index[record["command"], record["direction"], record["variant"]]
@@ -80,22 +82,32 @@ class Judge:
     def _fits_struct(self, record: Record) -> bool:
         """Return whether the struct can hold the rejected value: no constant, and not too large."""
         found = self._messages[self._place(record)].members
+        member = next(member for member in found if member.field.name == record["field"])
         field = next(field for field in record["fields"] if field["name"] == record["field"])
-        fits = -(2 ** (self._bits - 1)) <= field["raw"][record["element"]] < 2 ** (self._bits - 1)
-        return fits and next(m for m in found if m.field.name == record["field"]).count > 0
+        raw, top = int(field["raw"][record["element"]]), 1 << (self._bits - 1)
+        kinds = {leaf.kind for leaves in member.storage.cases for leaf in leaves}
+        if "BYTE" in kinds:
+            return 0 <= raw < 256
+        return member.count > 0 and ("RAW" not in kinds or -top <= raw < top)
 
     def _message(self, record: Record) -> Iterator[str]:
         index, data = self._place(record), bytes.fromhex(record["bytes"])
-        raw, values = self._given(record, "raw"), self._given(record, "value")
-        yield from _unequal("built", self._peer.encode(index, raw), data)
-        yield from _unequal("built of values", self._peer.encode_values(index, values), data)
-        yield from _unequal("read", self._peer.decode(index, data), Read(index, raw, values))
+        raw = self._given(record, "raw")
+        values = [float(value) for value in self._given(record, "value")]
+        address = (self._frame.address_values or (0,))[0]
+        right = Read(index, raw, list(map(comparable, values)))
+        yield from _unequal("built", self._peer.encode(index, raw, address), data)
+        yield from _unequal(
+            "built of values", self._peer.encode_values(index, values, address), data
+        )
+        yield from _unequal("read", self._peer.decode(index, data), right)
         found = self._peer.read(record["direction"], data)
         name = self._messages[found.message].command.name if isinstance(found, Read) else found
         yield from _unequal("read as", name, record["read_as"])
 
     def _rejected(self, record: Record) -> Iterator[str]:
-        found = self._peer.encode(self._place(record), self._given(record, "raw"))
+        address = (self._frame.address_values or (0,))[0]
+        found = self._peer.encode(self._place(record), self._given(record, "raw"), address)
         yield from _unequal("built", self._where(found), (record["field"], record["element"]))
 
     def _where(self, found: bytes | Outcome) -> object:
@@ -114,20 +126,25 @@ class Judge:
         for size in PIECES:
             pieces = [(data[at : at + size], False) for at in range(0, len(data), size)]
             events, _ = self._peer.events(record["direction"], [*pieces, (b"", True)])
-            found = [_as_written(event, self._at) for event in joined(events)]
+            found = [self._as_written(event) for event in joined(events)]
             yield from _unequal(f"in pieces of {size}", found, record["events"])
 
-    @property
-    def _at(self) -> int:
-        """Return the offset of the command id in a frame."""
-        frame = self._document["frame"]
-        return len(bytes.fromhex(frame["header"])) + bool(frame["addresses"]) + 1
+    def _as_written(self, event: Event) -> Record:
+        place = {"offset": event.offset, "size": len(event.data)}
+        at, number = self._frame.offset("command"), self._frame.command_number
+        id = int.from_bytes(event.data[at : at + number.width], number.order)
+        return place | ({"frame": id} if event.reason == "ok" else {"noise": event.reason})
 
     def _given(self, record: Record, key: str) -> list[Any]:
         """Return the numbers of a record in the order of the message's struct."""
         given = {field["name"]: field[key] for field in record["fields"]}
-        members = self._messages[self._place(record)].fields
-        return [number for member in members for number in given[member.field.name]]
+        found: list[Any] = []
+        for member in self._messages[self._place(record)].fields:
+            numbers, stored = given[member.field.name], member.storage
+            if member.counter:
+                found.append(len(numbers) // (stored.each * len(stored.cases[0])))
+            found += numbers
+        return found
 
 
 def joined(events: list[Event]) -> list[Event]:
@@ -139,12 +156,6 @@ def joined(events: list[Event]) -> list[Event]:
         else:
             found.append(event)
     return found
-
-
-def _as_written(event: Event, id_at: int) -> Record:
-    place = {"offset": event.offset, "size": len(event.data)}
-    kind = {"frame": event.data[id_at]} if event.reason == "ok" else {"noise": event.reason}
-    return place | kind
 
 
 def _unequal(what: str, found: object, right: object) -> Iterator[str]:

@@ -1,9 +1,12 @@
 /* Runs an edition's C code on operations from standard input, in native byte order. Each input has
  * memory of exactly its size, so that the sanitizers detect every access beyond it. */
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "floats.h"
 #include "physical.h"
 
 #define UNTOUCHED 0xA5
@@ -57,41 +60,38 @@ static void give_outcome(unsigned status, const P(fault_t) *fault)
 
 static void give_numbers(unsigned message, const P(any_t) *any)
 {
+    int64_t raw[NUMBERS] = {0};
     double physical[NUMBERS] = {0};
+    const size_t count = to_numbers(message, any, raw, physical);
     size_t i;
 
-    to_physical(message, any, physical);
-    give_u16(COUNTS[message]);
-    for (i = 0; i < COUNTS[message]; i++) {
-        const int64_t raw = any->numbers[i];
-        give(&raw, sizeof raw);
+    give_u16(count);
+    for (i = 0; i < count; i++) {
+        give(&raw[i], sizeof raw[i]);
         give(&physical[i], sizeof physical[i]);
     }
 }
 
-static void encode(bool from_values)
+/* Take as many numbers as are sent: raw values, then physical values. */
+static void encode(void)
 {
     const unsigned message = take_u16(), address = take_u16(), room = take_u16();
+    const bool from_values = take_u16() != 0;
+    const size_t count = take_u16();
     P(any_t) any;
     P(fault_t) fault = {0, 0, 0, 0};
     uint8_t *out = malloc(room ? room : 1);
+    int64_t raw[NUMBERS];
     double physical[NUMBERS];
-    size_t i, size = 0;
+    size_t size = 0;
     unsigned status;
 
-    if (!out) {
+    if (!out || count > NUMBERS) {
         exit(3);
     }
-    for (i = 0; i < COUNTS[message]; i++) {
-        int64_t raw;
-        take(from_values ? (void *)&physical[i] : (void *)&raw, 8);
-        if (!from_values) {
-            any.numbers[i] = (P(raw_t))raw;
-        }
-    }
-    if (from_values) {
-        from_physical(message, physical, &any);
-    }
+    take(raw, count * sizeof raw[0]);
+    take(physical, count * sizeof physical[0]);
+    from_numbers(message, from_values, raw, physical, &any);
     status = typed_encode(message, (uint8_t)address, &any, out, room, &size, &fault);
     give_outcome(status, &fault);
     give_u16(size);
@@ -201,8 +201,7 @@ int main(void)
 
     while ((operation = getchar()) != EOF) {
         switch (operation) {
-        case 'w': encode(false); break;
-        case 'v': encode(true); break;
+        case 'e': encode(); break;
         case 'd': decode(true); break;
         case 'r': decode(false); break;
         case 'f': frame(); break;

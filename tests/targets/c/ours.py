@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 from cobotwire.codec.events import DecodedMessage as Read
 from cobotwire.codec.interface import Codec, Event, Frame
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.table import Direction
+from cobotwire.protocol.table import Direction, Variant
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.c.messages import messages
 from strategies import CommandVariant
@@ -28,16 +29,29 @@ class CodecSide:
 
     def number(self, variant: CommandVariant) -> int:
         """Return the C code's number of a variant."""
-        return self.index[variant.command.name, variant.direction, variant.number]
+        return self._index(variant.command.name, variant.direction, variant.number)
 
-    def flat(self, message: int, values: Sequence[Any]) -> list[float]:
-        """Return the fields' values as the numbers of a struct, which leaves out constants."""
-        return [
-            float(number) if isinstance(number, float) else int(number)
-            for member, value in zip(self.messages[message].members, values)
-            for number in (value if isinstance(value, tuple) else (value,))
-            if member.count
+    def _index(self, command: str, direction: Direction, number: int) -> int:
+        """Return the C code's number; the sizes of a list are one message there."""
+        return self.index.get((command, direction, number), self.index[command, direction, 0])
+
+    def flat(self, message: int, variant: Variant, values: Sequence[Any]) -> list[float]:
+        """Return the fields' values as the numbers of a struct: no constants, but counts."""
+        rows = [
+            field.flatten(value, len(field.cases[0].numbers))
+            for field, value in zip(variant.fields, values)
         ]
+        return self.flat_rows(message, rows)
+
+    def flat_rows(self, message: int, rows: Sequence[Sequence[float]]) -> list[float]:
+        """Return rows of numbers, one for each field, as the numbers of a struct."""
+        found: list[float] = []
+        for member, row in zip(self.messages[message].members, rows):
+            if member.counter:
+                found.append(len(row) // (member.storage.each * len(member.storage.cases[0])))
+            if member.count:
+                found += [n if isinstance(n, float) else int(n) for n in row]
+        return found
 
     def encoded(self, variant: CommandVariant, values: Sequence[Any]) -> object:
         """Return the frame, or the field and the element that is rejected."""
@@ -72,12 +86,12 @@ class CodecSide:
     def _as_read(self, found: Read, data: bytes) -> object:
         variants = found.command.variants(found.direction)
         number = next(i for i, variant in enumerate(variants) if variant is found.variant)
-        index = self.index[found.command.name, found.direction, number]
-        raw_values = found.variant.unpack(self.codec.table.frame.data(data))
+        index = self._index(found.command.name, found.direction, number)
+        raw_values = found.variant.unpack(self.codec.table.frame.data(data, found.direction))
         return peer.Read(
             index,
-            [int(raw) for raw in self.flat(index, raw_values)],
-            [float(value) for value in self.flat(index, found.values)],
+            [int(raw) for raw in self.flat_rows(index, raw_values)],
+            [peer.comparable(value) for value in self.flat(index, found.variant, found.values)],
         )
 
     def read_in_c(self, found: peer.Read | peer.Outcome) -> object:
@@ -110,7 +124,12 @@ def _argument(argument: str, variant: CommandVariant) -> object:
 
 def _field(error: ProtocolError) -> str:
     """Return the command and the field that an error names."""
-    return str(error).partition(" is ")[0] if error.reason == "bad-value" else ""
+    if error.reason != "bad-value":
+        return ""
+    command, _, rest = str(error).partition(": ")
+    # "byte 3 of label is ...", "joints[1].angle is ..."
+    field = re.split(r"[.\[]", rest.partition(" is ")[0].rpartition(" of ")[2])[0]
+    return f"{command}: {field}"
 
 
 def events(found: Sequence[Event]) -> Iterator[peer.Event]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import subprocess
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple
@@ -50,6 +50,11 @@ class Event(NamedTuple):
     data: bytes
 
 
+def comparable(value: float) -> float:
+    """Return a number that equals itself: NaN becomes a number that no message carries."""
+    return float(value) if value == value else 1e300
+
+
 class CPeer:
     """Talk to a harness in its own process; report what the sanitizers found."""
 
@@ -75,28 +80,31 @@ class CPeer:
         assert self._process.returncode == 0, errors.decode()
 
     def encode(
-        self, message: int, raw_values: Iterable[int], address: int = 0, room: int = 300
+        self, message: int, raw_values: Sequence[int], address: int = 0, room: int = 20_000
     ) -> bytes | Outcome:
         """Build a frame from raw values."""
-        return self._encode(b"w", message, list(raw_values), address, room, "q")
+        return self._encode(message, False, raw_values, [0.0] * len(raw_values), address, room)
 
     def encode_values(
-        self, message: int, values: Iterable[float], address: int = 0
+        self, message: int, values: Sequence[float], address: int = 0
     ) -> bytes | Outcome:
         """Build a frame from physical values, with the header's helpers."""
-        return self._encode(b"v", message, list(values), address, 300, "d")
+        # The number of elements of a list is an integer in both rows.
+        counts = [int(value) if abs(value) < 2**31 else 0 for value in values]
+        return self._encode(message, True, counts, values, address, 20_000)
 
     def _encode(
         self,
-        operation: bytes,
         message: int,
-        numbers: Sequence[float],
+        from_values: bool,
+        raw_values: Sequence[int],
+        values: Sequence[float],
         address: int,
         room: int,
-        kind: str,
     ) -> bytes | Outcome:
-        head = struct.pack("=cHHH", operation, message, address, room)
-        self._send(head + struct.pack(f"={len(numbers)}{kind}", *numbers))
+        count = len(values)
+        head = struct.pack("=cHHHHH", b"e", message, address, room, from_values, count)
+        self._send(head + struct.pack(f"={count}q{count}d", *raw_values, *values))
         outcome = self._outcome()
         frame = self._take(self._u16())
         return frame if outcome.status == "ok" else outcome
@@ -115,7 +123,8 @@ class CPeer:
         if outcome.status != "ok":
             return outcome
         numbers = [struct.unpack("=qd", self._take(16)) for _ in range(self._u16())]
-        return Read(message, [raw for raw, _ in numbers], [value for _, value in numbers])
+        values = [comparable(value) for _, value in numbers]
+        return Read(message, [raw for raw, _ in numbers], values)
 
     def events(
         self,

@@ -63,9 +63,9 @@ def test_legal_message_encodes_and_decodes_as_in_codec(
     frame, number = ours.encoded(variant, values), ours.number(variant)
     assert isinstance(frame, bytes)
     found = peer.decode(number, frame)
-    assert found == (number, found[1], ours.flat(number, values))
+    assert found == (number, found[1], ours.flat(number, variant.variant, values))
     assert peer.encode(number, found[1]) == frame
-    assert peer.encode_values(number, ours.flat(number, values)) == frame
+    assert peer.encode_values(number, ours.flat(number, variant.variant, values)) == frame
     direction = variant.direction
     assert ours.read_in_c(peer.read(direction, frame)) == ours.read(direction, frame)
 
@@ -106,7 +106,8 @@ def test_any_value_is_encoded_or_rejected_as_in_codec(
     )
     values = data.draw(_any_values(variant))
     number = ours.number(variant)
-    found = ours.rejected_in_c(peer.encode_values(number, ours.flat(number, values)))
+    numbers = ours.flat(number, variant.variant, values)
+    found = ours.rejected_in_c(peer.encode_values(number, numbers))
     assert found == ours.encoded(variant, values)
 
 
@@ -120,7 +121,8 @@ def test_half_a_step_rounds_to_even(
     )
     values = (1, eighths / 8, 20)
     number = ours.number(variant)
-    assert peer.encode_values(number, ours.flat(number, values)) == ours.encoded(variant, values)
+    numbers = ours.flat(number, variant.variant, values)
+    assert peer.encode_values(number, numbers) == ours.encoded(variant, values)
 
 
 @QUICK

@@ -8,16 +8,15 @@ from dataclasses import replace
 import pytest
 
 import vectors
-from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.targets.vectors.document import document
 from strategies import TABLES
 from targets.c.comparison import compare, judged
 from targets.c.compiled import COMPILERS, missing
+from targets.c.specs import SPECS, edition_of
 from targets.vectors.comparison import read
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)
-FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
 QUICK = ("-O0",)
 WITH_GCC = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
 ON_EACH = pytest.mark.parametrize(
@@ -38,11 +37,11 @@ def test_c_code_agrees_with_every_vector(name: str, compiler: str) -> None:
     assert found.fields > 300
 
 
-@ON_EACH
-@pytest.mark.parametrize("family", ["mercury", "mybuddy"])
-def test_c_code_of_other_frame_formats_agrees_with_vectors(family: str, compiler: str) -> None:
-    edition = build_edition(FAMILIES / f"{family}.yaml", FAMILIES)
-    found = judged(json.loads(document(edition)), edition, compiler)
+@WITH_GCC
+@pytest.mark.parametrize("name", sorted(SPECS))
+def test_c_code_of_other_types_and_frames_agrees_with_vectors(name: str) -> None:
+    edition = edition_of(SPECS[name])
+    found = judged(json.loads(document(edition)), edition, "gcc")
     assert found.differences == []
     assert found.vectors > 50
 

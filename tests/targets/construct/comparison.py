@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
-from construct import ConstructError
+from construct import Array, Bytes, Const, ConstructError, Struct, Switch
 
 from targets.built import built
 from targets.comparison import Comparison
 from targets.vectors.comparison import Record, read
+from vectors import edition as edition_of
 
 Key = tuple[str, str, int]
 
@@ -25,20 +26,26 @@ def messages(edition: str) -> dict[Key, Any]:
 
 def compare(edition: str, declared: dict[Key, Any] | None = None) -> Comparison:
     """Compare every vector of an edition, with the given declarations or the generated ones."""
-    document, declared = read(edition), declared or messages(edition)
-    differences = []
+    return judged(read(edition), declared or messages(edition))
+
+
+def judged(document: Record, declared: dict[Key, Any]) -> Comparison:
+    """Compare the vectors of a document with the declarations."""
+    differences, id_at = [], edition_of(document["edition"]).frame.offset("command")
     for record in document["messages"]:
         declaration = declared[record["command"], record["direction"], record["variant"]]
         differences += [f"{record['name']}: {text}" for text in _message(record, declaration)]
     for record in document["malformed"]:
-        differences += [f"{record['name']}: {text}" for text in _malformed(record, declared)]
+        differences += [f"{record['name']}: {text}" for text in _malformed(record, declared, id_at)]
     fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
     count = len(document["messages"]) + len(document["malformed"])
-    return Comparison(count, fields, differences)
+    return Comparison(count, fields, differences, len(document["malformed"]))
 
 
 def numbers(value: Any) -> list[Any]:
     """Return what construct read in a field, as a list of numbers."""
+    if isinstance(value, bytes | list):
+        return list(value)
     if isinstance(value, dict):
         return [part for name, part in value.items() if name != "_io"]
     return [int(value) if isinstance(value, str | bool) else value]
@@ -54,19 +61,24 @@ def frame_built(declaration: Any, values: dict[str, list[Any]]) -> bytes:
     given: dict[str, Any] = {}
     for part in declaration.subcons:
         name = part.name.removesuffix("_ahead")
-        if name in values:
-            given[part.name] = _as_declared(part, values[name], values)
+        # Constants are built without a value.
+        if name in values and not isinstance(part.subcon, Const):
+            given[part.name] = _as_declared(part.subcon, values[name], values)
     data: bytes = declaration.build(given)
     return data
 
 
-def _as_declared(part: Any, numbers: list[Any], values: dict[str, list[Any]]) -> Any:
-    if len(numbers) == 1:
-        return numbers[0]
-    inner = part.subcon
-    if hasattr(inner, "cases"):
-        inner = inner.cases[next(int(n[0]) for name, n in values.items() if name == "kind")]
-    return dict(zip((item.name for item in inner.subcons), numbers))
+def _as_declared(declared: Any, numbers: list[Any], values: dict[str, list[Any]]) -> Any:
+    if isinstance(declared, Switch):
+        context = {f"{name}{end}": n[0] for name, n in values.items() for end in ("", "_ahead")}
+        declared = declared.cases[declared.keyfunc(context)]
+    if isinstance(declared, Bytes):
+        return bytes(numbers)
+    if isinstance(declared, Array):
+        return [_as_declared(declared.subcon, [number], values) for number in numbers]
+    if isinstance(declared, Struct):
+        return dict(zip((item.name for item in declared.subcons), numbers, strict=True))
+    return numbers[0]
 
 
 def _message(record: Record, declaration: Any) -> Iterator[str]:
@@ -84,12 +96,12 @@ def _message(record: Record, declaration: Any) -> Iterator[str]:
         yield f"built {again.hex(' ')}"
 
 
-def _malformed(record: Record, declared: dict[Key, Any]) -> Iterator[str]:
+def _malformed(record: Record, declared: dict[Key, Any], id_at: int) -> Iterator[str]:
     """Yield every message of that direction that accepts malformed bytes."""
     data = bytes.fromhex(record["bytes"])
     for (command, direction, variant), declaration in declared.items():
         # The others reject the id, which each of them declares as a constant.
-        if direction == record["direction"] and data[3:4] in (b"", _id(declaration)):
+        if direction == record["direction"] and data[id_at : id_at + 1] in (b"", _id(declaration)):
             try:
                 declaration.parse(data)
             except ConstructError:

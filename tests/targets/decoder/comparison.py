@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,10 +28,20 @@ def compare(edition: str) -> Comparison:
 
 def judged(document: Record, table: str) -> Comparison:
     """Run a document's messages, malformed bytes and streams with a table's script."""
+    [found] = judged_all([(document, table)])
+    return found
+
+
+def judged_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
+    """Run several documents, each with the script of its table, in one browser."""
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "harness.html"
-        page.write_text(_page(document, table))
-        found = browser.result(page)
+        page.write_text(_page(documents), encoding="utf-8")
+        made = browser.result(page)
+    return [_compared(document, each) for (document, _), each in zip(documents, made, strict=True)]
+
+
+def _compared(document: Record, found: Any) -> Comparison:
     judges = {"messages": _message, "malformed": _malformed, "streams": _stream}
     differences = [
         f"{record['name']}: {text}"
@@ -42,14 +52,14 @@ def judged(document: Record, table: str) -> Comparison:
     count = sum(len(found[part]) for part in judges)
     assert count == sum(len(document[part]) for part in judges)
     fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
-    return Comparison(count, fields, differences)
+    return Comparison(count, fields, differences, len(document["malformed"]))
 
 
-def _page(document: Record, table: str) -> str:
+def _page(documents: Sequence[tuple[Record, str]]) -> str:
     scripts = [
-        (SCRIPTS / "law.js").read_text(),
-        table,
-        f"const cobotwireVectors = {json.dumps(document)};",
+        *((SCRIPTS / f"{name}.js").read_text() for name in ("values", "law")),
+        *(table for _, table in documents),
+        f"const cobotwireVectors = {json.dumps([document for document, _ in documents])};",
         HARNESS.read_text(),
     ]
     body = "".join(f"<script>{script}</script>" for script in scripts)
@@ -57,7 +67,12 @@ def _page(document: Record, table: str) -> str:
 
 
 def _message(record: Record, made: Any) -> Iterator[str]:
-    fields = [{key: f[key] for key in ("name", "raw", "value")} for f in record["fields"]]
+    # JavaScript writes raw values as texts: those of floats may have 64 bits.
+    fields = [
+        {key: f[key] for key in ("name", "value", "text") if key in f}
+        | {"raw": list(map(str, f["raw"]))}
+        for f in record["fields"]
+    ]
     # The bytes may decode as another command with the same id; then only that one is reported.
     if "error" in made or made["read_as"] != record["read_as"]:
         yield f"{made}, not read as {record['read_as']}"

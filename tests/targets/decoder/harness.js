@@ -7,10 +7,11 @@
       const readings = new cobotwire.Law(table, [record.direction]).read(bytes(record.bytes));
       const mine = readings.find(
         (each) => each.command.name === record.command && each.number === record.variant);
-      const fields = mine && mine.fields.map(({ field, numbers }) => ({
+      const fields = mine && mine.fields.map(({ field, numbers, text }) => ({
         name: field.name,
-        raw: numbers.map((each) => each.raw),
-        value: numbers.map((each) => each.value),
+        text,
+        raw: numbers.map((each) => String(each.raw)),
+        value: numbers.map((each) => (Number.isFinite(each.value) ? each.value : String(each.value))),
       }));
       return { read_as: readings[0].command.name, fields };
     },
@@ -27,17 +28,16 @@
       return new cobotwire.Law(table, listening).cut(bytes(record.bytes));
     },
   };
-  const table = cobotwire.tables[cobotwireVectors.edition];
-  const found = {};
-  for (const [part, judge] of Object.entries(parts)) {
-    found[part] = cobotwireVectors[part].map((record) => {
+  const found = cobotwireVectors.map((document) => {
+    const table = cobotwire.tables[document.edition];
+    return Object.fromEntries(Object.entries(parts).map(([part, judge]) => [part, document[part].map((record) => {
       try {
         return judge(record, table);
       } catch (error) {
         return { error: String(error) };
       }
-    });
-  }
+    })]));
+  });
   const pre = document.createElement("pre");
   pre.id = "result";
   pre.textContent = JSON.stringify(found);

@@ -11,8 +11,12 @@ from urllib.parse import urlencode
 
 import pytest
 
+import vectors
 from cobotwire.codec.interface import Noise
+from cobotwire_codegen.project import edition_files
+from cobotwire_codegen.targets.decoder import table_script
 from strategies import TABLES, codec_of
+from targets.c.specs import SPECS, edition_of
 from targets.comparison import ToolMissing
 from targets.decoder import browser
 from targets.decoder.browser import SHOWN
@@ -21,6 +25,7 @@ from vectors import ROOT
 
 PAGE = (ROOT / "docs" / "decoder.md").read_text()
 STREAMS = 2
+WAYS = ("both", "request", "reply")
 NOTATIONS = [
     ("b'\\xfe\\xfe\\x02\\x20\\xfa'", "request at 0"),
     ("[0xFE, 0xFE, 0x2, 0x20, 0xFA]", "request at 0"),
@@ -81,9 +86,58 @@ def _cells(shown: str) -> list[list[str]]:
     return [re.sub(r"<[^>]*>", "\t", row).split("\t") for row in rows]
 
 
-def test_decoder_page_lists_every_edition() -> None:
-    scripts = re.findall(r"tables/(\w+)\.js", PAGE)
-    assert sorted(scripts) == sorted(TABLES)
+def test_decoder_page_offers_every_edition_of_the_spec(page: Path) -> None:
+    [found] = browser.evaluate(
+        page.as_uri(), "[...document.querySelectorAll('option')].map((each) => each.value)"
+    )
+    assert found[: -len(WAYS)] == sorted(path.stem for path in edition_files(ROOT))
+
+
+EXPLAINED = {
+    "FE FE 04 22 53 36 FA": [
+        "4 53 36 status ready: yes, mode: FAST (1), level: 37, offset: -3",
+    ],
+    "FE FE 12 20 CD CC CC 3D 3F F8 00 00 00 00 00 00 00 00 C0 7F FA": [
+        "4 CD CC CC 3D torque 0.1 newton_metre",
+        "8 3F F8 00 00 00 00 00 00 time 1.5 second",
+        "16 00 00 C0 7F drift NaN second",
+    ],
+    "FE FE 17 26 6C 65 66 74 00 00 00 00 00 01 02 03 C3 A0 20 63 C3 B4 74 C3 A9 FA": [
+        '4 6C 65 66 74 00 00 00 00 label "left"',
+        "12 00 01 02 03 serial 4 bytes",
+        '16 C3 A0 20 63 C3 B4 74 C3 A9 note "à côté"',
+    ],
+    "FE FE 10 29 01 08 05 00 00 00 47 50 53 20 E9 20 20 20 FA": [
+        "4 01 number 1",
+        "5 08 satellites[0].channel 8",
+        "6 05 00 00 00 satellites[0].position 5 micrometre",
+        '10 47 50 53 20 words[0] "GPS"',
+        '14 E9 20 20 20 words[1] "é"',
+    ],
+}
+
+
+def test_message_without_a_request_is_shown_as_an_event(page: Path) -> None:
+    [found] = [
+        vector
+        for vector in vectors.edition("mercury_a1").vectors
+        if vector.command == "motion_ended" and vector.frame and vector.direction == "reply"
+    ][:1]
+    assert found.frame is not None
+    shown = _shown(page, edition="mercury_a1", hex=found.frame.hex(" "), direction="reply")
+    assert "event at 0: <code>motion_ended</code>" in shown
+
+
+def test_each_type_of_the_language_is_explained(page: Path) -> None:
+    script = table_script(edition_of(SPECS["sensor"]))
+    own = page.with_name("sensor.html")
+    own.write_text(page.read_text().replace("<div id", f"<script>{script}</script><div id"))
+    states = [_state(pasted, "reply", "sensor") for pasted in EXPLAINED]
+    calls = (f"shown({json.dumps(state)})" for state in states)
+    _, *shown = browser.evaluate(own.as_uri(), SHOWN, *calls)
+    for text, right in zip(shown, EXPLAINED.values(), strict=True):
+        rows = [" ".join(cell for cell in row if cell) for row in _cells(html.unescape(text))]
+        assert rows[3:-1] == right
 
 
 def test_each_byte_of_a_frame_is_labelled(page: Path) -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import Any
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.table import Variant
+from cobotwire.protocol.table import Field, Number, Variant
 from cobotwire.session import text
 from strategies import codec_of
 from targets.built import built
@@ -36,6 +36,7 @@ def compare(edition: str) -> Comparison:
         sum(each.vectors for each in found),
         sum(each.fields for each in found),
         [difference for each in found for difference in each.differences],
+        sum(each.refused for each in found),
     )
 
 
@@ -55,7 +56,9 @@ def judged(document: Record, codec: Codec) -> Comparison:
         for difference in judge(record, codec)
     ]
     fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
-    return Comparison(sum(len(document[part]) for part in parts), fields, differences)
+    count = sum(len(document[part]) for part in parts)
+    refused = sum(len(document[part]) for part in ("rejected", "malformed"))
+    return Comparison(count, fields, differences, refused)
 
 
 def _message(record: Record, codec: Codec) -> Iterator[str]:
@@ -71,20 +74,39 @@ def _message(record: Record, codec: Codec) -> Iterator[str]:
         return
     if built != data:
         yield f"built {built.hex(' ')}, not {data.hex(' ')}"
-    if read.variant == variant and read.values != values:
+    if read.variant == variant and _exact(read.values) != _exact(values):
         yield f"read {read.values}, not {values}"
     if named != record["read_as"]:
         yield f"read as {named}, not {record['read_as']}"
 
 
+def _exact(value: Any) -> Any:
+    """Return a value that equals only the same one: with the sign of zero, and NaN as a text."""
+    if isinstance(value, tuple):
+        return tuple(map(_exact, value))
+    return repr(value) if isinstance(value, float) and (value == 0 or value != value) else value
+
+
 def _variant(record: Record, codec: Codec) -> Variant:
-    return codec.table.command(record["command"]).variants(record["direction"])[record["variant"]]
+    variants = codec.table.command(record["command"]).variants(record["direction"])
+    if not any(field.sizes for variant in variants for field in variant.fields):
+        return variants[record["variant"]]
+    # Our table has a variant for each number of elements.
+    sizes = [len(field["raw"]) for field in record["fields"]]
+    return next(each for each in variants if sizes == [_size(field) for field in each.fields])
+
+
+def _size(field: Field) -> int:
+    return len(field.cases[0].numbers)
 
 
 def _built(record: Record, codec: Codec) -> bytes:
     """Return the frame that the codec encodes from a record's values."""
-    values = _values(record, _variant(record, codec).fields)
-    return codec.encode(record["command"], record["direction"], values, variant=record["variant"])
+    variant = _variant(record, codec)
+    command, direction = record["command"], record["direction"]
+    variants = codec.table.command(command).variants(direction)
+    number = next(index for index, each in enumerate(variants) if each is variant)
+    return codec.encode(command, direction, _values(record, variant.fields), variant=number)
 
 
 def _rejected(record: Record, codec: Codec) -> Iterator[str]:
@@ -144,12 +166,33 @@ def _text(record: Record, codec: Codec) -> Iterator[str]:
 
 
 def _values(record: Record, fields: Any) -> tuple[Any, ...]:
-    given = {field["name"]: field["value"] for field in record["fields"]}
-    return tuple(
-        tuple(given[field.name]) if field.many else _plain(field, given[field.name][0])
-        for field in fields
-    )
+    given = {field["name"]: field for field in record["fields"]}
+    return tuple(_value(field, given[field.name]) for field in fields)
 
 
-def _plain(field: Any, value: float) -> Any:
-    return bool(value) if field.kind == "flag" and value in (0, 1) else value
+def _value(field: Field, given: Record) -> Any:
+    """Return a field's value as our codec has it."""
+    if "text" in given:
+        return tuple(given["text"]) if field.each else given["text"]
+    numbers = [
+        _plain(field, number, value) for number, value in zip(_numbers(field), given["value"])
+    ]
+    if not field.many:
+        return numbers[0]
+    if field.kind == "bytes":
+        return bytes(numbers) if all(0 <= byte < 256 for byte in numbers) else tuple(numbers)
+    each = field.each or len(numbers)
+    groups = tuple(tuple(numbers[at : at + each]) for at in range(0, len(numbers), each or 1))
+    return groups if field.each else tuple(numbers)
+
+
+def _numbers(field: Field) -> Iterable[Number]:
+    """Return the numbers of a field; in each case they have the same kinds."""
+    return max((case.numbers for case in field.cases), key=len)
+
+
+def _plain(field: Field, number: Number, value: Any) -> Any:
+    kind = number.kind if number.bits else field.kind
+    if isinstance(value, str):
+        return float(value)
+    return bool(value) if kind == "flag" and value in (0, 1) else value

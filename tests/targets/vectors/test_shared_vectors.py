@@ -6,26 +6,29 @@ import copy
 import json
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import jsonschema
 import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
 
 import vectors
 from cobotwire import codec as codecs
-from cobotwire import editions
+from cobotwire import editions as shipped
 from cobotwire_codegen import lower
-from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.model import Enum, Field, Quantity
 from cobotwire_codegen.targets.vectors.document import document
-from json_tables import table_of
+from random_editions import editions
 from strategies import TABLES, codec_of
 from targets.built import built
+from targets.c.specs import SPECS, edition_of
+from targets.expected import codec_of_edition
 from targets.vectors.comparison import CODECS, Record, judged, read
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)
-FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
 
 
 @pytest.mark.parametrize("name", CODECS)
@@ -37,26 +40,48 @@ def test_every_vector_agrees_with_codec(edition: str, name: codecs.CodecName) ->
     assert found.fields > 300
 
 
-@pytest.mark.parametrize("name", CODECS)
-@pytest.mark.parametrize("family", ["mercury", "mybuddy"])
-def test_vectors_of_other_frame_formats_agree_with_codecs(
-    family: str, name: codecs.CodecName
-) -> None:
-    edition = build_edition(FAMILIES / f"{family}.yaml", FAMILIES)
+@pytest.mark.parametrize("name", sorted(SPECS))
+def test_vectors_of_other_types_and_frames_agree_with_codecs(name: str) -> None:
+    edition = edition_of(SPECS[name])
     found = json.loads(document(edition))
-    codec = codecs.load(table_of(lower.table(edition)), name)
-    assert judged(found, codec).differences == []
+    for codec in CODECS:
+        assert judged(found, codec_of_edition(edition, codec)).differences == []
+    assert list(_validator().iter_errors(found)) == []
+
+
+def test_vectors_of_floats_and_texts_have_their_ends() -> None:
+    found = json.loads(document(edition_of(SPECS["sensor"])))
+    fields = [field for record in found["messages"] for field in record["fields"]]
+    drifts = {str(field["value"][0]) for field in fields if field["name"] == "drift"}
+    assert {"NaN", "Infinity", "-Infinity", "-0.0", "0.0"} <= drifts
+    notes = {field["text"] for field in fields if field["name"] == "note"}
+    assert {"", "é"} <= {note[:1] for note in notes}
+    reasons = {r["reason"] for r in found["malformed"] if "label 128" in r["name"]}
+    assert reasons == {"bad-value"}
+
+
+# Shrinking would take minutes.
+@settings(max_examples=6, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_vectors_of_random_protocols_agree_with_codec(tmp_path: Path, data: st.DataObject) -> None:
+    edition = data.draw(editions(tmp_path, "rnd"))
+    found = json.loads(document(edition))
+    assert judged(found, codec_of_edition(edition)).differences == []
+
+
+def _validator() -> jsonschema.Draft202012Validator:
+    schema = json.loads((built("vectors") / "schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
 def test_vector_document_matches_its_schema(edition: str) -> None:
-    schema = json.loads((built("vectors") / "schema.json").read_text())
-    jsonschema.Draft202012Validator.check_schema(schema)
-    validator = jsonschema.Draft202012Validator(schema)
+    validator = _validator()
     found = read(edition)
     assert list(validator.iter_errors(found)) == []
     broken = copy.deepcopy(found)
-    broken["streams"][0]["events"][0]["frame"] = 256
+    broken["streams"][0]["events"][0]["frame"] = 65536
     assert list(validator.iter_errors(broken))
 
 
@@ -121,4 +146,4 @@ def test_edition_without_replies_has_vectors() -> None:
 
 def test_vector_folder_holds_the_files_of_the_guide() -> None:
     names = {path.name for path in built("vectors").iterdir()}
-    assert names == {"schema.json", *(f"{edition}.json" for edition in editions.names())}
+    assert names == {"schema.json", *(f"{edition}.json" for edition in shipped.names())}

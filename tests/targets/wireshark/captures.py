@@ -37,12 +37,16 @@ def timed(chunks: Sequence[Chunk]) -> list[Chunk]:
     ]
 
 
-def serial(chunks: Sequence[Chunk], edition: str) -> bytes:
-    """Return a recording in which each line is an interface and each chunk a packet."""
+def serial(chunks: Sequence[Chunk], edition: str | Sequence[str]) -> bytes:
+    """Return a recording in which each line is an interface and each chunk a packet.
+
+    ``edition`` is that of every line, or one for each line.
+    """
     file = io.BytesIO()
     writer = CaptureWriter(file)
     for line in range(1 + max((chunk.line for chunk in chunks), default=0)):
-        writer.interface(Interface(f"line {line}", edition, 115200))
+        named = edition if isinstance(edition, str) else edition[line]
+        writer.interface(Interface(f"line {line}", named, 115200))
     for chunk in timed(chunks):
         way = WAYS[chunk.direction]
         time_ns = START_NS + chunk.at_ns

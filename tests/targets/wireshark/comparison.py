@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import vectors
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Listening
 from cobotwire.protocol.errors import ProtocolError
-from cobotwire.protocol.table import Field, Number
-from cobotwire_codegen.render.words import units
 from strategies import codec_of
+from targets.built import built
 from targets.comparison import Comparison, ToolMissing
 from targets.vectors.comparison import read
 from targets.wireshark.captures import Chunk, serial
 from targets.wireshark.dissecting import ABSENT, Item, dissected, joined
+from targets.wireshark.expected import expected_leaves
 from targets.wireshark.truth import events_of, summary
 
 # Streams are sent whole, and in pieces of seven bytes.
@@ -52,27 +51,38 @@ def compare(edition: str) -> Comparison:
     """
     if shutil.which("tshark") is None:
         raise ToolMissing(ABSENT)
-    return compared(list(lines_of(edition)), codec_of(edition, "reference"))
+    lines = list(lines_of(edition))
+    script = built("wireshark") / f"{edition}.lua"
+    return compared(lines, codec_of(edition, "reference"), [script])
 
 
 def compared(lines: list[Line], codec: Codec, scripts: list[Path] | None = None) -> Comparison:
     """Run lines through tshark, all at once."""
-    edition = codec.table.edition
-    chunks = [chunk for number, line in enumerate(lines) for chunk in _chunks(number, line)]
+    return all_compared([(lines, codec)], scripts)
+
+
+def all_compared(
+    parts: list[tuple[list[Line], Codec]], scripts: list[Path] | None = None
+) -> Comparison:
+    """Run lines of several editions through tshark, all at once."""
+    lines = [(line, codec) for own, codec in parts for line in own]
+    editions = [codec.table.edition for _, codec in lines]
+    chunks = [chunk for number, (line, _) in enumerate(lines) for chunk in _chunks(number, line)]
     with TemporaryDirectory() as folder:
         path = Path(folder) / "vectors.pcapng"
-        path.write_bytes(serial(chunks, edition))
-        packets = dissected(path, edition, scripts=scripts)
+        path.write_bytes(serial(chunks, editions))
+        packets = dissected(path, " ".join(sorted(set(editions))), scripts=scripts)
     shown: dict[int, list[list[Item]]] = defaultdict(list)
     for chunk, items in zip(chunks, packets, strict=True):
-        if chunk.direction == lines[chunk.line].direction:
+        if chunk.direction == lines[chunk.line][0].direction:
             shown[chunk.line].append(items)
-    fields, differences = 0, []
-    for number, line in enumerate(lines):
+    fields, refused, differences = 0, 0, []
+    for number, (line, codec) in enumerate(lines):
         judged = list(_judge(line, codec, shown[number]))
+        refused += line.name.startswith("malformed: ")
         fields += sum(check.is_field for check in judged)
         differences += [f"{line.name}: {check.difference}" for check in judged if check.difference]
-    return Comparison(len(lines), fields, differences)
+    return Comparison(len(lines), fields, differences, refused)
 
 
 def _chunks(number: int, line: Line) -> Iterator[Chunk]:
@@ -84,11 +94,11 @@ def _chunks(number: int, line: Line) -> Iterator[Chunk]:
 
 def lines_of(edition: str) -> Iterator[Line]:
     """Return the spec's own vectors and the shared ones."""
-    for name, vector in vectors.every():
+    for vector in vectors.edition(edition).vectors:
         printed = vector.frame or vector.printed
-        if name == edition and printed is not None:
+        if printed is not None:
             yield Line(vector.name, vector.direction, [printed])
-        elif name == edition and vector.text is not None:
+        elif vector.text is not None:
             fields = {key: str(value) for key, value in vector.values}
             yield _text(edition, vector.command, vector.direction, vector.text.encode(), fields)
     document = read(edition)
@@ -134,51 +144,30 @@ def _judge(line: Line, codec: Codec, packets: list[list[Item]]) -> Iterator[Chec
 
 
 def _frame(frame: Frame, item: Item, codec: Codec, direction: Listening) -> Iterator[Check]:
-    same = int(item.own["frame.id"], 16) == frame.command
-    yield Check("" if same else f"CMD {item.own['frame.id']}")
+    format = codec.table.frame
+    has_id = "frame.id" in item.own
+    same = not has_id or int(item.own["frame.id"], 16) == frame.command
+    same &= item.own.get("frame.address", "None") == str(format.address(frame.data))
+    yield Check("" if same else f"head {item.own}")
+    # A reply that was paired with a request is one of its command.
+    paired = item.own["frame.command"] if "request_in" in item.own else None
     try:
-        message = frame.message
+        message = codec.decode("reply", frame.data, of=paired) if paired else frame.message
     except ProtocolError as error:
         fits = error.reason == "bad-value" and "bad_value" in item.experts
         yield Check("" if fits else f"{item.experts}, not {error}")
         return
-    yield Check("" if not item.experts else f"{item.experts}")
+    yield Check("" if item.experts == _experts(message) else f"{item.experts}")
+    yield Check("" if has_id == format.has_id(message.direction) else f"id of {direction}")
     named = item.own["frame.command"], item.own["frame.direction"]
     same = named == (message.command.name, message.direction)
     yield Check("" if same else f"{named}, not {message.command.name}")
-    numbers = list(_numbers(message, frame.data, codec.table.frame.overhead + 1))
-    yield Check("" if len(numbers) == len(item.leaves) else f"{len(item.leaves)} numbers")
-    for leaf, (field, number, value, data) in zip(item.leaves, numbers):
-        name = number.name or field.name
-        words = _label(name, field, number, value)
-        shown = leaf.filter.split(".")[-1], _value(leaf.value), leaf.data
-        label = re.sub(r" \[-?\d+ on the wire\]| \[echo of the request\]$", "", leaf.label)
-        # Wireshark shows 15 digits, and the editions' values have no more.
-        digits = float(f"{value:.15g}")
-        same = shown == (name, digits, data) and label == words
-        difference = f"{name}: {shown} {label!r}, not {value} {data.hex()} {words!r}"
-        yield Check("" if same else difference, is_field=True)
+    wanted = list(expected_leaves(message, format.data(frame.data, message.direction)))
+    yield Check("" if len(wanted) == len(item.leaves) else f"{len(item.leaves)} leaves")
+    for leaf, right in zip(item.leaves, wanted):
+        yield Check(right.difference(leaf), is_field=True)
 
 
-def _numbers(
-    message: DecodedMessage, frame: bytes, at: int
-) -> Iterator[tuple[Field, Number, Any, bytes]]:
-    for field, value in zip(message.variant.fields, message.values):
-        numbers = message.variant.case(field, message.values).numbers
-        for number, part in zip(numbers, value if field.many else [value]):
-            yield field, number, part, frame[at : at + number.width]
-            at += number.width
-
-
-def _label(name: str, field: Field, number: Number, value: Any) -> str:
-    if field.labels:
-        return f"{name}: {field.labels[field.choices.index(value)]} ({value})"
-    if field.kind == "flag":
-        return f"{name}: {'yes' if value else 'no'}"
-    unit = f" {units(number.unit)}" if number.unit else ""
-    return f"{name}: {value:.15g}{unit}"
-
-
-def _value(shown: str) -> float:
-    # A boolean is 1 or 0; later versions of Wireshark write a word.
-    return float({"True": "1", "False": "0"}.get(shown, shown))
+def _experts(message: DecodedMessage) -> list[str]:
+    has_status = bool(message.command.accepted) and message.direction == "reply"
+    return ["failed"] if has_status and message.command.refusal(message.fields) else []

@@ -16,6 +16,8 @@ from cobotwire_codegen.targets.wireshark.fields import OWN
 from strategies import TABLES
 from targets.built import built
 
+# The name of an item that has a text but no field.
+TEXT = "_ws.lua.text"
 ABSENT = "tshark is not installed (Debian: apt install tshark)"
 needs_tshark = pytest.mark.skipif(shutil.which("tshark") is None, reason=ABSENT)
 
@@ -67,10 +69,11 @@ def tshark(capture: Path, *words: str, scripts: list[Path] | None = None) -> str
 def dissected(
     capture: Path, edition: str, *words: str, scripts: list[Path] | None = None
 ) -> list[list[Item]]:
-    """Return the items of each packet."""
+    """Return the items of each packet; ``edition`` may be several names with spaces between."""
     out = tshark(capture, "-T", "pdml", "-J", edition, *words, scripts=scripts)
+    names = edition.split()
     return [
-        [item for proto in packet if proto.get("name") == edition for item in _items(proto)]
+        [item for proto in packet if proto.get("name") in names for item in _items(proto)]
         for packet in ET.fromstring(out).iter("packet")
     ]
 
@@ -113,11 +116,19 @@ def _fill(item: Item, parent: ET.Element, edition: str) -> None:
             continue
         if part in OWN:
             item.own[part] = element.get("show", "")
-        elif not any(e.get("name", "").startswith(f"{name}.") for e in element):
+        elif not _groups(element):
             words = element.get("show", ""), element.get("showname", "")
             item.leaves.append(Leaf(part, *words, _data(element)))
         _fill(item, element, edition)
 
 
+def _groups(element: ET.Element) -> bool:
+    """Return whether an element only groups others; a list may have none."""
+    name = element.get("name", "").removesuffix("_group")
+    inner = any(each.get("name", "").startswith(f"{name}.") for each in element.iter())
+    return inner or name == TEXT or element.get("showname", "").endswith(": nothing")
+
+
 def _data(element: ET.Element) -> bytes:
-    return bytes.fromhex(element.get("value", ""))
+    # Of some bits of a word, the value is the bits alone.
+    return bytes.fromhex(element.get("unmaskedvalue") or element.get("value") or "")

@@ -1,0 +1,75 @@
+"""The choices of a quantity hold alone, in a case, and in a value type."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import small_specs
+from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire_codegen.targets.vectors.document import document
+from targets.c.comparison import judged as judged_in_c
+from targets.c.compiled import missing
+from targets.expected import codec_of_edition
+from targets.vectors.comparison import CODECS, judged
+
+COMMANDS = """
+set_x:
+  id: 0x10
+  title: Set x
+  doc: Sets x.
+  safety: setting
+  request:
+    - {name: plain, type: level}
+    - {name: mode, type: mode}
+    - name: picked
+      doc: What the mode needs.
+      selector: mode
+      cases: {STEADY: {type: percent}, BLINK: {type: level}}
+    - {name: both, type: levels}
+"""
+LEVEL = "  quantities:\n    level: {wire: byte, choices: [1, 2, 4], doc: A level.}\n"
+LEVELS = """\
+  values:
+    levels: {class: Levels, doc: Levels., items: {inner: level, outer: percent}}
+"""
+
+
+@pytest.fixture
+def edition(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    head = small_specs.HEAD.replace("  quantities:\n", LEVEL).replace("  values:\n", LEVELS)
+    monkeypatch.setattr(small_specs, "HEAD", head)
+    return small_specs.build(tmp_path, COMMANDS)
+
+
+@pytest.mark.parametrize("name", CODECS)
+def test_value_between_choices_is_refused_and_named(edition: Any, name: Any) -> None:
+    codec = codec_of_edition(edition, name)
+    right = codec.encode("set_x", "request", (4, 1, 4, (4, 3)))
+    assert codec.decode("request", right).values == (4, 1, 4, (4, 3))
+    # In the other case the range of the percentage holds.
+    codec.encode("set_x", "request", (4, 0, 3, (4, 3)))
+    wrong = {(3, 1, 4, (4, 3)): "plain", (4, 1, 3, (4, 3)): "picked", (4, 1, 4, (3, 3)): "both"}
+    for values, argument in wrong.items():
+        with pytest.raises(UsageError, match=re.escape("1, 2, 4")) as refused:
+            codec.encode("set_x", "request", values)
+        assert refused.value.argument.startswith(argument)
+    for at in (4, 6, 7):
+        data = bytearray(right)
+        data[at] = 3
+        with pytest.raises(ProtocolError, match=re.escape("1, 2, 4")) as unread:
+            codec.decode("request", bytes(data))
+        assert (unread.value.reason, unread.value.offset) == ("bad-value", at)
+
+
+def test_vectors_and_targets_refuse_values_between_choices(edition: Any) -> None:
+    made = json.loads(document(edition))
+    refused = {record["name"] for record in made["rejected"]}
+    assert {"set_x request, plain 3", "set_x request, both 3"} <= refused, refused
+    assert judged(made, codec_of_edition(edition)).differences == []
+    if not missing("gcc"):
+        assert judged_in_c(made, edition, "gcc", ("-O0",), "choices").differences == []

@@ -1,0 +1,109 @@
+"""Events and replies of other addresses come before the reply: neither ends a request."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire.conformance.client import FAULTS, Referee, faulty_replies, possible_faults
+from cobotwire.conformance.report import Report
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.protocol.errors import UsageError
+from cobotwire.simulator import MemoryTransport, PtyServer, SteppedClock
+from trial_specs import HEAD, package_of
+
+BUS = f"""
+{HEAD}
+joints: 0
+frame:
+  frame:
+    header: FE FE
+    check: sum
+    length_counts: [command, data, check]
+    addresses:
+      LEFT: {{value: 1, doc: The left one.}}
+      RIGHT: {{value: 2, doc: The right one.}}
+    maximum_data: 16
+    doc: FE FE ID LEN CMD DATA and a sum.
+  transport: {{baudrate: 115200, deadline_ms: 500}}
+types:
+  wire:
+    byte: {{bytes: 1, doc: A byte.}}
+  quantities:
+    number: {{wire: byte, range: [0, 9], doc: A number.}}
+  texts:
+    name: {{size: 3, doc: A name.}}
+commands:
+  set_number:
+    {{id: 1, title: Set, doc: Sets., safety: setting, read_by: get_number,
+     request: [{{name: number, type: number}}]}}
+  get_number:
+    {{id: 2, title: Get, doc: Gets., safety: query, reply: [{{name: number, type: number}}]}}
+  get_name: {{id: 3, title: Get, doc: Gets., safety: query, reply: [{{name: name, type: name}}]}}
+  button_pressed:
+    {{id: 4, title: Button, doc: A button was pressed., safety: query, event: true,
+     reply: [{{name: number, type: number}}, {{name: name, type: name}}]}}
+"""
+OTHERS = ["event", "address"]
+
+
+@pytest.fixture(scope="module")
+def bus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    with package_of(BUS, tmp_path_factory.mktemp("bus")) as package:
+        yield package
+
+
+def failed(report: Report) -> set[str]:
+    return {result.case for result in report.failures}
+
+
+@pytest.mark.parametrize("fault", OTHERS)
+def test_our_client_delivers_the_reply_after_another_message(bus: Any, fault: str) -> None:
+    clock = SteppedClock()
+    referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, [fault], 1), clock=clock)
+    with bus.Trial(MemoryTransport(referee, clock), address=2, on_error="leave") as arm:
+        arm.set_number(7)
+        before = clock()
+        assert [arm.get_number(), arm.get_number()] == [7, 7]
+        assert clock() - before >= 2 * 0.028, "the fault delays each reply"
+        assert len(arm.get_name()) == 3
+    assert failed(referee.finish()) == set()
+
+
+def test_our_asyncio_client_delivers_the_replies_too(bus: Any) -> None:
+    referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, OTHERS, 1))
+
+    async def calls(url: str) -> list[int]:
+        async with bus.AsyncTrial(url, address=1, on_error="leave") as arm:
+            return [await arm.get_number() for _ in range(4)]
+
+    with PtyServer(referee) as server:
+        assert asyncio.run(calls(server.url)) == [0] * 4
+    assert failed(referee.finish()) == set()
+
+
+@pytest.mark.parametrize("fault", OTHERS)
+def test_client_that_takes_another_message_for_its_reply_fails(bus: Any, fault: str) -> None:
+    clock, codec = SteppedClock(), codecs.load(bus.TABLE)
+    referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, [fault], 1), clock=clock)
+    for name in ("get_number", "get_name", "get_number"):
+        received = referee.receive(codec.encode(name, "request", (), address=1))
+        while not received:
+            clock.sleep(referee.wait or 0.001)
+            received = referee.flush()
+    clock.sleep(1.0)
+    referee.flush()
+    assert failed(referee.finish()) == {"reply-awaited"}
+
+
+def test_faults_that_an_edition_cannot_have_are_refused(bus: Any) -> None:
+    assert set(possible_faults(bus.TABLE)) == set(FAULTS)
+    assert set(possible_faults(TABLE)) == set(FAULTS) - set(OTHERS)
+    with pytest.raises(UsageError, match="the edition mycobot280 has no events"):
+        Referee(TABLE, scenario=faulty_replies(0.0, ["event"]))
+    with pytest.raises(UsageError, match="has no replies of several addresses"):
+        Referee(TABLE, scenario=faulty_replies(0.0, ["address"]))

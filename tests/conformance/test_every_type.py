@@ -1,0 +1,137 @@
+"""Devices, clients and codecs of a made-up sensor with every type of the language conform."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+import vectors
+from cobotwire import codec as codecs
+from cobotwire.conformance.client import Referee, ScriptLine, faulty_replies
+from cobotwire.conformance.codec import Run, derive_questions
+from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.question import Json, Question
+from cobotwire.conformance.report import Report
+from cobotwire.simulator import MemoryTransport, SteppedClock
+from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.emit import Target, write
+from cobotwire_codegen.render import render_python
+from conformance.device.testing import Altered, prepared
+
+FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
+
+
+@pytest.fixture(scope="module")
+def sensor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Yield the generated package of the sensor."""
+    folder = tmp_path_factory.mktemp("conform")
+    edition = build_edition(FAMILIES / "sensor.yaml", FAMILIES)
+    write(Target(folder / "conform_sensor", render_python(edition)))
+    sys.path.insert(0, str(folder))
+    importlib.invalidate_caches()
+    yield importlib.import_module("conform_sensor")
+    sys.path.remove(str(folder))
+
+
+@pytest.fixture(scope="module")
+def questions(sensor: Any) -> list[Question]:
+    return list(derive_questions(sensor.TABLE))
+
+
+def failed(report: Report) -> set[tuple[str, str]]:
+    return {(result.case, result.command) for result in report.failures}
+
+
+def test_right_device_conforms(sensor: Any) -> None:
+    report = prepared(sensor.TABLE).run()
+    assert report.conforms, report.failures
+    tested = {result.command for result in report.results if result.case == "read-back"}
+    assert tested == {"set_torque", "set_status", "write_memory", "set_name"}
+
+
+@pytest.mark.parametrize(
+    ("command", "setter", "place"),
+    [("read_memory", "write_memory", -2), ("get_name", "set_name", 9), ("get_status", "", 4)],
+)
+def test_device_that_changes_a_byte_of_a_value_fails(
+    sensor: Any, command: str, setter: str, place: int
+) -> None:
+    id = sensor.TABLE.command(command).id
+
+    def changed(request: bytes, reply: bytes, number: int) -> bytes:
+        if len(reply) < 9 or reply[3] != id:
+            return reply
+        data = bytearray(reply)
+        data[place] ^= 1
+        return bytes(data)
+
+    report = prepared(sensor.TABLE, lambda arm: Altered(arm, changed)).run()
+    assert not setter or ("read-back", setter) in failed(report)
+
+
+@pytest.mark.parametrize("name", ["reference", "native"])
+def test_right_codec_conforms(
+    sensor: Any, questions: list[Question], name: codecs.CodecName
+) -> None:
+    # All 43,000 take a few seconds; a prime step meets every kind.
+    codec = OurCodec(codecs.load(sensor.TABLE, name))
+    assert Run(sensor.TABLE, codec).ask_all(questions[::43]).conforms
+
+
+class Wrong:
+    """A codec with text in upper case, and bytes in reverse."""
+
+    def __init__(self, codec: OurCodec) -> None:
+        self._codec = codec
+
+    def ask(self, question: Json) -> Json:
+        answer = self._codec.ask(question)
+        fields = dict(answer.get("fields", {}))
+        if "note" in fields:
+            fields["note"] = fields["note"].upper()
+        if isinstance(fields.get("data"), str):
+            fields["data"] = bytes.fromhex(fields["data"])[::-1].hex()
+        return answer | ({"fields": fields} if fields else {})
+
+
+def test_codec_that_changes_texts_and_bytes_fails(sensor: Any, questions: list[Question]) -> None:
+    wrong = Wrong(OurCodec(codecs.load(sensor.TABLE)))
+    about = {"set_name", "write_memory", "set_torque"}
+    some = [q for q in questions if q.command in about and q.case.id == "decode-values"]
+    found = failed(Run(sensor.TABLE, wrong).ask_all(some))
+    assert found == {("decode-values", "set_name"), ("decode-values", "write_memory")}
+
+
+CALLS: list[tuple[str, tuple[Any, ...], tuple[Any, ...]]] = [
+    ("set_torque", (-2.5,), (-2.5,)),
+    ("set_status", ((True, 2, 9, -4),), ((True, 2, 9, -4),)),
+    ("write_memory", (3, b"\xca\xfe", True), (3, ..., b"\xca\xfe", True)),
+    ("set_name", ("left", b"1234", "à côté"), ("left", b"1234", "à côté")),
+    ("set_temperatures", ([20, 30],), ((20, 30),)),
+    ("get_satellites", (), ()),
+    ("get_joints", (), ()),
+]
+
+
+@pytest.mark.parametrize("wrong", [False, True])
+def test_client_is_judged_by_values_of_every_type(sensor: Any, wrong: bool) -> None:
+    clock = SteppedClock()
+    script = [
+        ScriptLine(sensor.TABLE.command(name), values, name, None) for name, _, values in CALLS
+    ]
+    scenario = faulty_replies(0.008, ["split"], 2)
+    referee = Referee(sensor.TABLE, scenario=scenario, script=script, clock=clock)
+    with sensor.CLIENT(MemoryTransport(referee, clock), on_error="leave") as client:
+        for name, arguments, _ in CALLS:
+            if wrong and name == "write_memory":
+                arguments = (3, b"\xca\xff", True)
+            if wrong and name == "set_name":
+                arguments = ("left", b"1234", "à cote")
+            getattr(client, name)(*arguments)
+            clock.sleep(1.0)
+    commands = {command for _, command in failed(referee.finish())}
+    assert commands == ({"write_memory", "set_name"} if wrong else set())

@@ -1,0 +1,73 @@
+"""Use protocols of other devices from the wheels alone, without Rust and without its codec."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import vectors
+from newcomer.installing import run
+
+CALLS = {
+    "feetech": """
+    print(device.write_goal(2048, 0, 1000) == device.ping())
+    device.every.sync_write_goals([p.ServoTarget(1, 2048, 0, 1000), p.ServoTarget(2, 1024, 0, 500)])
+    print(device.read_all()[1].voltage)
+""",
+    "dynamixel": """
+    print(device.write_goal(512, 512).overload)
+    device.every.sync_write_goals([p.ServoGoal(0, 512, 512), p.ServoGoal(1, 0, 1023)])
+    print(device.ping() == p.ServoErrors(*[False] * 7))
+""",
+    "ublox": """
+    device.set_rate(200, 1, p.TimeReference.GPS)
+    print(device.get_rate().period)
+    print(device.get_version().extensions == ())
+""",
+}
+SCRIPT = """
+import sys
+import {name} as p
+from cobotwire.simulator import PtyServer, SimulatedArm
+server = PtyServer(SimulatedArm(p.TABLE))
+with server, p.CLIENT(server.url, record="a.pcapng") as device:
+    print(device.codec)
+{calls}
+print("cobotwire._native" in sys.modules)
+"""
+PRINTED = {
+    "feetech": ["reference", "True", "0.0", "False"],
+    "dynamixel": ["reference", "False", "True", "False"],
+    "ublox": ["reference", "200", "True", "False"],
+}
+# The frames were recorded in both directions; these requests were sent.
+DECODED = {
+    "feetech": "sync_write_goals(register=42, count=6, targets=(1; 2048 ticks;",
+    "dynamixel": "sync_write_goals(register=30, count=4, goals=(0, 512, 512, 1, 0, 1023))",
+    "ublox": "set_rate(period=200 milliseconds",
+}
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_protocol_is_built_simulated_recorded_decoded_and_tested_without_rust(
+    tmp_path: Path, environment: dict[str, str], fresh: Path, name: str
+) -> None:
+    spec = vectors.ROOT / "tests" / "protocols" / f"{name}.yaml"
+    (tmp_path / spec.name).write_bytes(spec.read_bytes())
+    (tmp_path / "drive.py").write_text(SCRIPT.format(name=name, calls=CALLS[name]))
+    within = {**environment, "PATH": str(fresh), "COBOTWIRE_CODEC": "reference"}
+
+    def output(*words: str) -> str:
+        return run(*words, cwd=tmp_path, env=within).stdout
+
+    assert name in output("cobotwire-gen", "build", spec.name, "--out", name)
+    assert output("python", "drive.py").splitlines() == PRINTED[name]
+    assert DECODED[name] in output("cobotwire", "--edition", name, "decode", "a.pcapng")
+    tested = output(
+        "cobotwire", "--edition", name, "conform", "device", "--simulated", "--json", "-"
+    )
+    verdicts = [result["verdict"] for result in json.loads(tested)["results"]]
+    assert "pass" in verdicts
+    assert "fail" not in verdicts

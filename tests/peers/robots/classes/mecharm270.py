@@ -1,0 +1,38 @@
+"""The mechArm 270."""
+
+from __future__ import annotations
+
+from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot
+from robots.rulings import KIND, SETTERS, limits
+
+_ZERO = [0] * 6
+ROBOT = Robot(
+    "MechArm270",
+    "mecharm270",
+    local=LOCAL | GPIO,
+    lacking={"jog_stop": "a command of the document's edition, which the 280 keeps"},
+    calls=[
+        Call("go_home", (), "send_angles", (_ZERO, 10)),
+        Call("is_torque_gripper", (), "get_servo_data", (7, 1)),
+        Call("sync_send_angles", (_ZERO, 50), "send_angles", (_ZERO, 50)),
+        Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
+    ],
+    rulings={
+        **SETTERS,
+        "is_in_position": limits("Has invalid"),
+        "set_tool_reference": limits("Has invalid coord"),
+        "set_world_reference": limits("Has invalid coord"),
+        "set_gripper_state": [KIND],
+        "set_gripper_value": [KIND],
+    },
+    unanswered=dict.fromkeys(
+        (
+            "get_coords",
+            "get_angles_coords",
+            "get_coords_plan",
+            "angles_to_coords",
+            "solve_inv_kinematics",
+        ),
+        GEOMETRY,
+    ),
+)

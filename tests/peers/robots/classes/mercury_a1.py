@@ -1,0 +1,153 @@
+"""The Mercury A1; a module beside this one compares the same class with the Mercury B1 and X1."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from robots.crc_classes import SINGLE, opened_as
+from robots.robot import GEOMETRY, LOCAL, Arguments, Call, Robot, Ruling
+
+_PRO = {"angle": (11, 12), "torque": (27, 28), "speed": (32, 33)}
+_HAND = {"angle": (11, 12), "torque": (27, 28), "p": (15, 16), "d": (17, 18), "i": (19, 20)}
+_HAND |= {"clockwise": (21, 22), "counterclockwise": (23, 24), "min_pressure": (25, 26)}
+_TWICE = "the maker sends the tool's number a second time by mistake, and as a byte"
+# Methods that write or read one register of a tool, by our commands for any register.
+TOOLS = [
+    *(
+        Call(f"set_pro_gripper_{what}", (50,), "set_pro_gripper", (at, 50))
+        for what, (at, _) in _PRO.items()
+    ),
+    *(
+        Call(f"get_pro_gripper_{what}", (), "get_pro_gripper", (at,))
+        for what, (_, at) in _PRO.items()
+    ),
+    *(
+        Call(f"set_hand_gripper_{w}", (2, 5), "set_hand_gripper", (at, 2, 5))
+        for w, (at, _) in _HAND.items()
+    ),
+    *(
+        Call(f"get_hand_gripper_{w}", (6,), "get_hand_gripper", (at, 6))
+        for w, (_, at) in _HAND.items()
+    ),
+    Call("set_hand_gripper_speed", (1, 100), "set_hand_gripper", (32, 1, 100)),
+    Call("get_hand_gripper_default_speed", (1,), "get_hand_gripper", (33, 1)),
+    Call("set_pro_gripper_abs_angle", (100,), "set_pro_gripper", (36, 100)),
+    Call("set_pro_gripper_open", (), "set_pro_gripper", (11, 100)),
+    Call("set_pro_gripper_close", (), "set_pro_gripper", (11, 0)),
+    Call("set_pro_gripper_calibration", (), "set_pro_gripper", (13, 0)),
+    Call("set_pro_gripper_pause", (), "set_pro_gripper", (37, 0)),
+    Call("set_pro_gripper_resume", (), "set_pro_gripper", (38, 0)),
+    Call("set_pro_gripper_stop", (), "set_pro_gripper", (39, 0)),
+    Call("get_pro_gripper_status", (), "get_pro_gripper", (14,)),
+    Call("set_hand_gripper_id", (15,), "set_pro_gripper", (3, 15)),
+    Call("get_hand_gripper_id", (), "get_hand_gripper", (4, 0)),
+    Call("set_hand_gripper_calibrate", (1,), "set_pro_gripper", (13, 1)),
+    Call("set_hand_gripper_enabled", (1,), "set_pro_gripper", (10, 1)),
+    Call("get_hand_gripper_status", (), "get_hand_gripper", (14, 0)),
+    Call("get_hand_firmware_major_version", (), "get_hand_gripper", (1, 0)),
+    Call("get_hand_firmware_minor_version", (), "get_hand_gripper", (2, 0)),
+    Call("get_hand_model", (), "get_hand_gripper", (53, 0)),
+    Call("get_hand_gripper_angles", (), "get_hand_gripper", (50, 0), why=_TWICE),
+    # Two bytes, which are one word.
+    Call(
+        "set_hand_gripper_pinch_action_speed_consort", (4, 5), "set_pro_gripper", (52, 4 * 256 + 5)
+    ),
+]
+_HOME = [0, 0, 0, 0, 0, 90, 0]
+_PLACE = [300, 0, 200, 90, 0, -90]
+_SEVEN = "the arm has six joints; the maker sends seven angles"
+
+
+def calls_of(joints: int) -> list[Call]:
+    """Return the calls of methods that none of our commands has the name of."""
+    zero, why = [0] * joints, "" if joints == len(_HOME) else _SEVEN
+    return [
+        *TOOLS,
+        Call("clear_encoders_error", (joints,), "clear_encoder_error", (joints,)),
+        Call("set_servos_calibration", (), "set_servo_calibration", (1,)),
+        Call("go_home", (), "send_angles", (_HOME, 20), why=why),
+        Call("sync_send_angles", (zero, 50), "send_angles", (zero, 50)),
+        Call("is_in_position", (_PLACE, 1), "is_in_position_coords", (_PLACE,)),
+        Call("get_coords", (zero,), "angles_to_coords", (zero,)),
+    ]
+
+
+LOCAL_NAMES = (LOCAL - {"wait"}) | {
+    "bytes4_to_int",
+    "calibration_parameters",
+    "identify_print",
+    "read_thread",
+}
+# On a port that is not one of two arms, the class refuses these before it sends anything.
+_TWO_ARMS = {"get_base_coords", "send_base_coord", "send_base_coords", "jog_base_coord"}
+_TWO_ARMS |= {"jog_base_increment_coord", "jog_base_rpy", "set_servo_cw", "get_servo_cw"}
+_TWO_ARMS |= {"clear_waist_queue"}
+OWN_ARGUMENTS: dict[str, list[Arguments]] = {
+    "set_pro_gripper": [(3, 254), (10, 1), (11, 0), (11, 100), (43, 300)],
+    "tool_serial_write_data": [([1, 2, 3],), ([255] * 45,)],
+    "get_pro_gripper": [(1, 14), (4, 1), (44, 254)],
+}
+LACKING = {
+    "angles_to_coords": "get_coords with angles",
+    "is_in_position_coords": "is_in_position with the mode 1",
+    "set_hand_gripper": "a method for each register",
+    "get_hand_gripper": "a method for each register",
+}
+WHOLE = "any step of the wire here; the maker takes whole numbers only"
+_LIMIT = "a captured frame sets -178 degrees; the maker wants a limit inside the limits of targets"
+RULINGS = {
+    "drag_teach_execute": [
+        Ruling("fe fe 03 47", "the maker asks first whether points are recorded")
+    ],
+    "set_limit_switch": [Ruling("fe fe 03 12", "the maker asks first whether the arm has power")],
+    "set_joint_min_angle": [Ruling("angle value not right", _LIMIT)],
+    "set_joint_max_angle": [Ruling("angle value not right", _LIMIT)],
+    "set_pos_over_shoot": [Ruling("'float' object is not iterable", WHOLE)],
+    "write_move_c_r": [Ruling("'float' object is not iterable", WHOLE)],
+    "tool_serial_set_baud": [
+        Ruling("fe fe 04 b8", "four bytes, as on the maker's page; its library sends one"),
+        Ruling("rejected", "four bytes, as on the maker's page; its library fails above 255"),
+    ],
+    "tool_serial_set_timeout": [
+        Ruling("fe fe 04 b9", "two bytes, as on the maker's page; its library sends one"),
+        Ruling("rejected", "two bytes, as on the maker's page; its library fails above 255"),
+    ],
+}
+# What the class needs to drive a simulated robot.
+_MOTIONS: tuple[str, ...] = (
+    "send_angle",
+    "send_angles",
+    "send_coord",
+    "send_coords",
+    "jog_increment_angle",
+)
+_MOTIONS += ("jog_increment_coord", "over_limit_return_zero", "set_solution_angles")
+_MOTIONS += ("write_move_c", "write_move_c_r")
+_ONE_BYTE = "the maker sends one byte instead of several, which no arm reads"
+DRIVING: dict[str, Any] = {
+    "driven": {
+        "get_pro_gripper": (12, 14),
+        "set_pro_gripper": (11, 50),
+        "tool_serial_write_data": ([1, 2, 3],),
+    },
+    "unanswered": {
+        **dict.fromkeys(("get_coords", "solve_inv_kinematics", "get_quick_move_info"), GEOMETRY),
+        "drag_teach_execute": "the maker returns a text, since nothing was recorded",
+        "tool_serial_set_baud": _ONE_BYTE,
+        "tool_serial_set_timeout": _ONE_BYTE,
+    },
+    # Motions return the status of their end.
+    "kinds": {**dict.fromkeys(_MOTIONS, int), "tool_serial_read_data": int},
+}
+ROBOT = Robot(
+    "Mercury (A1)",
+    "mercury_a1",
+    further=("mercury_b1",),
+    local=LOCAL_NAMES | _TWO_ARMS,
+    lacking=LACKING,
+    own_arguments=OWN_ARGUMENTS,
+    calls=calls_of(7),
+    rulings=RULINGS,
+    opened=opened_as(SINGLE),
+    **DRIVING,
+)

@@ -1,0 +1,47 @@
+"""The left arm of a Mercury B1 or X1."""
+
+from __future__ import annotations
+
+from robots.classes.mercury_a1 import (
+    DRIVING,
+    LACKING,
+    LOCAL_NAMES,
+    OWN_ARGUMENTS,
+    RULINGS,
+    calls_of,
+)
+from robots.crc_classes import opened_as
+from robots.robot import GEOMETRY, Call, Robot, Ruling
+
+_SIDES = "both arms have one edition: y is that of either arm; the maker's class knows which it is"
+_SINGLE = "the range is that of an arm on a body; here the maker checks that of a Mercury A1"
+_HEAD = "joint 12 turns to 245 degrees, as on the maker's page; its class wants 220"
+_PLACE = [300, 0, 200, 90, 0, -90]
+ROBOT = Robot(
+    "Mercury (B1, X1)",
+    "mercury_b1",
+    local=LOCAL_NAMES,
+    lacking={**LACKING, "is_in_position_base_coords": "is_in_position with the mode 2"},
+    own_arguments=OWN_ARGUMENTS,
+    calls=[
+        *calls_of(7),
+        Call("is_in_position", (_PLACE, 2), "is_in_position_base_coords", (_PLACE,)),
+    ],
+    rulings={
+        **RULINGS,
+        "jog_increment_angle": [Ruling("increment angle value not right", _HEAD)],
+        "send_angle": [Ruling("angle value not right", _HEAD)],
+        "send_base_coord": [Ruling("the limit coord is", _SIDES)],
+        "send_base_coords": [Ruling("Has invalid coord value", _SIDES)],
+        "send_coord": [Ruling("the limit range is", _SIDES)],
+        "send_coords": [Ruling("Has invalid coord value", _SIDES)],
+        "solve_inv_kinematics": [Ruling("Has invalid coord value", _SINGLE)],
+        "write_move_c_r": [Ruling("Has invalid coord value", _SINGLE)],
+    },
+    opened=opened_as("/dev/left_arm"),
+    **{
+        **DRIVING,
+        "unanswered": {**DRIVING["unanswered"], "get_base_coords": GEOMETRY},
+        "kinds": {**DRIVING["kinds"], "send_base_coord": int, "send_base_coords": int},
+    },
+)

@@ -1,0 +1,35 @@
+"""The myArm 300."""
+
+from __future__ import annotations
+
+from robots.robot import GEOMETRY, GPIO, LOCAL, SERVO_BUS, Call, Robot
+from robots.rulings import SETTERS, limits
+
+_ZERO = [0] * 7
+_LOWEST, _HIGHEST = [-160, -70, -170, -113, -170, -115, -180], [160, 115, 170, 75, 170, 115, 180]
+_END = [200, -25.8, 100, 9, -2.58, 180]
+_UNREAD = "the maker does not read the acknowledgement, and then takes it for the next reply"
+ROBOT = Robot(
+    "MyArm",
+    "myarm300",
+    local=LOCAL | GPIO | SERVO_BUS | {"get_quick_move_info", "set_ssid_pwd"},
+    calls=[
+        Call("is_in_position", (_HIGHEST, 0), "is_in_position", (_HIGHEST,)),
+        Call("is_in_position", (_END, 1), "is_in_position_coords", (_END,)),
+        Call("go_home", (), "send_angles", (_ZERO, 10)),
+        Call("sync_send_angles", (_HIGHEST, 50), "send_angles", (_HIGHEST, 50)),
+        Call("sync_send_coords", (_END, 50), "send_coords", (_END, 50, 0)),
+    ],
+    rulings={
+        **SETTERS,
+        "set_tool_reference": limits("Has invalid coord"),
+        "set_world_reference": limits("Has invalid coord"),
+    },
+    lacking={"is_in_position_coords": "the maker has is_in_position with id 1 for it"},
+    kinds=dict.fromkeys(
+        ("send_angle", "send_angles", "send_coord", "send_coords", "set_gripper_value"), list
+    ),
+    not_read_back={"send_radians": _UNREAD},
+    unanswered=dict.fromkeys(("get_coords", "get_angles_coords"), GEOMETRY)
+    | {"send_radians": "the maker does not read the acknowledgement"},
+)

@@ -1,0 +1,21 @@
+"""The myArm C650, and what its class shares with that of the M750."""
+
+from __future__ import annotations
+
+from robots.robot import GEOMETRY, LOCAL, Robot
+
+METHODS = {
+    "get_system_version": "get_robot_firmware_version",
+    "get_angles": "get_joints_angle",
+    "get_coords": "get_joints_coord",
+    "set_servo_calibration": "set_servo_calibrate",
+    "set_color": "set_tool_led_color",
+}
+ROBOT = Robot(
+    "MyArmC",
+    "myarm_c650",
+    methods=METHODS,
+    local=LOCAL - {"open", "close", "wait"},
+    driven={},
+    unanswered={"get_joints_coord": GEOMETRY},
+)

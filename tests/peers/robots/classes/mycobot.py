@@ -1,0 +1,64 @@
+"""The maker's older class for the myCobot.
+
+It sends requests of the document's edition, and some that only newer firmware has.
+"""
+
+from __future__ import annotations
+
+from pymycobot_differences import DIFFERENCES
+from robots.robot import GPIO, LOCAL, SERVO_BUS, Call, Robot, Ruling
+from robots.rulings import PORT, REACHED, RETRIED, SIGN, SPEED, limits
+
+_ZERO = [0] * 6
+_LIMITS = "this edition states no limits of the joints; the maker checks those of a 280"
+_ZERO_SPEED = Ruling("speed is 0", SPEED)
+_SIGN = Ruling("'h' format", SIGN)
+_RANGE = Ruling("angle value", _LIMITS)
+_BYTE = "0x3A: no speed byte in this edition; mycobot280 has one"
+_REFERENCES = ("tool_reference", "world_reference", "reference_frame", "end_type")
+ROBOT = Robot(
+    "MyCobot",
+    "mycobot",
+    ("mycobot280", "mypalletizer260"),
+    local=LOCAL | GPIO | SERVO_BUS,
+    lacking=dict.fromkeys(
+        ["set_free_mode", "is_free_mode", "set_fresh_mode", "get_speed", "set_speed"]
+        + ["jog_absolute", "jog_stop", "set_joint_min", "set_joint_max", "set_pin_mode"]
+        + ["get_gripper_value", "is_gripper_moving"]
+        + [f"get_{what}" for what in _REFERENCES]
+        + [f"set_{what}" for what in _REFERENCES],
+        "the class has no such method",
+    ),
+    calls=[
+        Call("go_home", (), "send_angles", (_ZERO, 10)),
+        Call("sync_send_angles", (_ZERO, 50), "send_angles", (_ZERO, 50)),
+        Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
+        *(
+            Call(each.method, each.theirs, command, each.ours, why=each.ruling)
+            for (command, peer, _), each in DIFFERENCES.items()
+            if peer == "MyCobot"
+        ),
+    ],
+    rulings={
+        "is_in_position": [*limits("Has invalid"), _SIGN],
+        "jog_angle": [_ZERO_SPEED],
+        "jog_coord": [_ZERO_SPEED],
+        "jog_increment": [_ZERO_SPEED, _SIGN],
+        "send_angle": [_RANGE],
+        "send_angles": [_RANGE],
+        "send_coord": [_ZERO_SPEED, _SIGN],
+        "send_coords": [_ZERO_SPEED, _SIGN],
+        "set_encoders": [_ZERO_SPEED],
+        "set_gripper_state": [_ZERO_SPEED],
+        "set_encoder": [Ruling("missing 1 required positional argument: 'speed'", _BYTE)],
+        "set_server_port": [PORT],
+        "set_ssid_pwd": [Ruling("fe fe 02 b0 fa fe fe 02 b0 fa", RETRIED)],
+    },
+    driven={
+        "send_angle": (1, 30, 50),
+        "send_angles": ([10, 20, 30, 40, 50, 60], 50),
+        "send_coords": REACHED,
+        "set_encoder": (1, 2048, 50),
+    },
+    not_read_back={"set_encoder": _BYTE},
+)

@@ -1,0 +1,69 @@
+"""The myCobot 280 on an RDK X5."""
+
+from __future__ import annotations
+
+from robots.robot import DRIVEN, LOCAL, Call, Robot, Ruling
+from robots.rulings import EMPTY, REACHED, SPAN, TENTH, limits
+
+_ZERO = [0] * 6
+_OTHER_NAME = "the older class for the 280 has the method"
+ROBOT = Robot(
+    "MyCobot280RDKX5",
+    "mycobot280_rdkx5",
+    methods={
+        "check_async_or_sync": "async_or_sync",
+        "drag_clear_record_data": "clear_drag_record_data",
+        "drag_end_record": "end_drag_record",
+        "drag_get_record_data": "get_drag_record_data",
+        "drag_get_record_len": "get_drag_record_len",
+        "drag_start_record": "start_drag_record",
+        "is_controller_connected": "is_tool_connected",
+        "set_color": "set_tool_color",
+    },
+    local=LOCAL | {"parametric_verification"},
+    lacking={
+        "jog_stop": "a command of the document's edition, which the 280 keeps",
+        "jog_increment": _OTHER_NAME,
+        "get_radians": _OTHER_NAME,
+        "send_radians": _OTHER_NAME,
+    },
+    calls=[
+        Call("sync_send_angles", (_ZERO, 50), "send_angles", (_ZERO, 50)),
+        Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
+    ],
+    rulings={
+        "set_joint_min": [TENTH],
+        "set_joint_max": [TENTH],
+        "angles_to_coords": limits("angles not right"),
+        "solve_inv_kinematics": limits("not right"),
+        "set_tool_reference": limits("coords not right"),
+        "set_world_reference": limits("coords not right"),
+        "is_in_position": [
+            *limits("not right"),
+            Ruling("builtin", "the maker sends the function id() by mistake: every call fails"),
+        ],
+        "get_gripper_value": [
+            Ruling(
+                "fe fe 03 65 01 fa", "the kind may be left out, as on the 280; the maker sends 1"
+            )
+        ],
+        "jog_increment_angle": [
+            Ruling("NoneType", "the maker's check fails by mistake for every call")
+        ],
+        "jog_increment_coord": [Ruling("coord not right", SPAN)],
+        "send_coords": [
+            Ruling("coord_mode not right", "mode 2 comes from other clients for the 280")
+        ],
+        "set_servo_data": [
+            Ruling(
+                "address not right", "the maker compares the value, not the address, with 0 to 4"
+            )
+        ],
+    },
+    driven={**DRIVEN, "send_coords": REACHED},
+    unanswered={
+        "is_in_position": "every call fails before it is sent",
+        "jog_increment_angle": "every call fails before it is sent",
+        "get_drag_record_data": EMPTY,
+    },
+)

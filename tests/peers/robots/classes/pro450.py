@@ -1,0 +1,126 @@
+"""The myCobot Pro 450, which the maker's class reaches over TCP."""
+
+from __future__ import annotations
+
+from robots.classes.mercury_a1 import LOCAL_NAMES
+from robots.robot import GEOMETRY, Arguments, Call, Robot, Ruling
+from robots.tcp_classes import opened_on_socket
+
+GRIPPER = 14
+# The registers of the gripper that methods write and read.
+_REGISTERS = {
+    "angle": (11, 12),
+    "torque": (27, 28),
+    "speed": (32, 33),
+    "io_open_angle": (30, 34),
+    "io_close_angle": (31, 35),
+    "mini_pressure": (25, 26),
+}
+
+
+def _check(data: bytes) -> bytes:
+    """Return the check of Modbus over some bytes, low byte first."""
+    rest = 0xFFFF
+    for each in data:
+        rest ^= each
+        for _ in range(8):
+            rest = (rest >> 1) ^ (0xA001 if rest & 1 else 0)
+    return rest.to_bytes(2, "little")
+
+
+def _frame(function: int, register: int, value: int = 0) -> Arguments:
+    """Return the Modbus frame that reads (3) or writes (6) a register of the gripper."""
+    data = bytes([GRIPPER, function]) + register.to_bytes(2, "big") + value.to_bytes(2, "big")
+    return ([*data, *_check(data)],)
+
+
+def _writes(what: str, register: int, value: int, *given: int) -> Call:
+    return Call(
+        f"set_pro_gripper_{what}", given, "tool_serial_write_data", _frame(6, register, value)
+    )
+
+
+def _reads(what: str, register: int) -> Call:
+    return Call(f"get_pro_gripper_{what}", (), "tool_serial_write_data", _frame(3, register))
+
+
+_CALLS = [
+    *(_writes(what, at, 50, 50) for what, (at, _) in _REGISTERS.items()),
+    *(_reads(what, at) for what, (_, at) in _REGISTERS.items()),
+    _writes("open", 11, 100),
+    _writes("close", 11, 0),
+    _writes("calibration", 13, 0),
+    _writes("abs_angle", 36, 100, 100),
+    _writes("enabled", 10, 1, 1),
+    _writes("id", 3, 15, 15),
+    _writes("modbus", 47, 1, 1),
+    _writes("baud", 5, 1, 1),
+    _writes("protection_current", 43, 200, 200),
+    _reads("protection_current", 44),
+    _reads("firmware_version", 1),
+    _reads("firmware_modified_version", 2),
+    _reads("id", 4),
+    _reads("status", 14),
+    _reads("baud", 6),
+    Call("get_force_sensor_data", (), "tool_serial_write_data", ([1, 4, 0, 0, 0, 12, 240, 15],)),
+]
+_PLACE = [300, 0, 200, 90, 0, -90]
+_ZERO = [0] * 6
+_FIRST = "the maker asks first whether a new target replaces the present one"
+_JOG = [Ruling("fe fe 03 17", _FIRST)]
+_BYTES = "the maker's class returns the nine bytes of the reply"
+_LIMIT = "the firmware's limit is wider here; the maker wants a limit inside the limits of targets"
+_USUAL = "a value with USUAL is sent here; the maker rejects it"
+_NO_VALUE = "the value may be left out here; the maker wants one for each limit but USUAL"
+_NEGATIVE = "a byte in two's complement; the maker's class fails by mistake below 0"
+_MOTIONS: tuple[str, ...] = ("send_angle", "send_angles", "send_coord", "send_coords")
+_MOTIONS += ("jog_increment_coord", "over_limit_return_zero", "write_move_c")
+_MOTIONS += ("fourier_trajectories", "jog_increment_angle")
+ROBOT = Robot(
+    "Pro450Client",
+    "pro450",
+    local=LOCAL_NAMES - {"calibration_parameters", "identify_print"}
+    | {"clear_socket_buffer", "connect_socket", "debug_clear_socket"}
+    | {"read_thread_old", "set_limit_switch"},
+    lacking={
+        "angles_to_coords": "get_coords with angles",
+        "is_in_position_coords": "is_in_position with the mode 1",
+        "base_external_control": "a method for each bus",
+    },
+    not_ours={
+        "flash_tool_firmware": "it replaces firmware; no source states the whole exchange",
+        "set_pro_gripper_init": "it tries several requests, each of which has a command",
+    },
+    own_arguments={
+        "tool_serial_write_data": [([1, 2, 3],), ([255] * 45,)],
+        # The maker's method takes the damping before the compensation.
+        "set_torque_comp": [(1, 0, 0), (6, 1, 1)],
+    },
+    calls=[
+        *_CALLS,
+        Call("set_servos_calibration", (), "set_servo_calibration", (1,)),
+        Call("set_torque_comp", (3, 1, 50), "set_torque_comp", (3, 50, 1)),
+        Call("go_home", (), "send_angles", (_ZERO, 20)),
+        Call("is_in_position", (_PLACE, 1), "is_in_position_coords", (_PLACE,)),
+        Call("get_coords", (_ZERO,), "angles_to_coords", (_ZERO,)),
+        Call("base_external_485_control", ([1, 2, 255],), "base_external_control", ([1, 2, 255],)),
+        Call("base_external_can_control", (258, [3]), "base_external_control", ([0, 0, 1, 2, 3],)),
+    ],
+    rulings={
+        **dict.fromkeys(("jog_angle", "jog_coord", "jog_rpy"), _JOG),
+        **dict.fromkeys(("jog_increment_angle", "jog_increment_coord"), _JOG),
+        "set_joint_min_angle": [Ruling("angle value not right", _LIMIT)],
+        "set_joint_max_angle": [Ruling("angle value not right", _LIMIT)],
+        "set_fusion_parameters": [
+            Ruling("restores default parameters", _USUAL),
+            Ruling("value is required", _NO_VALUE),
+        ],
+        "set_pro_gripper_offset": [Ruling("rejected", _NEGATIVE)],
+    },
+    opened=opened_on_socket,
+    driven={"set_torque_comp": (3, 1, 1), "tool_serial_write_data": ([1, 2, 3, 4, 5, 6, 7, 8],)},
+    unanswered=dict.fromkeys(("get_coords", "solve_inv_kinematics"), GEOMETRY),
+    # Motions return the status of their end; the type of the robot is a text of digits.
+    kinds={**dict.fromkeys(_MOTIONS, int), "get_robot_type": str},
+    not_read_back={"set_base_external_config": _BYTES},
+)

@@ -1,0 +1,148 @@
+"""Describe one of the maker's classes: our edition for it, and where both sides differ."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from cobotwire.editions import load
+from cobotwire.protocol.addresses import find_address, lacks_joints
+from cobotwire.protocol.table import Address, Command, Table
+from pymycobot_classes import CLASSES, peer_on
+
+Arguments = tuple[Any, ...]
+
+# Public names of all classes that send nothing to the arm.
+LOCAL = frozenset({"check_python_version", "close", "crc_check", "crc_robot_class", "open", "wait"})
+# These drive pins of a Raspberry Pi.
+GPIO = frozenset({"gpio_init", "gpio_output"})
+# Methods of a base class of some of the maker's classes. Their frames begin with FF FF: they are
+# for the bus of the servos, not for the arm.
+SERVO_BUS = frozenset(
+    {"ping", "rxPacket", "txPacket", "txRxPacket", "readTxRx", "read1ByteTxRx", "read2ByteTxRx"}
+    | {"writeTxRx", "write1ByteTxRx", "write2ByteTxRx", "save_command", "search_servo"}
+    | {"scs_hibyte", "scs_lobyte", "scs_makeword", "scs_tohost", "get_servo_firmware_version"}
+    | {f"get_servo_{what}" for what in ("error", "baud", "d_time", "pid", "min_start", "phase")}
+    | {f"set_servo_{what}" for what in ("baud", "d_time", "pid", "min_start", "phase")}
+    | {
+        f"{verb}_servo_{what}"
+        for verb in ("get", "set")
+        for what in ("clockwise", "counter_clockwise", "max_temperature", "max_voltage")
+    }
+    | {f"{verb}_servo_response_speed" for verb in ("get", "set")}
+)
+
+
+# Arguments with which most classes drive a simulated robot.
+DRIVEN = {"set_server_port": (9000,), "set_servo_data": (1, 24, 200)}
+# The reason why a simulated robot does not reply to a query of coordinates.
+GEOMETRY = "no source gives the geometry"
+
+
+class Call(NamedTuple):
+    """A method of the maker's class, and the request of ours that means the same.
+
+    Attributes:
+        method: the name of the maker's method.
+        theirs: its arguments.
+        command: the name of our command; empty if we have none.
+        ours: its arguments.
+        address: the device that our request goes to; None if frames have no address.
+        why: not empty if the two sides differ in this call: the reason.
+    """
+
+    method: str
+    theirs: Arguments
+    command: str
+    ours: Arguments
+    address: str | None = None
+    why: str = ""
+
+
+class Ruling(NamedTuple):
+    """Why calls of a method differ from ours.
+
+    Attributes:
+        shows: a part of what these calls show: the hex digits of the maker's frame, or
+            ``rejected:`` and the text of the exception.
+        why: the reason.
+    """
+
+    shows: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Robot:
+    """One of the maker's classes, and what the comparison needs to know.
+
+    Attributes:
+        peer: the name of the class.
+        edition: the name of our edition.
+        further: editions for methods that ``edition`` has no command for: the class sends the
+            requests of other firmware too.
+        methods: the names of the class for our commands, where they differ.
+        local: public names of the class that send no frame to the arm.
+        lacking: our commands without a method: why.
+        not_ours: methods of the class that we have no command for: why.
+        own_arguments: for commands, arguments instead of those of the table.
+        calls: further calls. With ``why``, the two sides differ.
+        rulings: for methods, the reasons why calls differ.
+        before: what the class's methods take before our arguments, by the name of an address.
+        without_address: commands with methods that do not take an address.
+        driven: for commands, arguments with which the class drives a robot, instead of values
+            inside of the table's ranges.
+        unanswered: methods that get no reply from the simulated robot: why.
+        kinds: methods that return another type than the reply has.
+        not_read_back: methods that set what their query does not report then: why.
+        opened: makes an object of the class on a port.
+    """
+
+    peer: str
+    edition: str
+    further: tuple[str, ...] = ()
+    methods: Mapping[str, str] = field(default_factory=dict)
+    local: frozenset[str] = LOCAL
+    lacking: Mapping[str, str] = field(default_factory=dict)
+    not_ours: Mapping[str, str] = field(default_factory=dict)
+    own_arguments: Mapping[str, Sequence[Arguments]] = field(default_factory=dict)
+    calls: Sequence[Call] = ()
+    rulings: Mapping[str, Sequence[Ruling]] = field(default_factory=dict)
+    before: Mapping[str | None, Arguments] = field(default_factory=lambda: {None: ()})
+    without_address: frozenset[str] = frozenset()
+    driven: Mapping[str, Arguments] = field(default_factory=lambda: DRIVEN)
+    unanswered: Mapping[str, str] = field(default_factory=dict)
+    kinds: Mapping[str, type] = field(default_factory=dict)
+    not_read_back: Mapping[str, str] = field(default_factory=dict)
+    opened: Callable[[str, Any], Any] = peer_on
+
+    @property
+    def table(self) -> Table:
+        """The table of the edition."""
+        return load(self.edition).TABLE
+
+    @property
+    def public(self) -> list[str]:
+        """The methods of the class that send a frame, in order."""
+        names = (name for name in dir(CLASSES[self.peer]) if not name.startswith("_"))
+        return [name for name in names if name not in self.local]
+
+    def method(self, command: Command) -> str:
+        """Return the name of the class for a command."""
+        return self.methods.get(command.name, command.name)
+
+    def device(self, address: str | None) -> Address | None:
+        """Return what the edition says about an address."""
+        return None if address is None else find_address(self.table, address)
+
+    def addresses(self, command: Command) -> list[str | None]:
+        """Return the addresses that take a command: they have every joint that it is about."""
+        if command.name in self.without_address:
+            return list(self.before)[:1]
+        table = self.table
+        return [a for a in self.before if not lacks_joints(table, self.device(a), command)]
+
+    def on(self, port: Any) -> Any:
+        """Return an object of the class on a port."""
+        return self.opened(self.peer, port)

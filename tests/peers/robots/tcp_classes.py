@@ -1,0 +1,56 @@
+"""Make objects of the maker's class for the Pro 450, whose socket is a port in this process."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pymycobot_classes import CLASSES
+from pymycobot_ports import RecordingPort
+from robots.crc_classes import ReadFrames
+
+
+class PortSocket:
+    """The part of a socket that the class writes to."""
+
+    def __init__(self, port: Any) -> None:
+        self._port = port
+
+    def fileno(self) -> int:
+        return 3
+
+    def sendall(self, data: bytes) -> None:
+        self._port.write(data)
+
+
+class SteppedEvent:
+    """Stand in for the event that the thread sets which reads the socket: time passes."""
+
+    def wait(self, seconds: float) -> None:
+        from pymycobot import pro450_close_loop
+
+        pro450_close_loop.time.sleep(seconds)
+
+    def clear(self) -> None:
+        """Do nothing: nothing sets it."""
+
+
+class SocketFrames(ReadFrames):
+    """The frames that the class has read; it returns those that it took, and the rest."""
+
+    def _taken(self, frame: bytes) -> bool:
+        taken, _ = self._peer._process_received(frame)
+        return bool(taken)
+
+
+def opened_on_socket(peer_class: str, port: Any) -> Any:
+    """Return an object of the class with a socket that is a port in this process."""
+    from pymycobot.pro450_close_loop import Pro450CloseLoop
+
+    peer = object.__new__(CLASSES[peer_class])
+    Pro450CloseLoop.__init__(peer)
+    peer.language, peer.max_joint, peer.min_joint = "en_US", 0, 0
+    peer.sock = PortSocket(port)
+    if not isinstance(port, RecordingPort):
+        peer.event = SteppedEvent()
+        peer.read_command = SocketFrames(peer, port)
+    return peer

@@ -1,0 +1,83 @@
+"""A sample of ``make robots``, and the maker's unmodified classes on simulators of their robots."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from pymycobot_classes import CLASSES
+from robots.classes import ROBOTS
+from robots.comparison import compare
+from robots.driving import wrong_read_backs, wrong_replies
+from robots.robot import SERVO_BUS, Ruling
+
+# Every method is compared by `make robots`; here one of so many.
+STRIDE = 6
+
+robots = pytest.mark.parametrize("peer", ROBOTS)
+
+
+@robots
+def test_requests_equal_those_of_the_makers_class_or_have_a_ruling(peer: str) -> None:
+    robot = ROBOTS[peer]
+    methods = robot.public[len(peer) % STRIDE :: STRIDE]
+    found = compare(robot, methods)
+    assert [each for each in found if each.open] == []
+    assert sum(each.equal for each in found) > len(methods)
+
+
+@robots
+def test_every_command_has_a_method_of_the_makers_class_or_a_reason(peer: str) -> None:
+    robot = ROBOTS[peer]
+    commands = [command for command in robot.table.commands if not command.event]
+    without = {c.name for c in commands if not hasattr(CLASSES[peer], robot.method(c))}
+    assert set(robot.not_ours) <= set(robot.public)
+    assert without == set(robot.lacking)
+    assert all(robot.lacking.values())
+
+
+@robots
+def test_what_is_stated_about_a_class_names_its_methods_and_gives_reasons(peer: str) -> None:
+    robot = ROBOTS[peer]
+    for method, rulings in robot.rulings.items():
+        assert method in robot.public
+        assert all(ruling.why for ruling in rulings)
+    for listed in (robot.unanswered, robot.not_read_back):
+        assert set(listed) <= set(robot.public)
+        assert all(listed.values())
+    assert set(robot.kinds) <= set(robot.public)
+    names = {name for name in dir(CLASSES[peer]) if not name.startswith("_")}
+    assert robot.local - SERVO_BUS <= names
+
+
+# It reads the language of the system in a way that Python deprecates.
+@pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
+@robots
+def test_every_method_with_a_reply_gets_one_of_the_right_type(peer: str) -> None:
+    called, wrong = wrong_replies(ROBOTS[peer])
+    assert wrong == []
+    assert called > 15
+
+
+@robots
+def test_values_that_the_makers_class_sets_read_back(peer: str) -> None:
+    checked, wrong = wrong_read_backs(ROBOTS[peer])
+    assert wrong == []
+    assert checked > 5
+
+
+def test_another_edition_is_noticed() -> None:
+    other = replace(ROBOTS["MechArm270"], edition="mypalletizer260")
+    found = {each.method: each.open for each in compare(other, ["send_angles", "set_color"])}
+    assert "ours: fe fe 0b 22" in found["send_angles"][0]
+    assert found["set_color"] == ()
+    assert len(wrong_replies(other)[1]) > 0
+
+
+def test_ruling_that_no_call_needs_is_open() -> None:
+    stale = {"set_color": [Ruling("fe fe", "a reason")]}
+    [found] = compare(replace(ROBOTS["MechArm270"], rulings=stale), ["set_color"])
+    assert found.open == ("no call needs the ruling: a reason",)
+    [found] = compare(replace(ROBOTS["MechArm270"], rulings={}), ["set_server_port"])
+    assert "'h' format" in found.open[0]

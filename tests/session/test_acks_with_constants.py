@@ -1,0 +1,107 @@
+"""Acknowledgements of one id that a constant or an argument tells apart, as behind a bus."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import small_specs
+from cobotwire import ReplyTimeout
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
+from cobotwire.session import Exchange, PendingAck
+from cobotwire.session.request import RequestEncoder
+
+REGISTERS = {"set_force": 10, "set_speed": 11, "set_torque": 12}
+COMMAND = """
+{name}:
+  id: 0xE9
+  {sharing}
+  title: Set a register
+  doc: Sets a register.
+  safety: setting
+  ack: true
+  request:
+    - {{name: gripper, type: small}}
+    - {{name: register, type: small, const: {register}}}
+    - {{name: value, type: percent}}
+  reply:
+    - {{name: gripper, type: small, echo: required}}
+    - {{name: register, type: small, const: {register}}}
+    - {{name: done, type: flag}}
+"""
+WITHIN = 0.5
+GRIPPERS = (14, 15)
+
+
+@pytest.fixture(scope="module", params=["reference", "native"])
+def loaded(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Codec:
+    folder = tmp_path_factory.mktemp("spec")
+    commands = ""
+    for name, register in REGISTERS.items():
+        sharing = "" if not commands else "shares_id: set_force"
+        commands += COMMAND.format(name=name, register=register, sharing=sharing)
+    package = small_specs.package(folder, small_specs.build(folder, commands))
+    return codecs.load(package.TABLE, request.param)
+
+
+class Bus:
+    """An exchange with grippers that acknowledge what the test lets them acknowledge."""
+
+    def __init__(self, codec: Codec) -> None:
+        self._codec, self._encoder = codec, RequestEncoder(codec)
+        self.exchange = Exchange(codec)
+
+    def send(self, key: tuple[str, int], at: float) -> PendingAck:
+        name, gripper = key
+        values = (gripper, REGISTERS[name], 50)
+        request = self._encoder.encode(name, values)
+        _, pending = self.exchange.send_one_way(request, at, WITHIN)
+        assert pending is not None
+        return pending
+
+    def acknowledge(self, key: tuple[str, int], at: float) -> None:
+        name, gripper = key
+        frame = self._codec.encode(name, "reply", (gripper, REGISTERS[name], 1))
+        self.exchange.receive(frame, at)
+
+
+def succeeds(pending: PendingAck) -> bool:
+    try:
+        pending.result()
+    except ReplyTimeout:
+        return False
+    return True
+
+
+REQUESTS = st.tuples(st.sampled_from(sorted(REGISTERS)), st.sampled_from(GRIPPERS))
+
+
+@given(sent=st.lists(REQUESTS, min_size=1, max_size=6, unique=True), data=st.data())
+def test_each_ack_belongs_to_the_request_with_its_constant_and_argument(
+    loaded: Codec, sent: list[Any], data: st.DataObject
+) -> None:
+    bus = Bus(loaded)
+    waiting = {key: bus.send(key, 0.01 * at) for at, key in enumerate(sent)}
+    order = data.draw(st.permutations(sent))
+    acknowledged = order[: data.draw(st.integers(0, len(order)))]
+    for key in acknowledged:
+        bus.acknowledge(key, 0.1)
+    bus.exchange.wake(1.0)
+    assert {key for key, pending in waiting.items() if succeeds(pending)} == {*acknowledged}
+
+
+@given(sent=st.lists(st.tuples(REQUESTS, st.booleans()), min_size=1, max_size=8))
+def test_request_never_succeeds_by_the_ack_of_another_one(loaded: Codec, sent: list[Any]) -> None:
+    bus = Bus(loaded)
+    waiting = [(bus.send(key, 0.01 * at), key, comes) for at, (key, comes) in enumerate(sent)]
+    for key, comes in sent:
+        if comes:
+            bus.acknowledge(key, 0.1)
+    bus.exchange.wake(1.0)
+    for pending, key, _ in waiting:
+        alike = [comes for _, other, comes in waiting if other == key]
+        assert not succeeds(pending) or all(alike)
