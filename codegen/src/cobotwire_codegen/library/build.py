@@ -1,0 +1,154 @@
+"""Builds the classes of the maker's library from ``spec/pymycobot.yaml`` and the editions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from cobotwire_codegen.errors import Problem, SpecError, nearest
+from cobotwire_codegen.language.records import Entry, Key
+from cobotwire_codegen.library import language
+from cobotwire_codegen.library.model import QUIET, Library, LibraryClass, Method, Parameter
+from cobotwire_codegen.load import load
+from cobotwire_codegen.model import Command, Edition
+from cobotwire_codegen.reader import Reader
+from cobotwire_codegen.render.arguments import arguments
+
+# A default is a plain literal: None, a truth value, a number, a quoted word.
+_PARAMETER = re.compile(
+    r"(_?[a-z][A-Za-z0-9_]*)(?:=(None|True|False|-?\d+(?:\.\d+)?|'[\w./-]*'))?\Z"
+)
+
+
+def build_library(path: Path, root: Path, editions: Iterable[Edition]) -> Library:
+    """Return the library's classes.
+
+    Raises:
+        SpecError: the file is wrong; the error carries every problem.
+    """
+    problems: list[Problem] = []
+    node = load(path, path.relative_to(root).as_posix())
+    spec = language.Library
+    reader = Reader(node, spec, "the library", problems)
+    shared = {name: (name, place, node) for name, place, node in reader.get(spec.methods)}
+    known = {edition.name: edition for edition in editions}
+    classes = [
+        built
+        for entry in reader.get(spec.classes)
+        if (built := _class(entry, shared, known, problems)) is not None
+    ]
+    _check_likes(reader, classes)
+    if problems:
+        raise SpecError(problems)
+    absent = [
+        (name, group.get(language.Absent.why))
+        for node in reader.get(spec.absent)
+        for group in [Reader(node, language.Absent, "a group of names", problems)]
+        for name in group.get(language.Absent.names)
+    ]
+    return Library(reader.get(spec.library), tuple(absent), tuple(classes))
+
+
+def _check_likes(reader: Reader, classes: list[LibraryClass]) -> None:
+    earlier: set[str] = set()
+    for each in classes:
+        if each.like and each.like not in earlier:
+            message = f"the class {each.name} is like {each.like}, which is not listed before it"
+            reader.problem("unknown-word", message + nearest(each.like, earlier))
+        earlier.add(each.name)
+
+
+def _class(
+    entry: Entry,
+    shared: Mapping[str, Entry],
+    editions: Mapping[str, Edition],
+    problems: list[Problem],
+) -> LibraryClass | None:
+    name, _, node = entry
+    spec = language.Class
+    reader = Reader(node, spec, f"the class {name}", problems)
+    edition = editions.get(reader.get(spec.edition))
+    if edition is None:
+        given = reader.get(spec.edition)
+        message = f"{reader.what} has no edition {given}{nearest(given, editions)}"
+        reader.problem("unknown-word", message, reader.place_of(spec.edition))
+        return None
+    like = reader.get(spec.like)
+    own = {key: (key, place, node) for key, place, node in reader.get(spec.methods)}
+    commands = {command.name: command for command in edition.commands if not command.event}
+    offered = _offered(reader, commands)
+    # A class like another one states only its own differences.
+    wanted = own if like else {**dict.fromkeys(offered), **_of(shared, offered), **own}
+    methods = [_method(key, given, commands, problems) for key, given in wanted.items()]
+    return LibraryClass(
+        name,
+        reader.get(spec.module),
+        reader.get(spec.doc),
+        edition,
+        reader.get(spec.opens),
+        _parameters(reader, spec.constructor),
+        like,
+        reader.get(spec.helpers),
+        tuple(sorted(filter(None, methods), key=lambda method: method.name)),
+    )
+
+
+def _offered(reader: Reader, commands: Mapping[str, Command]) -> list[str]:
+    """Return the commands that a class offers under our name."""
+    key = language.Class.lacks
+    lacks = reader.get(key)
+    for name in (name for name in lacks if name not in commands):
+        message = f"{reader.what} lacks {name}, but no command has that name"
+        reader.problem("unknown-command", message + nearest(name, commands), reader.place_of(key))
+    return [name for name in commands if name not in lacks]
+
+
+def _of(shared: Mapping[str, Entry], offered: list[str]) -> dict[str, Entry]:
+    """Return the shared methods that a class offers."""
+    return {name: entry for name, entry in shared.items() if name in offered}
+
+
+def _method(
+    name: str, entry: Entry | None, commands: Mapping[str, Command], problems: list[Problem]
+) -> Method | None:
+    if entry is None:
+        return _as_ours(name, commands[name])
+    spec = language.Method
+    reader = Reader(entry[2], spec, f"the method {name}", problems)
+    called = reader.get(spec.calls) or name
+    command = commands.get(called)
+    if command is None:
+        message = f"{reader.what} calls {called}, which is no command{nearest(called, commands)}"
+        reader.problem("unknown-command", message)
+        return None
+    ours = _as_ours(name, command)
+    parameters = _parameters(reader, spec.parameters) or ours.parameters
+    passes = reader.get(spec.passes)
+    names = tuple(each.name for each in parameters)
+    for unknown in (each for each in passes if each not in names):
+        message = f"{reader.what} has no parameter {unknown}{nearest(unknown, names)}"
+        reader.problem("unknown-word", message, reader.place_of(spec.passes))
+    passed = passes or tuple(each for each in names if each != QUIET)
+    most = len(command.argument_names)
+    if len(passed) > most:
+        message = f"{reader.what} passes {len(passed)} parameters, but {called} takes {most}"
+        reader.problem("bad-number", message)
+    return Method(name, command, parameters, passed, reader.get(spec.result))
+
+
+def _as_ours(name: str, command: Command) -> Method:
+    found = tuple(Parameter(each.name, each.default) for each in arguments(command))
+    return Method(name, command, found, tuple(each.name for each in found), "plain")
+
+
+def _parameters(reader: Reader, key: Key[tuple[str, ...]]) -> tuple[Parameter, ...]:
+    found = []
+    for text in reader.get(key):
+        match = _PARAMETER.match(text)
+        if match is None:
+            message = f"{reader.what} has the parameter {text}; write name or name=default"
+            reader.problem("bad-name", message, reader.place_of(key))
+        else:
+            found.append(Parameter(match[1], match[2] or ""))
+    return tuple(found)

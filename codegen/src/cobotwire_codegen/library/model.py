@@ -1,0 +1,66 @@
+"""What the layer offers: the maker's classes and methods, and which of ours they call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cobotwire_codegen.model import Command, Edition
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a method; ``default`` is a literal, and empty if there is none."""
+
+    name: str
+    default: str
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A method of the library.
+
+    ``command`` is what it sends, by the name of our method; ``passes`` are the parameters that our
+    method is given; ``result`` is how its result is given.
+    """
+
+    name: str
+    command: Command
+    parameters: tuple[Parameter, ...]
+    passes: tuple[str, ...]
+    result: str
+
+    @property
+    def may_be_quiet(self) -> bool:
+        """Whether a caller may choose not to wait for the acknowledgement."""
+        return any(parameter.name == QUIET for parameter in self.parameters)
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryClass:
+    """A class of the library. ``like`` is the class whose methods it has; empty if none."""
+
+    name: str
+    module: str
+    doc: str
+    edition: Edition
+    opens: str
+    constructor: tuple[Parameter, ...]
+    like: str
+    helpers: tuple[str, ...]
+    methods: tuple[Method, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """The maker's library; ``name`` has its version.
+
+    ``absent`` are its public names that have no counterpart, each with why.
+    """
+
+    name: str
+    absent: tuple[tuple[str, str], ...]
+    classes: tuple[LibraryClass, ...]
+
+
+# The parameter that says whether a method waits for its acknowledgement.
+QUIET = "_async"

@@ -1,0 +1,232 @@
+"""Renders a module for each of the library's modules."""
+
+from __future__ import annotations
+
+import json
+import re
+from itertools import groupby, zip_longest
+from pathlib import PurePosixPath
+
+from cobotwire_codegen.library.language import RESULTS
+from cobotwire_codegen.library.model import QUIET, Library, LibraryClass, Method, Parameter
+from cobotwire_codegen.model import Value
+from cobotwire_codegen.render import Files, environment
+from cobotwire_codegen.render.arguments import Argument, arguments, keyword_only
+from cobotwire_codegen.render.layout import laid_out
+from cobotwire_codegen.render.parameters import results
+
+# What constructors take besides the place to open. Only ``debug`` has an effect.
+_OPTIONS = {
+    "debug": "bool",
+    "save_serial_log": "bool",
+    "thread_lock": "bool",
+    "timeout": "float",
+}
+_ENUM = re.compile(r"\b[A-Z]\w* \| int\b")
+
+
+def render_library(library: Library) -> Files:
+    """Return the modules by their names in the library."""
+    jinja = environment()
+    jinja.globals.update(
+        bases=bases,
+        call=call,
+        constructor=constructor,
+        head=head,
+        imports=imports,
+        names=names,
+        our_call=our_call,
+        sequences=sequences,
+        typing=typing,
+    )
+    template = jinja.get_template("library/module.py.j2")
+    listed = sorted(library.classes, key=lambda each: each.module)
+    order = [each.name for each in library.classes]
+    made: Files = {}
+    for module, found in groupby(listed, key=lambda each: each.module):
+        classes = sorted(found, key=lambda each: order.index(each.name))
+        text = template.render(library=library, classes=classes)
+        made[PurePosixPath(f"{module}.py")] = text
+    index = jinja.get_template("library/index.py.j2")
+    made[PurePosixPath("__init__.py")] = index.render(library=library)
+    made[PurePosixPath("calls.json")] = calls_json(library)
+    return made
+
+
+def calls_json(library: Library) -> str:
+    """Return how each method of the library is called in our client, for tools."""
+    classes = (f'"{given.name}": {_class_json(given)}' for given in library.classes)
+    return "{\n" + ",\n".join(classes) + "\n}\n"
+
+
+def _class_json(given: LibraryClass) -> str:
+    """Return a class as JSON, with a line for each method."""
+    head = {
+        "opens": given.opens,
+        "constructor": [each.name for each in given.constructor],
+        "native": given.edition.class_name,
+        "joints": given.edition.joints,
+        "like": given.like,
+    }
+    methods = (f'  "{each.name}": {json.dumps(_as_data(each))}' for each in given.methods)
+    listed = ",\n".join(methods)
+    return f'{json.dumps(head)[:-1]}, "methods": {{\n{listed}\n }}}}'
+
+
+def _as_data(method: Method) -> dict[str, object]:
+    ours = arguments(method.command)
+    return {
+        "calls": method.command.name,
+        "parameters": {each.name: each.default for each in method.parameters},
+        "arguments": {
+            argument.name: [name, argument.default] for name, argument in zip(method.passes, ours)
+        },
+        "result": method.result,
+        "keywords": sorted(keyword_only(method.command)),
+        "row": method.result == "plain" and _gives_row(method),
+    }
+
+
+def _gives_row(method: Method) -> bool:
+    """Return whether our client returns a named tuple where the library returns a list."""
+    found = results(method.command)
+    return len(found) == 1 and any(isinstance(each, Value) for each in found[0].types)
+
+
+def render_page(library: Library) -> Files:
+    """Return the page with the calls of the library beside ours."""
+    jinja = environment()
+    jinja.globals.update(differing=differing, results=RESULTS, their_call=their_call)
+    text = jinja.get_template("library/page.md.j2").render(library=library)
+    return {PurePosixPath("pymycobot.md"): text}
+
+
+def differing(given: LibraryClass) -> list[Method]:
+    """Return the methods of a class that are called differently in our client."""
+    return [method for method in given.methods if our_call(method) or method.result != "plain"]
+
+
+def their_call(method: Method) -> str:
+    """Return how the library's method is called, with the defaults."""
+    parts = [f"{p.name}={p.default}" if p.default else p.name for p in method.parameters]
+    return f"{method.name}({', '.join(parts)})"
+
+
+def constructor(given: LibraryClass) -> str:
+    """Return the constructor of a class."""
+    types = ["str", "int" if given.opens == "socket" else "str | int"]
+    parts = ["self"]
+    for parameter, kind in zip_longest(given.constructor, types, fillvalue=""):
+        assert isinstance(parameter, Parameter), "a constructor says what it opens"
+        default = f" = {_double_quoted(parameter.default)}" if parameter.default else ""
+        parts.append(f"{parameter.name}: {kind or _OPTIONS[parameter.name]}{default}")
+    parts += ["*", "errors: OnFailure | None = None"]
+    opened = [parameter.name for parameter in given.constructor[:2]]
+    debug = "debug" if any(each.name == "debug" for each in given.constructor) else "False"
+    return (
+        laid_out("def __init__(", parts, ") -> None:", 4)
+        + '\n        """Open the arm; see :class:`CompatibleClient`."""\n        '
+        + laid_out(f"self._open_{given.opens}(", [*opened, debug, "errors"], ")", 8)
+    )
+
+
+def _double_quoted(literal: str) -> str:
+    return literal.replace("'", '"')
+
+
+def head(method: Method) -> str:
+    """Return the head of a method with the library's parameters."""
+    ours = {name: each for name, each in zip(method.passes, arguments(method.command))}
+    parts = ["self"]
+    for parameter in method.parameters:
+        default = f" = {parameter.default}" if parameter.default else ""
+        parts.append(f"{parameter.name}: {_annotation(parameter.name, ours)}{default}")
+    return laid_out(f"def {method.name}(", parts, ") -> Any:", 4)
+
+
+def _annotation(name: str, ours: dict[str, Argument]) -> str:
+    if name == QUIET:
+        return "bool"
+    if name not in ours:
+        return "object"
+    # The library has no enums, and takes 0 and 1 where we take a flag.
+    return _ENUM.sub("int", ours[name].annotation).replace("bool", "int")
+
+
+def call(method: Method) -> str:
+    """Return the body of a method."""
+    ours = f"self.arm.{method.command.name}"
+    passed = _passed(method)
+    if _asks(method):
+        parts = [f"results.{method.result}", ours, *passed]
+        return laid_out("return self._ask(", parts, ")", 8)
+    if not method.command.ack:
+        order = "_finish" if method.result == "done" else "_send"
+        return laid_out(f"return self.{order}(", [ours, *passed], ")", 8)
+    quiet = [f"quiet={QUIET}"] if method.may_be_quiet else []
+    gives = [f"gives=results.{method.result}"] if method.result != "plain" else []
+    return laid_out("return self._order(", [ours, *passed, *quiet, *gives], ")", 8)
+
+
+def _passed(method: Method) -> list[str]:
+    """Return what our method is given. A flag that is False by default is left out then."""
+    defaults = {each.name: each.default for each in method.parameters}
+    ours = {name: each.default for name, each in zip(method.passes, arguments(method.command))}
+    left_out = {name for name in ours if (defaults[name], ours[name]) == ("False", "None")}
+    return [f"{name} or None" if name in left_out else name for name in method.passes]
+
+
+def our_call(method: Method) -> str:
+    """Return how our client is called; empty if it is called in the same way."""
+    if tuple(each.name for each in method.parameters) == method.command.argument_names:
+        return ""
+    return f"Calls ``{method.command.name}({', '.join(method.command.argument_names)})``."
+
+
+def names(library: Library) -> list[str]:
+    """Return what the package exports, in the order of ruff."""
+    constants = ["PI_BAUD", "PI_PORT"]
+    classes = sorted([each.name for each in library.classes] + ["Angle", "Coord"])
+    return [*constants, *classes, "utils"]
+
+
+def bases(given: LibraryClass) -> str:
+    """Return the bases of a class: what it is like, the helpers, or else what all share."""
+    found = [*([given.like] if given.like else []), *given.helpers]
+    return ", ".join(found or ["CompatibleClient"])
+
+
+def sequences(classes: list[LibraryClass]) -> bool:
+    """Return whether a method of the classes takes a row of numbers."""
+    found = (each for given in classes for each in given.methods)
+    return any("Sequence[" in head(method) for method in found)
+
+
+def typing(classes: list[LibraryClass]) -> str:
+    """Return what a module imports from ``typing``."""
+    methods = any(given.methods for given in classes)
+    return ", ".join(["TYPE_CHECKING"] * sequences(classes) + ["Any"] * methods)
+
+
+def imports(library: Library, classes: list[LibraryClass]) -> list[str]:
+    """Return the imports of a module."""
+    layer = "cobotwire.pymycobot.layer"
+    editions = sorted({each.edition.name for each in classes})
+    found = [f"from cobotwire.editions import {', '.join(editions)}"]
+    methods = [method for given in classes for method in given.methods]
+    if any(_asks(each) or (each.command.ack and each.result != "plain") for each in methods):
+        found.append(f"from {layer} import results")
+    shared = ["CompatibleClient"] * any(bases(each) == "CompatibleClient" for each in classes)
+    found.append(f"from {layer}.client import {', '.join([*shared, 'OnFailure'])}")
+    helpers = sorted({helper for each in classes for helper in each.helpers})
+    if helpers:
+        found.append(f"from {layer}.helpers import {', '.join(helpers)}")
+    here = {each.name for each in classes}
+    modules = {each.name: each.module for each in library.classes}
+    likes = sorted({each.like for each in classes} - here - {""})
+    found += [f"from cobotwire.pymycobot.{modules[like]} import {like}" for like in likes]
+    return sorted(found)
+
+
+def _asks(method: Method) -> bool:
+    return method.command.awaits_reply and not method.command.ack

@@ -1,0 +1,1 @@
+"""What all classes of the layer share: opening, orders and queries, results, helpers."""

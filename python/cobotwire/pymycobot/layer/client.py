@@ -1,0 +1,108 @@
+"""Calls our client as the maker's library is called."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from functools import partial
+from typing import Any, ClassVar, Literal, TypeVar
+
+from cobotwire.client import Client
+from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
+from cobotwire.pymycobot.layer.policy import policy
+from cobotwire.pymycobot.layer.results import plain
+
+OnFailure = Literal["raise", "return"]
+Value = TypeVar("Value")
+# The library waits three times half a second for an acknowledgement.
+ACK_SECONDS = 1.5
+# What the library returns for an order that was acknowledged, and for a call that failed.
+DONE, FAILED = 1, -1
+
+
+class CompatibleClient:
+    """Our client of a robot, with the constructor and the methods of the maker's class.
+
+    ``arm`` is our client; its methods may be called too.
+
+    The parameters of the constructor are the maker's. ``timeout`` and ``thread_lock`` have no
+    effect: our client waits for a reply as long as the edition says, and many threads may always
+    share an arm. ``debug`` logs all frames.
+
+    With ``errors="raise"``, the default, a call that fails raises our error. With
+    ``errors="return"`` it returns -1, as the library does. An argument that is not allowed raises
+    UsageError in both cases.
+    """
+
+    NATIVE: ClassVar[type[Client]]
+
+    def _open_serial(
+        self, port: str, baudrate: str | int, debug: bool, errors: OnFailure | None
+    ) -> None:
+        self._open(partial(self.NATIVE, port, baudrate=int(baudrate)), debug, errors)
+
+    def _open_socket(self, host: str, port: int, debug: bool, errors: OnFailure | None) -> None:
+        self._open(partial(self.NATIVE, f"socket://{host}:{port}"), debug, errors)
+
+    def _open(self, open_arm: Callable[[], Client], debug: bool, errors: OnFailure | None) -> None:
+        if errors not in (None, "raise", "return"):
+            raise UsageError("errors", errors, "'raise' or 'return'")
+        if debug:
+            logging.basicConfig()
+            logging.getLogger("cobotwire.traffic").setLevel(logging.DEBUG)
+        self._raises = (errors or policy.errors) == "raise"
+        self._open_arm = open_arm
+        self.open()
+
+    def open(self) -> None:
+        """Open the port again after ``close``; the constructor has opened it."""
+        self.arm: Any = self._open_arm()
+        policy.opened(self.arm)
+
+    def close(self) -> None:
+        """Close the port. The arm is sent nothing."""
+        self.arm.close()
+
+    def _order(
+        self,
+        call: Callable[..., None],
+        *arguments: Any,
+        quiet: bool = False,
+        gives: Callable[[Any], Any] = plain,
+    ) -> Any:
+        """Send an order once; unless ``quiet``, wait for its acknowledgement, and return 1.
+
+        ``gives`` says in which form it is returned.
+        """
+        if quiet:
+            call(*arguments)
+            return None
+        try:
+            call(*arguments, ack_within=ACK_SECONDS)
+        except (ProtocolError, ReplyTimeout):
+            return self._failed()
+        return gives(DONE)
+
+    def _send(self, call: Callable[..., None], *arguments: Any) -> None:
+        """Send an order that the robot does not acknowledge."""
+        call(*arguments)
+
+    def _finish(self, call: Callable[..., None], *arguments: Any) -> int:
+        """Send an order that the robot does not acknowledge; return 1, as the library does."""
+        call(*arguments)
+        return DONE
+
+    def _ask(
+        self, convert: Callable[[Any], Value], call: Callable[..., Any], *arguments: Any
+    ) -> Value | int:
+        """Return the result of a query as the library gives it."""
+        try:
+            return convert(call(*arguments))
+        except (ProtocolError, ReplyTimeout):
+            return self._failed()
+
+    def _failed(self) -> int:
+        """Raise the error that is being handled, or return what the library returns."""
+        if self._raises:
+            raise
+        return FAILED

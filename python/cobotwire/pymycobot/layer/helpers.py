@@ -1,0 +1,128 @@
+"""The maker's methods that send several requests, or none."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any, Self
+
+from cobotwire.protocol.errors import MotionTimeout, UsageError
+from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
+
+HOME_SPEED = 10
+
+
+class Waiting(CompatibleClient):
+    """Waits for a time, or for the end of a motion."""
+
+    def wait(self, t: float) -> Self:
+        """Sleep for some seconds."""
+        time.sleep(t)
+        return self
+
+    def sync_send_angles(self, degrees: Sequence[float], speed: int, timeout: float = 15) -> int:
+        """Move all joints to angles, and wait until they are there: ``move_angles``.
+
+        Raises:
+            MotionTimeout: the arm is not there in time; with ``errors="return"`` the result is 1,
+                as it is in the library.
+        """
+        return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
+
+    def _reached(self, move: Any, *arguments: Any, timeout: float) -> int:
+        try:
+            move(*arguments, timeout=timeout)
+        except MotionTimeout:
+            if self._raises:
+                raise
+        return DONE
+
+
+class WaitingWithMode(Waiting):
+    """Waits for the end of a motion of the end, along a path that can be chosen."""
+
+    def sync_send_coords(
+        self, coords: Sequence[float], speed: int, mode: int = 0, timeout: float = 15
+    ) -> int:
+        """Move the end to coordinates, and wait until it is there: ``move_coords``.
+
+        Raises:
+            MotionTimeout: as ``sync_send_angles``.
+        """
+        return self._reached(self.arm.move_coords, coords, speed, mode, timeout=timeout)
+
+
+class WaitingWithoutMode(Waiting):
+    """Waits for the end of a motion of the end."""
+
+    def sync_send_coords(self, coords: Sequence[float], speed: int, timeout: float = 15) -> int:
+        """Move the end to coordinates, and wait until it is there: ``move_coords``.
+
+        Raises:
+            MotionTimeout: as ``sync_send_angles``.
+        """
+        return self._reached(self.arm.move_coords, coords, speed, timeout=timeout)
+
+
+class Homing(CompatibleClient):
+    """Sends all joints to 0."""
+
+    def go_home(self) -> Any:
+        """Send all joints to 0 degrees, at a tenth of the fastest speed."""
+        joints = self.arm.table.joints
+        return self._order(self.arm.send_angles, [0] * joints, HOME_SPEED)
+
+
+class HomingQuietly(Homing):
+    """Sends all joints to 0, and may leave without the acknowledgement."""
+
+    def go_home(self, _async: bool = False) -> Any:
+        """Send all joints to 0 degrees, at a tenth of the fastest speed."""
+        joints = self.arm.table.joints
+        return self._order(self.arm.send_angles, [0] * joints, HOME_SPEED, quiet=_async)
+
+
+class TorqueGripper(CompatibleClient):
+    """A gripper with force control, whose kind can be read."""
+
+    def is_torque_gripper(self) -> Any:
+        """Read the kind of the gripper: 40 with force control, 9 without."""
+        return self._ask(int, self.arm.get_servo_data, 7, 1)
+
+
+class StoppingGripper(TorqueGripper):
+    """A gripper with force control, which can be stopped."""
+
+    def gripper_stop(self) -> Any:
+        """Stop the gripper."""
+        return self._order(self.arm.set_gripper_value, 0, 0, 1, 1)
+
+
+class TwoPositions(CompatibleClient):
+    """Asks for two kinds of targets by one method, where the protocol has two commands."""
+
+    def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:
+        """Check whether joint angles are reached, or coordinates if ``id`` is 1."""
+        query = self.arm.is_in_position_coords if id == 1 else self.arm.is_in_position
+        return self._ask(int, query, data)
+
+
+class Pins:
+    """Pins of a Raspberry Pi, by the package RPi.GPIO."""
+
+    def gpio_init(self) -> None:
+        """Use the pins by the numbers of the processor (BCM)."""
+        self.gpio: Any = import_module("RPi.GPIO")
+        self.gpio.setmode(self.gpio.BCM)
+
+    def gpio_output(self, pin: int, v: int) -> None:
+        """Set a pin to 0 or 1.
+
+        Raises:
+            UsageError: ``gpio_init`` was not called.
+        """
+        if not hasattr(self, "gpio"):
+            raise UsageError("pin", pin, "set after gpio_init() was called")
+        self.gpio.setup(pin, self.gpio.OUT)
+        self.gpio.output(pin, v)

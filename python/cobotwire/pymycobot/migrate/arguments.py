@@ -1,0 +1,106 @@
+"""Writes the arguments of a call of the library for our method."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import libcst as cst
+
+from cobotwire.pymycobot.migrate.calls import Call
+
+QUIET = "_async"
+
+
+def given(
+    arguments: Sequence[cst.Arg], parameters: Sequence[str]
+) -> dict[str, cst.BaseExpression] | None:
+    """Return the arguments by the library's parameters; None if ``*`` or ``**`` hides them."""
+    found: dict[str, cst.BaseExpression] = {}
+    for index, argument in enumerate(arguments):
+        if argument.star or (argument.keyword is None and index >= len(parameters)):
+            return None
+        name = argument.keyword.value if argument.keyword else parameters[index]
+        found[name] = argument.value
+    return found
+
+
+def ours(call: Call, arguments: Sequence[cst.Arg]) -> list[cst.Arg] | None:
+    """Return the arguments of our method; None if they cannot be known.
+
+    An argument without a keyword keeps its position, as far as our method allows it.
+    """
+    known = given(arguments, list(call.parameters))
+    if known is None:
+        return None
+    count = sum(1 for each in arguments if each.keyword is None)
+    positional = set(list(call.parameters)[:count])
+    made: list[cst.Arg] = []
+    in_place = True
+    for name, (parameter, default) in call.arguments.items():
+        value = known.get(parameter) or _default(call, parameter, default)
+        if value is None:
+            in_place = False
+            continue
+        by_name = parameter in known and parameter not in positional
+        in_place = in_place and not by_name and name not in call.keywords
+        made.append(cst.Arg(value) if in_place else _named(name, value))
+    return _laid_out(made)
+
+
+def _default(call: Call, parameter: str, default: str) -> cst.BaseExpression | None:
+    """Return what the library would use for an argument that is left out, if ours differs."""
+    theirs = call.parameters[parameter]
+    return cst.parse_expression(theirs) if theirs and theirs != default else None
+
+
+def _named(name: str, value: cst.BaseExpression) -> cst.Arg:
+    without_space = cst.AssignEqual(cst.SimpleWhitespace(""), cst.SimpleWhitespace(""))
+    return cst.Arg(value, cst.Name(name), equal=without_space)
+
+
+def _laid_out(arguments: list[cst.Arg]) -> list[cst.Arg]:
+    comma = cst.Comma(whitespace_after=cst.SimpleWhitespace(" "))
+    return [
+        each.with_changes(comma=comma if index < len(arguments) - 1 else cst.MaybeSentinel.DEFAULT)
+        for index, each in enumerate(arguments)
+    ]
+
+
+def serial_arguments(
+    port: cst.BaseExpression, baudrate: cst.BaseExpression | None
+) -> list[cst.Arg]:
+    """Return the arguments that open a serial port: our client takes the speed as a number."""
+    if baudrate is None:
+        return [cst.Arg(port)]
+    if isinstance(baudrate, cst.SimpleString):
+        number: cst.BaseExpression = cst.Integer(str(int(str(baudrate.evaluated_value))))
+    elif isinstance(baudrate, cst.Integer | cst.Name):
+        number = baudrate
+    else:
+        number = cst.Call(cst.Name("int"), [cst.Arg(baudrate)])
+    return _laid_out([cst.Arg(port), cst.Arg(number)])
+
+
+def socket_arguments(host: cst.BaseExpression, port: cst.BaseExpression | None) -> list[cst.Arg]:
+    """Return the arguments that connect to a TCP server: our client takes a URL."""
+    number = cst.Integer("9000") if port is None else port
+    parts = [_in_f_string(part) for part in (host, number)]
+    url = f"socket://{parts[0]}:{parts[1]}"
+    quote = "'" if '"' in url else '"'
+    if "'" in url and '"' in url:
+        made = f'"socket://{{}}:{{}}".format({code(host)}, {code(number)})'
+    else:
+        made = f"{'f' if '{' in url else ''}{quote}{url}{quote}"
+    return [cst.Arg(cst.parse_expression(made))]
+
+
+def _in_f_string(node: cst.BaseExpression) -> str:
+    """Return a value as a part of an f-string: itself if it is a literal."""
+    if isinstance(node, cst.SimpleString):
+        return str(node.raw_value)
+    return node.value if isinstance(node, cst.Integer) else f"{{{code(node)}}}"
+
+
+def code(node: cst.CSTNode) -> str:
+    """Return a node as text."""
+    return cst.Module([]).code_for_node(node)

@@ -1,0 +1,154 @@
+"""Programs of the maker's library are rewritten for our clients."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cobotwire.cli.app import app
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.protocol.errors import UsageError
+from cobotwire.pymycobot.migrate import migrate
+from cobotwire.simulator import PtyServer, SimulatedArm
+from in_process import run
+
+TYPICAL = Path(__file__).parent / "programs" / "typical.py"
+HEAD = "from pymycobot import MyCobot280\nmc = MyCobot280(port)\n"
+OURS = "from cobotwire import MyCobot280\nmc = MyCobot280(port)\n"
+
+
+def rewritten(line: str) -> str:
+    found = migrate(HEAD + line + "\n")
+    assert found.decisions == ()
+    head, ours, rest = found.text.replace("import time\n\n", "").partition(OURS)
+    assert (head, ours) == ("", OURS)
+    return rest.rstrip("\n")
+
+
+def decided(line: str) -> list[str]:
+    return [str(each) for each in migrate(HEAD + line + "\n").decisions]
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("mc.send_angle(1, 20, 30)", "mc.send_angle(1, 20, 30)"),
+        ("mc.send_angle(id=1, degree=20, speed=30)", "mc.send_angle(joint=1, angle=20, speed=30)"),
+        ("mc.send_angle(1, speed=30, degree=20)", "mc.send_angle(1, angle=20, speed=30)"),
+        ("mc.send_angles(row, 30, _async=True)", "mc.send_angles(row, 30)"),
+        ("mc.send_angles(row, 30, True)", "mc.send_angles(row, 30)"),
+        ("mc.send_coords(row, 30, 1)", "mc.send_coords(row, 30, 1)"),
+        ("mc.is_in_position(row)", "mc.is_in_position(row)"),
+        ("mc.is_in_position(row, id=1)", "mc.is_in_position(row, kind=1)"),
+        ("mc.set_color(g=255)", "mc.set_color(green=255)"),
+        ("mc.sync_send_angles(row, 50)", "mc.move_angles(row, 50, timeout=15)"),
+        ("mc.sync_send_coords(row, 50, timeout=3)", "mc.move_coords(row, 50, 0, timeout=3)"),
+        ("mc.go_home()", "mc.send_angles([0] * 6, 10)"),
+        ("mc.gripper_stop()", "mc.set_gripper_value(0, 0, 1, 1)"),
+        ("mc.wait(2)", "time.sleep(2)"),
+        ("row = mc.get_angles()\nprint(row)", "row = mc.get_angles()\nprint(row)"),
+        ("row = mc.get_angles()\nrow[0] += 5", "row = list(mc.get_angles())\nrow[0] += 5"),
+        ("row = mc.get_coords()\nrow.append(1)", "row = list(mc.get_coords())\nrow.append(1)"),
+        ("other = mc\nother.focus_servo(servo_id=1)", "other = mc\nother.focus_servo(joint=1)"),
+    ],
+)
+def test_call_is_rewritten(before: str, after: str) -> None:
+    assert rewritten(before) == after
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("MyCobot280(port, 115200)", "MyCobot280(port, 115200)"),
+        ("MyCobot280(port, '1000000')", "MyCobot280(port, 1000000)"),
+        ("MyCobot280(port, baudrate=speed)", "MyCobot280(port, speed)"),
+        ("MyCobot280(port, args.baud, debug=True)", "MyCobot280(port, int(args.baud))"),
+        ("MyCobot280Socket('10.0.0.2', 9000)", 'MyCobot280("socket://10.0.0.2:9000")'),
+        ("MyCobot280Socket('10.0.0.2', '9000')", 'MyCobot280("socket://10.0.0.2:9000")'),
+        ('MyCobot280Socket(at["ip"])', "MyCobot280(f'socket://{at[\"ip\"]}:9000')"),
+        ("MyCobot280Socket(host)", 'MyCobot280(f"socket://{host}:9000")'),
+    ],
+)
+def test_constructor_is_rewritten(before: str, after: str) -> None:
+    head = "from pymycobot import MyCobot280, MyCobot280Socket\n"
+    found = migrate(f"{head}mc = {before}\n")
+    assert found.text == f"from cobotwire import MyCobot280\nmc = {after}\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("if mc.get_angles() == -1: pass", "3:4: a call that fails raises ReplyTimeout"),
+        ("row = mc.get_angles()\nif row is None: pass", "4:4: a call that fails raises"),
+        ("mc.get_radians()", "3:1: our result is not rounded"),
+        ("mc.gpio_init()", "3:1: our clients drive no pins"),
+        ("mc.wait(1).stop()", "3:1: write time.sleep(seconds) in a line of its own"),
+        ("mc.send_angles(*given)", "3:1: the arguments are not known here"),
+        ("mc.no_such_method()", "3:1: MyCobot280 has no counterpart of no_such_method"),
+        ("robot.send_angles(row, 50)", "3:1: robot may be an arm"),
+        ("from pymycobot import ultraArm", "3:1: cobotwire has no counterpart of ultraArm"),
+        ("import pymycobot", "3:1: names of `import pymycobot` are not rewritten"),
+        ("other = MyCobot280(port, timeout=1)", "3:9: timeout was the time of one read"),
+    ],
+)
+def test_what_a_person_must_decide_is_listed(line: str, says: str) -> None:
+    found = decided(line)
+    assert any(each.startswith(says) for each in found), found
+
+
+def test_default_that_ours_lacks_is_written() -> None:
+    head = "from pymycobot import MyCobot280RDKX5\nmc = MyCobot280RDKX5(port)\n"
+    assert migrate(f"{head}mc.get_gripper_value()\n").text.endswith("mc.get_gripper_value(1)\n")
+
+
+def test_time_is_imported_where_it_is_needed() -> None:
+    assert "\nimport time\n" in migrate(f"{HEAD}mc.wait(2)\n").text
+    assert migrate(f"import time\n{HEAD}mc.wait(2)\n").text.count("import time") == 1
+
+
+def test_other_programs_and_formatting_stay_as_they_are() -> None:
+    text = "# A comment.\nimport   os\r\nx = [1,2]  # spaces\n\n\n\n"
+    assert migrate(text) == (text, ())
+
+
+def test_text_that_is_not_python_is_rejected_with_its_place() -> None:
+    with pytest.raises(UsageError, match=r"old\.py:1:"):
+        migrate("print 'hello'\n", "old.py")
+
+
+def test_rewritten_program_runs_and_prints_the_same(tmp_path: Path) -> None:
+    text = TYPICAL.read_text().replace("mc.wait(0.01).stop()", "mc.wait(0.01)\nmc.stop()")
+    script = tmp_path / "program.py"
+    script.write_text(text)
+    ended = run(app, "cobotwire", "migrate", "--write", str(script))
+    assert (ended.returncode, ended.stdout) == (0, f"wrote {script}\n")
+    assert "from pymycobot" not in script.read_text()
+    with PtyServer(SimulatedArm(TABLE)) as server:
+        done = subprocess.run(
+            [sys.executable, str(script), server.url], capture_output=True, text=True, timeout=60,
+            check=False,
+        )  # fmt: skip
+    assert done.stderr == ""
+    assert done.stdout.splitlines()[:1] == ["angles [20, 10, 0, 0, 0, 0]"]
+    assert "powered True version 6.5" in done.stdout
+
+
+def test_diff_is_shown_and_the_file_stays(tmp_path: Path) -> None:
+    script = tmp_path / "program.py"
+    script.write_text(HEAD + "mc.gpio_init()\n")
+    ended = run(app, "cobotwire", "migrate", str(script))
+    assert ended.returncode == 1
+    assert "-from pymycobot import MyCobot280\n+from cobotwire import MyCobot280\n" in ended.stdout
+    assert ended.stderr.startswith(f"{script}:3:1: our clients drive no pins")
+    assert script.read_text().startswith("from pymycobot")
+
+
+def test_json_has_text_and_decisions(tmp_path: Path) -> None:
+    script = tmp_path / "program.py"
+    script.write_text(HEAD + "mc.gpio_init()\n")
+    ended = run(app, "cobotwire", "migrate", "--json", str(script))
+    assert '"changed": true' in ended.stdout
+    assert '"decisions": [{"line": 3, "column": 1, "what": ' in ended.stdout

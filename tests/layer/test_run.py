@@ -1,0 +1,114 @@
+"""Programs of the maker's library run unchanged on the layer, over a pseudo-terminal."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.pymycobot.running import as_library
+from cobotwire.session import RequestReceived
+from cobotwire.session.device import DeviceEvent
+from cobotwire.simulator import PtyServer, SimulatedArm
+from command_line import PROGRAM, run_program
+
+TYPICAL = Path(__file__).parent / "programs" / "typical.py"
+
+
+class Served:
+    """A simulated arm on a pseudo-terminal, and the names of the requests that it received."""
+
+    def __init__(self) -> None:
+        self.received: list[str] = []
+        self.arm = SimulatedArm(TABLE, on_event=self._note)
+
+    def _note(self, event: DeviceEvent, reply: bytes) -> None:
+        if isinstance(event, RequestReceived):
+            self.received.append(event.message.command.name)
+
+
+@pytest.fixture
+def served() -> Iterator[tuple[Served, str]]:
+    found = Served()
+    with PtyServer(found.arm) as server:
+        yield found, server.url
+
+
+def test_program_runs_as_it_is(served: tuple[Served, str]) -> None:
+    arm, port = served
+    ended = run_program("run", TYPICAL, port)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.splitlines() == [
+        "angles [20, 10, 0, 0, 0, 0]",
+        "powered 1 version 6.5",
+        "axis 4 ports list",
+        "rejected",
+    ]
+    assert arm.received[:4] == ["power_on", "set_color", "send_angles", "send_angle"]
+    assert arm.received.count("stop") == 1
+
+
+def test_python_runs_it_as_a_module(served: tuple[Served, str]) -> None:
+    _, port = served
+    command = [sys.executable, "-m", "cobotwire.pymycobot", str(TYPICAL), port]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert "rejected" in ended.stdout
+
+
+def test_failing_program_stops_its_arm_and_shows_its_own_traceback(
+    served: tuple[Served, str],
+) -> None:
+    arm, port = served
+    ended = run_program("run", TYPICAL, port, "fail")
+    assert ended.returncode == 1
+    lines = ended.stderr.splitlines()
+    assert lines[1].startswith(f'  File "{TYPICAL}", line ')
+    assert lines[-1] == "RuntimeError: a mistake in the program"
+    assert arm.received[-1] == "stop"
+
+
+def test_ctrl_c_stops_the_arm_once(served: tuple[Served, str]) -> None:
+    arm, port = served
+    with subprocess.Popen(
+        [*PROGRAM, "run", str(TYPICAL), port, "forever"],
+        stdout=subprocess.PIPE,
+        text=True,
+        # If the tests run in the background, SIGINT is ignored, and child processes inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    ) as program:
+        assert program.stdout is not None
+        assert any(line == "moving\n" for line in program.stdout)
+        before = arm.received.count("stop")
+        program.send_signal(signal.SIGINT)
+        assert program.wait(30) == 130
+    assert arm.received.count("stop") == before + 1
+
+
+def test_missing_program_and_missing_module_are_named(tmp_path: Path) -> None:
+    ended = run_program("run", tmp_path / "none.py")
+    assert ended.returncode == 2
+    assert "none.py" in ended.stderr
+    other = tmp_path / "other.py"
+    other.write_text("from pymycobot.ultraArm import ultraArm\n")
+    ended = run_program("run", other)
+    assert ended.returncode == 1
+    assert "cobotwire has no pymycobot.ultraArm" in ended.stderr
+
+
+# It reads the language of the system in a way that Python deprecates.
+@pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
+def test_installed_library_is_the_same_before_and_after() -> None:
+    import pymycobot
+
+    with as_library():
+        import pymycobot as inside
+
+        assert inside.MyCobot280.__module__ == "cobotwire.pymycobot.mycobot280"
+    assert sys.modules["pymycobot"] is pymycobot
+    assert pymycobot.MyCobot280.__module__ == "pymycobot.mycobot280"
