@@ -4,7 +4,7 @@ BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
 # The Python tests run in four lanes at once. The first computes; the others also wait for ports, so
 # that two processors are seldom idle. The last lane has all tests that no other lane names.
-COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec targets typing)
+COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec)
 SIMULATING := $(addprefix tests/,conformance docs inspect simulator)
 CALLING := $(addprefix tests/,cli newcomer peers)
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
@@ -13,7 +13,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack robots
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack robots demos
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -107,8 +107,11 @@ conform: .venv/.tools .venv/.native ## break subjects on purpose; count how many
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(ATTACK)
 
-robots: .venv/.tools .venv/.native ## compare every request of other robots with the maker's library
-	PYTHONPATH=tests:tests/peers $(BIN)/python tests/peers/pymycobot_robots.py
+robots: .venv/.tools .venv/.native ## compare every request of the maker's classes with ours
+	PYTHONPATH=tests:tests/peers $(BIN)/python -W ignore -m robots $(ROBOTS)
+
+demos: .venv/.tools .venv/.native ## run the maker's public demos: with the library, with our layer, rewritten
+	PYTHONPATH=python:tests:tests/peers $(BIN)/python -m demos
 
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py

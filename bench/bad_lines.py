@@ -1,10 +1,10 @@
-"""Run the cases of the field notes with three clients; write docs/bad-lines.md.
+"""Run the cases of the field notes with four clients; write docs/bad-lines.md.
 
     make table
 
 Each case runs on a real pty and over real TCP, with one client at a time: our blocking one, our
-asyncio one, and unmodified pymycobot 4.0.7. Each client runs in a separate process. A client that
-exceeds the time limit is ended, and counts as hanging.
+asyncio one, our layer with the maker's names, and unmodified pymycobot 4.0.7. Each client runs in a
+separate process. A client that exceeds the time limit is ended, and counts as hanging.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from field_notes.line import line_of
 from field_notes.play import Outcome, play
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "bad-lines.md"
-CLIENTS = ("blocking", "asyncio", "pymycobot")
+CLIENTS = ("blocking", "asyncio", "layer", "pymycobot")
 AT_ONCE = 4
 LIMIT_SECONDS = 12.0
-PRELOADED = ["field_notes.play", "field_notes.cases", "pymycobot"]
+PRELOADED = ["field_notes.play", "field_notes.cases", "cobotwire.pymycobot.mycobot280", "pymycobot"]
 
 
 class Run(NamedTuple):

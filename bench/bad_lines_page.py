@@ -13,7 +13,12 @@ from field_notes.play import RIGHT, WRONG, Outcome
 
 BEGIN, END = "<!-- begin: make table -->", "<!-- end: make table -->"
 TRANSPORTS = {"pty": "pty", "tcp": "TCP"}
-TITLES = {"blocking": "blocking", "asyncio": "asyncio", "pymycobot": "pymycobot 4.0.7"}
+TITLES = {
+    "blocking": "blocking",
+    "asyncio": "asyncio",
+    "layer": "cobotwire.pymycobot",
+    "pymycobot": "pymycobot 4.0.7",
+}
 KINDS = ("right", "honest error", "-1 or None", "crash", WRONG, "sent too often", "hang")
 
 

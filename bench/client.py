@@ -24,6 +24,8 @@ from contextlib import contextmanager
 from typing import Any
 
 from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
+from cobotwire.editions.mycobot280 import MyCobot280
+from cobotwire.pymycobot import MyCobot280 as Layer
 from responder import responder, within
 
 REQUEST = bytes.fromhex("FE FE 02 20 FA")
@@ -47,6 +49,8 @@ SETTERS = 1000
 FASTEST_BAUD = 1_000_000
 LIMITS = {"blocking": 2.0, "asyncio": 3.0, "simulated arm": 3.0}
 TIMES_FASTER = 8.0
+# The layer with the maker's names against the client that it calls.
+LAYER_LIMIT = 1.3
 
 
 def main() -> None:
@@ -74,6 +78,8 @@ def _round_trips(url: str, simulated: str) -> None:
         "floor": _floor,
         "simulated arm": lambda _: _floor(simulated),
         "blocking": _blocking,
+        "blocking, of the 280": _of_the_280,
+        "blocking, layer": _layer,
         "asyncio": lambda port: asyncio.run(_asyncio(port)),
         "pymycobot": _pymycobot,
     }
@@ -91,6 +97,9 @@ def _round_trips(url: str, simulated: str) -> None:
     verdict = within(faster >= TIMES_FASTER)
     name = "blocking, against pymycobot"
     print(f"{name:34} {faster:5.1f} x faster   {verdict} {TIMES_FASTER:.0f} x")
+    share = best["blocking, layer"] / best["blocking, of the 280"]
+    verdict = within(share <= LAYER_LIMIT)
+    print(f"{'layer, against its client':34} {share:5.2f} x   {verdict} {LAYER_LIMIT} x")
 
 
 def _timed(call: Callable[[], Any]) -> float:
@@ -120,6 +129,19 @@ def _floor(url: str) -> float:
 def _blocking(url: str) -> float:
     with MyCobot(url) as arm:
         return _timed(arm.get_angles)
+
+
+def _of_the_280(url: str) -> float:
+    with MyCobot280(url) as arm:
+        return _timed(arm.get_angles)
+
+
+def _layer(url: str) -> float:
+    arm = Layer(url, "115200")
+    try:
+        return _timed(arm.get_angles)
+    finally:
+        arm.close()
 
 
 async def _asyncio(url: str) -> float:

@@ -20,6 +20,7 @@ from responder import within
 ROOT = Path(__file__).parents[1]
 TURNS = 15
 TIMES_FASTER = 5.0
+LAYER_LIMIT = 1.3
 LARGEST = 5 << 20
 TIMED = "import time; t = time.perf_counter(); {}; print(time.perf_counter() - t)"
 IMPORTS = {
@@ -27,6 +28,8 @@ IMPORTS = {
     "pymycobot": "import pymycobot",
     "cobotwire's client": "from cobotwire import MyCobot",
     "pymycobot's client": "from pymycobot import MyCobot280",
+    "client of the layer": "from cobotwire import MyCobot280",
+    "layer": "from cobotwire.pymycobot import MyCobot280",
 }
 
 
@@ -55,6 +58,9 @@ def _times() -> None:
             f"{IMPORTS[ours]:30} {middle[ours] * 1e3:6.1f} ms   {faster:5.1f} x faster than "
             f"{IMPORTS[theirs]} ({middle[theirs] * 1e3:.1f} ms){verdict}"
         )
+    share = middle["layer"] / middle["client of the layer"]
+    verdict = within(share <= LAYER_LIMIT)
+    print(f"{IMPORTS['layer']:30} {share:5.2f} x that of our client   {verdict} {LAYER_LIMIT} x")
 
 
 def _timed(statement: str) -> float:

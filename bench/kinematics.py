@@ -18,11 +18,10 @@ from pathlib import Path
 
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator.kinematics import Pose, flange, nearest
-from cobotwire.simulator.kinematics.ticks import reported_coords
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from kinematic_samples import LIMITS, MYCOBOT_280, random_angles, within_limits
+from kinematic_samples import LIMITS, MYCOBOT_280, random_angles, reported_coords, within_limits
 
 MILLIMETRES, DEGREES = 0.1, 0.02
 
