@@ -28,20 +28,29 @@ def _send_without_reading(server: PtyServer, times: int) -> int:
         os.close(client)
 
 
+class _Requests:
+    """Count the requests that a simulated arm has taken."""
+
+    def __init__(self) -> None:
+        self.taken = 0
+
+    def __call__(self, *_: object) -> None:
+        self.taken += 1
+
+    def wait_for(self, number: int) -> None:
+        """Wait until the arm has taken this many requests; fail after 20 s."""
+        deadline = time.monotonic() + 20
+        while self.taken < number and time.monotonic() < deadline:
+            time.sleep(0.02)
+        assert self.taken == number
+
+
 def test_client_that_never_reads_blocks_neither_the_arm_nor_stop() -> None:
-    requests = 0
-
-    def count(*_: object) -> None:
-        nonlocal requests
-        requests += 1
-
-    with PtyServer(SimulatedArm(TABLE, on_event=count)) as server:
+    requests = _Requests()
+    with PtyServer(SimulatedArm(TABLE, on_event=requests)) as server:
         # Replies of 340 kB, many times the capacity of the terminal and the queue.
         assert _send_without_reading(server, 1000) == 1000
-        deadline = time.monotonic() + 20
-        while requests < 20_000 and time.monotonic() < deadline:
-            time.sleep(0.02)
-        assert requests == 20_000
+        requests.wait_for(20_000)
         [client] = server._clients.values()
         assert client.connection.unread <= UNREAD_LIMIT + 4096 * 4
         started = time.monotonic()
@@ -52,8 +61,11 @@ def test_client_that_never_reads_blocks_neither_the_arm_nor_stop() -> None:
 
 
 def test_next_client_is_served_after_one_that_never_read() -> None:
-    with PtyServer(SimulatedArm(TABLE)) as server:
+    requests = _Requests()
+    with PtyServer(SimulatedArm(TABLE, on_event=requests)) as server:
         _send_without_reading(server, 400)
+        # The terminal holds requests that the arm has yet to take: the next client waits for them.
+        requests.wait_for(8000)
         with MyCobot(server.url) as arm:
             arm.power_on()
             assert arm.is_power_on() is True
