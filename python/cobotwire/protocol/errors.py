@@ -273,6 +273,22 @@ class CaptureError(CobotwireError, ValueError):
         super().__init__(f"{name}: {detail} (at byte {offset})")
 
 
+class OutputError(CobotwireError, OSError):
+    """An error of the system while it writes the files of an export: the disk is full, say.
+
+    No file with a final name is incomplete: what was written had a temporary name, and is removed.
+
+    Attributes:
+        path: the file.
+        detail: what happened.
+    """
+
+    def __init__(self, path: str, detail: str) -> None:
+        self.path = path
+        self.detail = detail
+        super().__init__(f"{path}: writing failed: {detail}; nothing was exported")
+
+
 class ScenarioError(CobotwireError, ValueError):
     """An error in a scenario file.
 

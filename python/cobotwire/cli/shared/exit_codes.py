@@ -13,13 +13,14 @@ from cobotwire.protocol.errors import (
     CaptureError,
     CobotwireError,
     LinkError,
+    OutputError,
     ProtocolError,
     ReplyTimeout,
     ScenarioError,
     UsageError,
 )
 
-LINK_FAILED, NO_REPLY, NOT_READY, INTERRUPTED = 3, 4, 7, 130
+LINK_FAILED, NO_REPLY, NOT_READY, NOT_WRITTEN, INTERRUPTED = 3, 4, 7, 8, 130
 # What a shell reports for a process that SIGPIPE ended.
 OUTPUT_CLOSED = 141
 
@@ -31,12 +32,13 @@ CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (ProtocolError, 5),
     (CaptureError, 6),
     (ArmNotReady, NOT_READY),
+    (OutputError, NOT_WRITTEN),
 )
 
 EPILOG = (
     "Exit codes: 0 success; 1 the result is negative (a wrong reply, an illegal frame); 2 wrong "
     "usage; 3 the port failed; 4 no reply; 5 an illegal reply; 6 a damaged recording; "
-    "7 the arm does not obey a motion; 130 interrupted."
+    "7 the arm does not obey a motion; 8 a file cannot be written; 130 interrupted."
 )
 
 

@@ -1,0 +1,106 @@
+"""Define what an export writes: which messages, in which format, where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol, get_args
+
+from cobotwire.codec.interface import Codec, Listening
+from cobotwire.protocol.errors import UsageError, did_you_mean
+from cobotwire.protocol.table import Direction
+
+FormatName = Literal["parquet", "csv", "arrow", "mcap"]
+Key = Literal["robot", "command", "day"]
+Compression = Literal["zstd", "snappy", "lz4", "none"]
+# The pose of the arm's end for joint angles in degrees: x y z in millimetres, rx ry rz in degrees.
+Forward = Callable[[Sequence[float]], tuple[float, ...]]
+
+
+class Message(NamedTuple):
+    """A message of an edition: the request or the reply of a command."""
+
+    command: str
+    direction: Direction
+
+    @property
+    def label(self) -> str:
+        """The name of the message in files and reports, such as ``get_angles.reply``."""
+        return f"{self.command}.{self.direction}"
+
+
+class Editions(Protocol):
+    """Finds editions for an export. Implementations can be pickled, for other processes."""
+
+    def codec(self, name: str) -> Codec:
+        """Return the codec of an edition; of the default edition if there is none of that name."""
+        ...
+
+    def forward(self, name: str) -> Forward | None:
+        """Return the kinematics of the edition's arm; None if its geometry is not known."""
+        ...
+
+    def has_command(self, command: str) -> bool:
+        """Return whether any edition has a command of that name."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class ExportPlan:
+    """What an export writes. It can be pickled, so that other processes can export with it.
+
+    Attributes:
+        output: a folder, or the name of a single file.
+        editions: finds the editions; the edition called ``""`` is that of inputs that name none.
+        format: the format of the files.
+        commands: the commands to write; empty for all.
+        direction: the messages to write; also what raw bytes hold.
+        begin_ns: the first time to write, in nanoseconds since 1970 (UTC); None for all.
+        end_ns: the first time not to write; None for all.
+        wide: whether a field of several numbers becomes several columns.
+        partition: hive-style folders by these keys, from the outermost on.
+        compression: how Parquet and Arrow files are compressed.
+        overwrite: whether existing files are replaced.
+        part: added to the names of files, so that several processes can write into one folder.
+    """
+
+    output: str
+    editions: Editions
+    format: FormatName = "parquet"
+    commands: tuple[str, ...] = ()
+    direction: Listening = "both"
+    begin_ns: int | None = None
+    end_ns: int | None = None
+    wide: bool = False
+    partition: tuple[Key, ...] = ()
+    compression: Compression = "zstd"
+    overwrite: bool = False
+    part: str = ""
+
+    def __post_init__(self) -> None:
+        for argument, value, allowed in (
+            ("format", self.format, get_args(FormatName)),
+            ("compression", self.compression, get_args(Compression)),
+            ("direction", self.direction, get_args(Listening)),
+            *(("partition", key, get_args(Key)) for key in self.partition),
+        ):
+            if value not in allowed:
+                hint = did_you_mean(value, allowed)
+                raise UsageError(argument, value, f"{', '.join(allowed)}{hint}")
+        begin, end = self.begin_ns, self.end_ns
+        if begin is not None and end is not None and begin >= end:
+            message = "the time range is empty: it ends before it begins"
+            raise UsageError("end", end, message=message)
+        self._check_commands()
+
+    def chooses(self, message: Message) -> bool:
+        """Return whether the plan writes a message."""
+        by_name = not self.commands or message.command in self.commands
+        return by_name and self.direction in (message.direction, "both")
+
+    def _check_commands(self) -> None:
+        table = self.editions.codec("").table
+        known = {command.name for command in table.commands}
+        for command in self.commands:
+            if command not in known and not self.editions.has_command(command):
+                table.command(command)

@@ -1,0 +1,46 @@
+"""Find the editions for exports: their codecs, and the kinematics of their arms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from cobotwire import codec as codecs
+from cobotwire import editions
+from cobotwire.capture.export.plan import Forward
+from cobotwire.codec.interface import Codec
+
+
+@dataclass(frozen=True, slots=True)
+class InstalledEditions:
+    """The editions that come with cobotwire, and a default edition: one of them, or a package."""
+
+    default: str = editions.DEFAULT
+
+    def codec(self, name: str) -> Codec:
+        """Return the codec of an edition; of the default edition if there is none of that name."""
+        return _codec(name if name in editions.names() else self.default)
+
+    def forward(self, name: str) -> Forward | None:
+        """Return the kinematics of the edition's arm; None if its geometry is not known."""
+        from cobotwire.simulator.kinematics import coords_of, geometry_of
+
+        geometry = geometry_of(self.codec(name).table)
+        if geometry is None:
+            return None
+
+        def forward(angles: Sequence[float]) -> tuple[float, ...]:
+            return coords_of(geometry, angles)
+
+        return forward
+
+    def has_command(self, command: str) -> bool:
+        """Return whether any edition has a command of that name."""
+        tables = (editions.load(name).TABLE for name in editions.names())
+        return any(command == each.name for table in tables for each in table.commands)
+
+
+@lru_cache
+def _codec(edition: str) -> Codec:
+    return codecs.load(editions.load(edition).TABLE)
