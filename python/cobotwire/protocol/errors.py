@@ -6,10 +6,14 @@ data, and this module alone makes the text from them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.protocol.printable import printable
+
+# The name of an argument in ``angles[2]``, ``coords.x``, ``len(data)`` and ``account, password``.
+_FIRST_NAME = re.compile(r"(?<![\w.\[])(?!len\()[A-Za-z_]\w*")
 
 
 def did_you_mean(given: object, known: Iterable[str]) -> str:
@@ -61,6 +65,16 @@ class UsageError(CobotwireError, ValueError):
         self.value = value
         self.allowed = allowed
         super().__init__(message or f"{argument} is {_short(value)}; allowed: {allowed}")
+
+    def renamed(self, names: Mapping[str, str]) -> UsageError:
+        """Return the error for an interface that has other names for some arguments.
+
+        ``names`` has these names by ours. Names inside of a row (``coords.x``) stay.
+        """
+        argument = _FIRST_NAME.sub(lambda found: names.get(found[0], found[0]), self.argument)
+        usual = str(UsageError(self.argument, self.value, self.allowed))
+        message = "" if str(self) == usual else str(self)
+        return UsageError(argument, self.value, self.allowed, message=message)
 
 
 class ProtocolError(CobotwireError):

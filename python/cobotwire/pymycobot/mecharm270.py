@@ -9,6 +9,7 @@ from cobotwire.editions import mecharm270
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.helpers import HomingQuietly, Pins, TorqueGripper, WaitingWithMode
+from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,6 +50,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Power all servos."""
         return self._order(self.arm.focus_all_servos)
 
+    @naming(joint="servo_id")
     def focus_servo(self, servo_id: int) -> Any:
         """Power a servo.
 
@@ -72,6 +74,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Read the planned joint angles."""
         return self._ask(results.plain, self.arm.get_angles_plan)
 
+    @naming(pin="pin_no")
     def get_basic_input(self, pin_no: int) -> Any:
         """Read a pin of the base.
 
@@ -91,6 +94,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Read the planned coordinates."""
         return self._ask(results.plain, self.arm.get_coords_plan)
 
+    @naming(pin="pin_no")
     def get_digital_input(self, pin_no: int) -> Any:
         """Read a pin of the Atom.
 
@@ -98,6 +102,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._ask(results.plain, self.arm.get_digital_input, pin_no)
 
+    @naming(joint="joint_id")
     def get_encoder(self, joint_id: int) -> Any:
         """Read the encoder of one joint.
 
@@ -125,6 +130,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Read the gripper's protective current."""
         return self._ask(results.plain, self.arm.get_gripper_protect_current)
 
+    @naming(gripper="gripper_type")
     def get_gripper_value(self, gripper_type: int | None = None) -> Any:
         """Read the gripper's opening.
 
@@ -132,6 +138,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._ask(results.plain, self.arm.get_gripper_value, gripper_type)
 
+    @naming(joint="joint_id")
     def get_joint_max_angle(self, joint_id: int) -> Any:
         """Read the largest angle of a joint.
 
@@ -139,6 +146,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._ask(results.plain, self.arm.get_joint_max_angle, joint_id)
 
+    @naming(joint="joint_id")
     def get_joint_min_angle(self, joint_id: int) -> Any:
         """Read the smallest angle of a joint.
 
@@ -166,6 +174,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Read the reference frame."""
         return self._ask(results.plain, self.arm.get_reference_frame)
 
+    @naming(joint="servo_id", register="data_id")
     def get_servo_data(self, servo_id: int, data_id: int, mode: int | None = None) -> Any:
         """Read a servo register.
 
@@ -229,6 +238,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Check whether the gripper moves."""
         return self._ask(results.plain, self.arm.is_gripper_moving)
 
+    @naming(target="data", kind="id")
     def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:
         """Check whether a target is reached.
 
@@ -248,6 +258,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Check whether the arm has power."""
         return self._ask(results.plain, self.arm.is_power_on)
 
+    @naming(joint="servo_id")
     def is_servo_enable(self, servo_id: int) -> Any:
         """Check whether a servo is connected.
 
@@ -255,6 +266,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._ask(results.plain, self.arm.is_servo_enable, servo_id)
 
+    @naming(joint="joint_id")
     def jog_angle(self, joint_id: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a joint.
 
@@ -262,6 +274,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.jog_angle, joint_id, direction, speed, quiet=_async)
 
+    @naming(axis="coord_id")
     def jog_coord(self, coord_id: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a coordinate.
 
@@ -269,6 +282,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.jog_coord, coord_id, direction, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def jog_increment(
         self, joint_id: int, increment: float, speed: int, _async: bool = False
     ) -> Any:
@@ -278,6 +292,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.jog_increment, joint_id, increment, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def jog_increment_angle(
         self, joint_id: int, increment: float, speed: int, _async: bool = False
     ) -> Any:
@@ -287,6 +302,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.jog_increment_angle, joint_id, increment, speed, quiet=_async)
 
+    @naming(axis="id")
     def jog_increment_coord(
         self, id: int, increment: float, speed: int, _async: bool = False
     ) -> Any:
@@ -296,6 +312,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.jog_increment_coord, id, increment, speed, quiet=_async)
 
+    @naming(axis="end_direction")
     def jog_rpy(self, end_direction: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a rotation of the end.
 
@@ -303,6 +320,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.jog_rpy, end_direction, direction, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def joint_brake(self, joint_id: int) -> Any:
         """Brake a joint.
 
@@ -326,6 +344,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Read the joints' errors."""
         return self._ask(results.error_classes, self.arm.read_next_error)
 
+    @naming(undamped="data")
     def release_all_servos(self, data: int | None = None) -> Any:
         """Release all servos.
 
@@ -333,6 +352,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.release_all_servos, data)
 
+    @naming(joint="servo_id", undamped="mode")
     def release_servo(self, servo_id: int, mode: int | None = None) -> Any:
         """Release a servo.
 
@@ -344,6 +364,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Resume."""
         return self._order(self.arm.resume)
 
+    @naming(joint="id", angle="degree")
     def send_angle(self, id: int, degree: float, speed: int, _async: bool = False) -> Any:
         """Send one joint to an angle.
 
@@ -358,6 +379,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.send_angles, angles, speed, quiet=_async)
 
+    @naming(axis="id")
     def send_coord(self, id: int, coord: float, speed: int, _async: bool = False) -> Any:
         """Send one coordinate.
 
@@ -385,6 +407,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Set the gripper's torque."""
         return self._ask(results.plain, self.arm.set_HTS_gripper_torque, torque)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_basic_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the base.
 
@@ -392,6 +415,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_basic_output, pin_no, pin_signal)
 
+    @naming(red="r", green="g", blue="b")
     def set_color(self, r: int = 0, g: int = 0, b: int = 0) -> Any:
         """Set the colour of the light.
 
@@ -399,6 +423,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_color, r, g, b)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_digital_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the Atom.
 
@@ -406,6 +431,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_digital_output, pin_no, pin_signal)
 
+    @naming(joint="joint_id")
     def set_encoder(self, joint_id: int, encoder: int, speed: int) -> Any:
         """Send one joint to an encoder position.
 
@@ -413,6 +439,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_encoder, joint_id, encoder, speed)
 
+    @naming(speed="sp")
     def set_encoders(self, encoders: Sequence[int], sp: int) -> Any:
         """Send all joints to encoder positions.
 
@@ -440,6 +467,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Set the gripper's protective current."""
         return self._order(self.arm.set_gripper_protect_current, current)
 
+    @naming(state="flag", gripper="_type_1", torque="is_torque")
     def set_gripper_state(
         self, flag: int, speed: int, _type_1: int | None = None, is_torque: int | None = None
     ) -> Any:
@@ -449,6 +477,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_gripper_state, flag, speed, _type_1, is_torque)
 
+    @naming(value="gripper_value", gripper="gripper_type", torque="is_torque")
     def set_gripper_value(
         self,
         gripper_value: int,
@@ -464,6 +493,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
             self.arm.set_gripper_value, gripper_value, speed, gripper_type, is_torque
         )
 
+    @naming(joint="id")
     def set_joint_max(self, id: int, angle: float) -> Any:
         """Set the largest angle of a joint.
 
@@ -471,6 +501,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_joint_max, id, angle)
 
+    @naming(joint="id")
     def set_joint_min(self, id: int, angle: float) -> Any:
         """Set the smallest angle of a joint.
 
@@ -478,6 +509,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_joint_min, id, angle)
 
+    @naming(mode="move_type")
     def set_movement_type(self, move_type: int) -> Any:
         """Set the path to coordinates.
 
@@ -485,6 +517,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_movement_type, move_type)
 
+    @naming(pin="pin_no", mode="pin_mode")
     def set_pin_mode(self, pin_no: int, pin_mode: int) -> Any:
         """Set what a pin of the Atom is used for.
 
@@ -492,6 +525,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_pin_mode, pin_no, pin_mode)
 
+    @naming(duty="pin_val")
     def set_pwm_output(self, channel: int, frequency: int, pin_val: int) -> Any:
         """Set a PWM output of the Atom.
 
@@ -499,6 +533,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_pwm_output, channel, frequency, pin_val)
 
+    @naming(frame="rftype")
     def set_reference_frame(self, rftype: int) -> Any:
         """Set the reference frame.
 
@@ -510,6 +545,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Set the TCP port."""
         return self._order(self.arm.set_server_port, port)
 
+    @naming(joint="servo_id")
     def set_servo_calibration(self, servo_id: int) -> Any:
         """Set a joint's zero to its position.
 
@@ -517,6 +553,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._order(self.arm.set_servo_calibration, servo_id)
 
+    @naming(joint="servo_id", register="data_id")
     def set_servo_data(
         self, servo_id: int, data_id: int, value: int, mode: int | None = None
     ) -> Any:
@@ -534,6 +571,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Set the tool reference."""
         return self._order(self.arm.set_tool_reference, coords)
 
+    @naming(transparent="mode")
     def set_transponder_mode(self, mode: int) -> Any:
         """Turn the transponder on or off.
 
@@ -541,6 +579,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """
         return self._ask(results.plain, self.arm.set_transponder_mode, mode)
 
+    @naming(vision="flag")
     def set_vision_mode(self, flag: int) -> Any:
         """Turn vision mode on or off.
 
@@ -552,6 +591,7 @@ class MechArm270(HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
         """Set the world reference."""
         return self._order(self.arm.set_world_reference, coords)
 
+    @naming(coords="target_coords", angles="current_angles")
     def solve_inv_kinematics(
         self, target_coords: Sequence[float], current_angles: Sequence[float]
     ) -> Any:

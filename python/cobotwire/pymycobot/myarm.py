@@ -9,6 +9,7 @@ from cobotwire.editions import myarm300
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.helpers import Homing, Pins, TwoPositions, WaitingWithMode
+from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,6 +41,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Power all servos."""
         return self._send(self.arm.focus_all_servos)
 
+    @naming(joint="servo_id")
     def focus_servo(self, servo_id: int) -> Any:
         """Power a servo.
 
@@ -59,6 +61,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Read the joint angles and the coordinates."""
         return self._ask(results.joined, self.arm.get_angles_coords)
 
+    @naming(pin="pin_no")
     def get_basic_input(self, pin_no: int) -> Any:
         """Read a pin of the base.
 
@@ -74,6 +77,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Read the coordinates."""
         return self._ask(results.plain, self.arm.get_coords)
 
+    @naming(pin="pin_no")
     def get_digital_input(self, pin_no: int) -> Any:
         """Read a pin of the Atom.
 
@@ -81,6 +85,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._ask(results.plain, self.arm.get_digital_input, pin_no)
 
+    @naming(joint="joint_id")
     def get_encoder(self, joint_id: int) -> Any:
         """Read the encoder of one joint.
 
@@ -108,6 +113,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Read the gripper's protective current."""
         return self._ask(results.plain, self.arm.get_gripper_protect_current)
 
+    @naming(joint="joint_id")
     def get_joint_max_angle(self, joint_id: int) -> Any:
         """Read the largest angle of a joint.
 
@@ -115,6 +121,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._ask(results.plain, self.arm.get_joint_max_angle, joint_id)
 
+    @naming(joint="joint_id")
     def get_joint_min_angle(self, joint_id: int) -> Any:
         """Read the smallest angle of a joint.
 
@@ -134,6 +141,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Read the reference frame."""
         return self._ask(results.plain, self.arm.get_reference_frame)
 
+    @naming(joint="servo_id", register="data_id")
     def get_servo_data(self, servo_id: int, data_id: int, mode: int | None = None) -> Any:
         """Read a servo register.
 
@@ -209,6 +217,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Check whether the arm has power."""
         return self._ask(results.plain, self.arm.is_power_on)
 
+    @naming(joint="servo_id")
     def is_servo_enable(self, servo_id: int) -> Any:
         """Check whether a servo is connected.
 
@@ -216,6 +225,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._ask(results.plain, self.arm.is_servo_enable, servo_id)
 
+    @naming(joint="joint_id")
     def jog_absolute(self, joint_id: int, angle: float, speed: int) -> Any:
         """Jog a joint to an angle.
 
@@ -223,6 +233,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.jog_absolute, joint_id, angle, speed)
 
+    @naming(joint="joint_id")
     def jog_angle(self, joint_id: int, direction: int, speed: int) -> Any:
         """Jog a joint.
 
@@ -230,6 +241,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.jog_angle, joint_id, direction, speed)
 
+    @naming(axis="coord_id")
     def jog_coord(self, coord_id: int, direction: int, speed: int) -> Any:
         """Jog a coordinate.
 
@@ -237,6 +249,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.jog_coord, coord_id, direction, speed)
 
+    @naming(joint="joint_id")
     def jog_increment(self, joint_id: int, increment: float, speed: int) -> Any:
         """Jog a joint by a step.
 
@@ -244,6 +257,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.jog_increment, joint_id, increment, speed)
 
+    @naming(joint="joint_id")
     def joint_brake(self, joint_id: int) -> Any:
         """Brake a joint.
 
@@ -267,6 +281,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Read the joints' errors."""
         return self._ask(results.error_classes, self.arm.read_next_error)
 
+    @naming(undamped="data")
     def release_all_servos(self, data: int | None = None) -> Any:
         """Release all servos.
 
@@ -274,6 +289,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.release_all_servos, data)
 
+    @naming(joint="servo_id", undamped="mode")
     def release_servo(self, servo_id: int, mode: int | None = None) -> Any:
         """Release a servo.
 
@@ -285,6 +301,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Resume."""
         return self._send(self.arm.resume)
 
+    @naming(joint="id", angle="degree")
     def send_angle(self, id: int, degree: float, speed: int) -> Any:
         """Send one joint to an angle.
 
@@ -296,6 +313,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Send all joints to angles."""
         return self._order(self.arm.send_angles, angles, speed, gives=results.listed)
 
+    @naming(axis="id")
     def send_coord(self, id: int, coord: float, speed: int, _async: bool = False) -> Any:
         """Send one coordinate.
 
@@ -324,6 +342,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Set the gripper's torque."""
         return self._ask(results.plain, self.arm.set_HTS_gripper_torque, torque)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_basic_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the base.
 
@@ -331,6 +350,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_basic_output, pin_no, pin_signal)
 
+    @naming(red="r", green="g", blue="b")
     def set_color(self, r: int, g: int, b: int) -> Any:
         """Set the colour of the light.
 
@@ -338,6 +358,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_color, r, g, b)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_digital_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the Atom.
 
@@ -345,6 +366,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_digital_output, pin_no, pin_signal)
 
+    @naming(joint="joint_id")
     def set_encoder(self, joint_id: int, encoder: int, speed: int) -> Any:
         """Send one joint to an encoder position.
 
@@ -352,6 +374,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_encoder, joint_id, encoder, speed)
 
+    @naming(speed="sp")
     def set_encoders(self, encoders: Sequence[int], sp: int) -> Any:
         """Send all joints to encoder positions.
 
@@ -383,6 +406,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Set the gripper's protective current."""
         return self._send(self.arm.set_gripper_protect_current, current)
 
+    @naming(state="flag", gripper="_type_1")
     def set_gripper_state(self, flag: int, speed: int, _type_1: int | None = None) -> Any:
         """Open or close the gripper.
 
@@ -390,6 +414,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_gripper_state, flag, speed, _type_1)
 
+    @naming(value="gripper_value", gripper="gripper_type")
     def set_gripper_value(
         self, gripper_value: int, speed: int, gripper_type: int | None = None
     ) -> Any:
@@ -401,6 +426,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
             self.arm.set_gripper_value, gripper_value, speed, gripper_type, gives=results.listed
         )
 
+    @naming(joint="id")
     def set_joint_max(self, id: int, angle: float) -> Any:
         """Set the largest angle of a joint.
 
@@ -408,6 +434,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_joint_max, id, angle)
 
+    @naming(joint="id")
     def set_joint_min(self, id: int, angle: float) -> Any:
         """Set the smallest angle of a joint.
 
@@ -415,6 +442,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_joint_min, id, angle)
 
+    @naming(mode="move_type")
     def set_movement_type(self, move_type: int) -> Any:
         """Set the path to coordinates.
 
@@ -422,6 +450,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_movement_type, move_type)
 
+    @naming(frame="rftype")
     def set_reference_frame(self, rftype: int) -> Any:
         """Set the reference frame.
 
@@ -433,6 +462,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """Set the TCP port."""
         return self._send(self.arm.set_server_port, port)
 
+    @naming(joint="servo_id")
     def set_servo_calibration(self, servo_id: int) -> Any:
         """Set a joint's zero to its position.
 
@@ -440,6 +470,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
         """
         return self._send(self.arm.set_servo_calibration, servo_id)
 
+    @naming(joint="servo_id", register="data_id")
     def set_servo_data(
         self, servo_id: int, data_id: int, value: int, mode: int | None = None
     ) -> Any:

@@ -8,6 +8,7 @@ from typing import Any
 from cobotwire.editions import myarm_c650
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import CompatibleClient, OnFailure
+from cobotwire.pymycobot.layer.naming import naming
 
 
 class MyArmC(CompatibleClient):
@@ -32,6 +33,7 @@ class MyArmC(CompatibleClient):
         """Clear the queue."""
         return self._send(self.arm.clear_recv_queue)
 
+    @naming(joint="joint_id")
     def get_joint_angle(self, joint_id: int) -> Any:
         """Read the angle of one joint.
 
@@ -47,6 +49,7 @@ class MyArmC(CompatibleClient):
         """Read the coordinates (the maker's name)."""
         return self._ask(results.plain, self.arm.get_joints_coord)
 
+    @naming(pin="pin_number")
     def get_master_in_io_state(self, pin_number: int) -> Any:
         """Read a pin of the base.
 
@@ -86,6 +89,7 @@ class MyArmC(CompatibleClient):
         """Read the revision of the end's firmware."""
         return self._ask(results.plain, self.arm.get_robot_tool_modified_version)
 
+    @naming(servo="servo_id")
     def get_servo_cw(self, servo_id: int) -> Any:
         """Read the dead zone clockwise.
 
@@ -93,6 +97,7 @@ class MyArmC(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_cw, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_cww(self, servo_id: int) -> Any:
         """Read the dead zone counterclockwise.
 
@@ -100,6 +105,7 @@ class MyArmC(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_cww, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_d(self, servo_id: int) -> Any:
         """Read the D of a servo.
 
@@ -107,6 +113,7 @@ class MyArmC(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_d, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_encoder(self, servo_id: int) -> Any:
         """Read the encoder of one servo.
 
@@ -114,6 +121,7 @@ class MyArmC(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_encoder, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_i(self, servo_id: int) -> Any:
         """Read the I of a servo.
 
@@ -121,6 +129,7 @@ class MyArmC(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_i, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_p(self, servo_id: int) -> Any:
         """Read the P of a servo.
 
@@ -128,6 +137,7 @@ class MyArmC(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_p, servo_id)
 
+    @naming(servo="servo_id", register="addr")
     def get_servo_system_data(self, servo_id: int, addr: int, mode: int) -> Any:
         """Read a servo register.
 
@@ -175,6 +185,7 @@ class MyArmC(CompatibleClient):
         """Check which servos are connected."""
         return self._ask(results.plain, self.arm.is_all_servos_enabled)
 
+    @naming(button="mode")
     def is_tool_btn_clicked(self, mode: int = 1) -> Any:
         """Check whether a button is pressed.
 
@@ -182,6 +193,7 @@ class MyArmC(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.is_tool_btn_clicked, mode)
 
+    @naming(servo="servo_id")
     def restore_servo_system_param(self, servo_id: int) -> Any:
         """Restore a servo's parameters.
 
@@ -189,6 +201,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.restore_servo_system_param, servo_id)
 
+    @naming(pin="pin_number", high="status")
     def set_master_out_io_state(self, pin_number: int, status: int = 1) -> Any:
         """Set a pin of the base.
 
@@ -196,6 +209,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_master_out_io_state, pin_number, status)
 
+    @naming(size="max_len")
     def set_recv_queue_max_len(self, max_len: int) -> Any:
         """Set the size of the queue.
 
@@ -203,6 +217,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_recv_queue_max_len, max_len)
 
+    @naming(checking="status")
     def set_robot_err_check_state(self, status: int) -> Any:
         """Turn the detection of errors on or off.
 
@@ -210,6 +225,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_robot_err_check_state, status)
 
+    @naming(servo="servo_id")
     def set_servo_calibrate(self, servo_id: int) -> Any:
         """Set a servo's zero to its position (the maker's name).
 
@@ -217,6 +233,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_servo_calibrate, servo_id)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_cw(self, servo_id: int, data: int) -> Any:
         """Set the dead zone clockwise.
 
@@ -224,6 +241,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_servo_cw, servo_id, data)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_cww(self, servo_id: int, data: int) -> Any:
         """Set the dead zone counterclockwise.
 
@@ -231,6 +249,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_servo_cww, servo_id, data)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_d(self, servo_id: int, data: int) -> Any:
         """Set the D of a servo.
 
@@ -238,6 +257,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_servo_d, servo_id, data)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_i(self, servo_id: int, data: int) -> Any:
         """Set the I of a servo.
 
@@ -245,6 +265,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_servo_i, servo_id, data)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_p(self, servo_id: int, data: int) -> Any:
         """Set the P of a servo.
 
@@ -252,6 +273,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_servo_p, servo_id, data)
 
+    @naming(servo="servo_id", register="addr", value="data")
     def set_servo_system_data(self, servo_id: int, addr: int, data: int, mode: int) -> Any:
         """Write a servo register.
 
@@ -259,6 +281,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_servo_system_data, servo_id, addr, data, mode)
 
+    @naming(red="r", green="g", blue="b")
     def set_tool_led_color(self, r: int, g: int, b: int) -> Any:
         """Set the colour of the light (the maker's name).
 
@@ -266,6 +289,7 @@ class MyArmC(CompatibleClient):
         """
         return self._send(self.arm.set_tool_led_color, r, g, b)
 
+    @naming(high="status")
     def set_tool_out_io_state(self, pin: int, status: int = 1) -> Any:
         """Set a pin of the end.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from cobotwire.editions import myarm_m750
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import CompatibleClient, OnFailure
+from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,6 +40,7 @@ class MyArmM(CompatibleClient):
         """Clear the error."""
         return self._send(self.arm.clear_robot_err)
 
+    @naming(pin="io_number")
     def get_assist_in_io_state(self, io_number: int) -> Any:
         """Read a pin of the auxiliary connector.
 
@@ -46,6 +48,7 @@ class MyArmM(CompatibleClient):
         """
         return self._ask(results.listed, self.arm.get_assist_in_io_state, io_number)
 
+    @naming(joint="joint_id")
     def get_joint_angle(self, joint_id: int) -> Any:
         """Read the angle of one joint.
 
@@ -69,6 +72,7 @@ class MyArmM(CompatibleClient):
         """Read the smallest angles of the joints."""
         return self._ask(results.plain, self.arm.get_joints_min)
 
+    @naming(pin="pin_number")
     def get_master_in_io_state(self, pin_number: int) -> Any:
         """Read a pin of the base.
 
@@ -112,6 +116,7 @@ class MyArmM(CompatibleClient):
         """Read the revision of the end's firmware."""
         return self._ask(results.plain, self.arm.get_robot_tool_modified_version)
 
+    @naming(servo="servo_id")
     def get_servo_cw(self, servo_id: int) -> Any:
         """Read the dead zone clockwise.
 
@@ -119,6 +124,7 @@ class MyArmM(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_cw, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_cww(self, servo_id: int) -> Any:
         """Read the dead zone counterclockwise.
 
@@ -126,6 +132,7 @@ class MyArmM(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_cww, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_d(self, servo_id: int) -> Any:
         """Read the D of a servo.
 
@@ -133,6 +140,7 @@ class MyArmM(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_d, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_encoder(self, servo_id: int) -> Any:
         """Read the encoder of one servo.
 
@@ -140,6 +148,7 @@ class MyArmM(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_encoder, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_i(self, servo_id: int) -> Any:
         """Read the I of a servo.
 
@@ -147,6 +156,7 @@ class MyArmM(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_i, servo_id)
 
+    @naming(servo="servo_id")
     def get_servo_p(self, servo_id: int) -> Any:
         """Read the P of a servo.
 
@@ -154,6 +164,7 @@ class MyArmM(CompatibleClient):
         """
         return self._ask(results.plain, self.arm.get_servo_p, servo_id)
 
+    @naming(servo="servo_id", register="addr")
     def get_servo_system_data(self, servo_id: int, addr: int, mode: int) -> Any:
         """Read a servo register.
 
@@ -213,6 +224,7 @@ class MyArmM(CompatibleClient):
         """Check whether a button is pressed."""
         return self._ask(results.plain, self.arm.is_tool_btn_clicked)
 
+    @naming(servo="servo_id")
     def restore_servo_system_param(self, servo_id: int) -> Any:
         """Restore a servo's parameters.
 
@@ -220,6 +232,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.restore_servo_system_param, servo_id)
 
+    @naming(pin="io_number", high="status")
     def set_assist_out_io_state(self, io_number: int, status: int = 1) -> Any:
         """Set a pin of the auxiliary connector.
 
@@ -227,6 +240,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_assist_out_io_state, io_number, status)
 
+    @naming(joint="joint_id")
     def set_joint_angle(self, joint_id: int, angle: float, speed: int) -> Any:
         """Send one joint to an angle (the maker's name).
 
@@ -238,6 +252,7 @@ class MyArmM(CompatibleClient):
         """Send all joints to angles (the maker's name)."""
         return self._send(self.arm.set_joints_angle, angles, speed)
 
+    @naming(pin="pin_number", high="status")
     def set_master_out_io_state(self, pin_number: int, status: int = 1) -> Any:
         """Set a pin of the base.
 
@@ -245,6 +260,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_master_out_io_state, pin_number, status)
 
+    @naming(size="max_len")
     def set_recv_queue_max_len(self, max_len: int) -> Any:
         """Set the size of the queue.
 
@@ -252,6 +268,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_recv_queue_max_len, max_len)
 
+    @naming(checking="status")
     def set_robot_err_check_state(self, status: int) -> Any:
         """Turn the detection of errors on or off.
 
@@ -267,6 +284,7 @@ class MyArmM(CompatibleClient):
         """Power on (the maker's name)."""
         return self._order(self.arm.set_robot_power_on)
 
+    @naming(servo="servo_id")
     def set_servo_calibrate(self, servo_id: int) -> Any:
         """Set a servo's zero to its position (the maker's name).
 
@@ -274,6 +292,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_calibrate, servo_id)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_cw(self, servo_id: int, data: int) -> Any:
         """Set the dead zone clockwise.
 
@@ -281,6 +300,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_cw, servo_id, data)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_cww(self, servo_id: int, data: int) -> Any:
         """Set the dead zone counterclockwise.
 
@@ -288,6 +308,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_cww, servo_id, data)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_d(self, servo_id: int, data: int) -> Any:
         """Set the D of a servo.
 
@@ -295,6 +316,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_d, servo_id, data)
 
+    @naming(servo="servo_id", enabled="status")
     def set_servo_enabled(self, servo_id: int, status: int) -> Any:
         """Switch a servo on or off.
 
@@ -302,6 +324,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_enabled, servo_id, status)
 
+    @naming(servo="servo_id")
     def set_servo_encoder(self, servo_id: int, encoder: int, speed: int) -> Any:
         """Send one servo to an encoder position.
 
@@ -309,6 +332,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_encoder, servo_id, encoder, speed)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_i(self, servo_id: int, data: int) -> Any:
         """Set the I of a servo.
 
@@ -316,6 +340,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_i, servo_id, data)
 
+    @naming(servo="servo_id", value="data")
     def set_servo_p(self, servo_id: int, data: int) -> Any:
         """Set the P of a servo.
 
@@ -323,6 +348,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_p, servo_id, data)
 
+    @naming(servo="servo_id", register="addr", value="data")
     def set_servo_system_data(self, servo_id: int, addr: int, data: int, mode: int) -> Any:
         """Write a servo register.
 
@@ -330,6 +356,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_servo_system_data, servo_id, addr, data, mode)
 
+    @naming(encoders="positions")
     def set_servos_encoder(self, positions: Sequence[int], speed: int) -> Any:
         """Send all servos to encoder positions.
 
@@ -341,6 +368,7 @@ class MyArmM(CompatibleClient):
         """Send all servos to encoder positions at individual speeds."""
         return self._send(self.arm.set_servos_encoder_drag, encoders, speeds)
 
+    @naming(red="r", green="g", blue="b")
     def set_tool_led_color(self, r: int, g: int, b: int) -> Any:
         """Set the colour of the light (the maker's name).
 
@@ -348,6 +376,7 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_tool_led_color, r, g, b)
 
+    @naming(high="status")
     def set_tool_out_io_state(self, pin: int, status: int = 1) -> Any:
         """Set a pin of the end.
 

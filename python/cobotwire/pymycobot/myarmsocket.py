@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from cobotwire.editions import myarm300
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
+from cobotwire.pymycobot.layer.naming import naming
 from cobotwire.pymycobot.myarm import MyArm
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ class MyArmSocket(MyArm):
         """Open the arm; see :class:`CompatibleClient`."""
         self._open_socket(ip, netport, debug, errors)
 
+    @naming(joint="id", angle="degree")
     def send_angle(self, id: int, degree: float, speed: int, _async: bool = False) -> Any:
         """Send one joint to an angle.
 

@@ -9,6 +9,7 @@ from cobotwire.editions import mycobot280
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.helpers import Homing, Pins, StoppingGripper, WaitingWithMode
+from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,6 +38,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Calculate the coordinates of joint angles."""
         return self._ask(results.plain, self.arm.angles_to_coords, angles)
 
+    @naming(servo="servo_id")
     def backup_servo_params(self, servo_id: int) -> Any:
         """Save a servo's parameters.
 
@@ -80,6 +82,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Power all servos."""
         return self._order(self.arm.focus_all_servos)
 
+    @naming(joint="servo_id")
     def focus_servo(self, servo_id: int) -> Any:
         """Power a servo.
 
@@ -103,6 +106,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Read the planned joint angles."""
         return self._ask(results.plain, self.arm.get_angles_plan)
 
+    @naming(pin="pin_no")
     def get_basic_input(self, pin_no: int) -> Any:
         """Read a pin of the base.
 
@@ -122,6 +126,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Read the planned coordinates."""
         return self._ask(results.plain, self.arm.get_coords_plan)
 
+    @naming(pin="pin_no")
     def get_digital_input(self, pin_no: int) -> Any:
         """Read a pin of the Atom.
 
@@ -129,6 +134,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._ask(results.plain, self.arm.get_digital_input, pin_no)
 
+    @naming(joint="joint_id")
     def get_encoder(self, joint_id: int) -> Any:
         """Read the encoder of one joint.
 
@@ -156,6 +162,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Read the gripper's protective current."""
         return self._ask(results.plain, self.arm.get_gripper_protect_current)
 
+    @naming(gripper="gripper_type")
     def get_gripper_value(self, gripper_type: int | None = None) -> Any:
         """Read the gripper's opening.
 
@@ -163,6 +170,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._ask(results.plain, self.arm.get_gripper_value, gripper_type)
 
+    @naming(joint="joint_id")
     def get_joint_max_angle(self, joint_id: int) -> Any:
         """Read the largest angle of a joint.
 
@@ -170,6 +178,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._ask(results.plain, self.arm.get_joint_max_angle, joint_id)
 
+    @naming(joint="joint_id")
     def get_joint_min_angle(self, joint_id: int) -> Any:
         """Read the smallest angle of a joint.
 
@@ -197,6 +206,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Read the reference frame."""
         return self._ask(results.plain, self.arm.get_reference_frame)
 
+    @naming(joint="servo_id", register="data_id")
     def get_servo_data(self, servo_id: int, data_id: int, mode: int | None = None) -> Any:
         """Read a servo register.
 
@@ -264,6 +274,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Check whether the gripper moves."""
         return self._ask(results.plain, self.arm.is_gripper_moving)
 
+    @naming(target="data", kind="id")
     def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:
         """Check whether a target is reached.
 
@@ -283,6 +294,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Check whether the arm has power."""
         return self._ask(results.plain, self.arm.is_power_on)
 
+    @naming(joint="servo_id")
     def is_servo_enable(self, servo_id: int) -> Any:
         """Check whether a servo is connected.
 
@@ -290,6 +302,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._ask(results.plain, self.arm.is_servo_enable, servo_id)
 
+    @naming(joint="joint_id")
     def jog_angle(self, joint_id: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a joint.
 
@@ -297,6 +310,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.jog_angle, joint_id, direction, speed, quiet=_async)
 
+    @naming(axis="coord_id")
     def jog_coord(self, coord_id: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a coordinate.
 
@@ -304,6 +318,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.jog_coord, coord_id, direction, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def jog_increment(
         self, joint_id: int, increment: float, speed: int, _async: bool = False
     ) -> Any:
@@ -313,6 +328,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.jog_increment, joint_id, increment, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def jog_increment_angle(
         self, joint_id: int, increment: float, speed: int, _async: bool = False
     ) -> Any:
@@ -322,6 +338,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.jog_increment_angle, joint_id, increment, speed, quiet=_async)
 
+    @naming(axis="id")
     def jog_increment_coord(
         self, id: int, increment: float, speed: int, _async: bool = False
     ) -> Any:
@@ -331,6 +348,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.jog_increment_coord, id, increment, speed, quiet=_async)
 
+    @naming(axis="end_direction")
     def jog_rpy(self, end_direction: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a rotation of the end.
 
@@ -338,6 +356,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.jog_rpy, end_direction, direction, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def joint_brake(self, joint_id: int) -> Any:
         """Brake a joint.
 
@@ -365,6 +384,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Read the joints' errors."""
         return self._ask(results.error_classes, self.arm.read_next_error)
 
+    @naming(undamped="data")
     def release_all_servos(self, data: int | None = None) -> Any:
         """Release all servos.
 
@@ -372,6 +392,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.release_all_servos, data)
 
+    @naming(joint="servo_id", undamped="mode")
     def release_servo(self, servo_id: int, mode: int | None = None) -> Any:
         """Release a servo.
 
@@ -379,6 +400,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.release_servo, servo_id, mode)
 
+    @naming(servo="servo_id")
     def restore_servo_params(self, servo_id: int) -> Any:
         """Restore a servo's parameters.
 
@@ -390,6 +412,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Resume."""
         return self._order(self.arm.resume)
 
+    @naming(joint="id", angle="degree")
     def send_angle(self, id: int, degree: float, speed: int, _async: bool = False) -> Any:
         """Send one joint to an angle.
 
@@ -404,6 +427,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.send_angles, angles, speed, quiet=_async)
 
+    @naming(axis="id")
     def send_coord(self, id: int, coord: float, speed: int, _async: bool = False) -> Any:
         """Send one coordinate.
 
@@ -431,6 +455,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Set the gripper's torque."""
         return self._ask(results.plain, self.arm.set_HTS_gripper_torque, torque)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_basic_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the base.
 
@@ -438,6 +463,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_basic_output, pin_no, pin_signal)
 
+    @naming(red="r", green="g", blue="b")
     def set_color(self, r: int = 0, g: int = 0, b: int = 0) -> Any:
         """Set the colour of the light.
 
@@ -445,6 +471,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_color, r, g, b)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_digital_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the Atom.
 
@@ -452,6 +479,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_digital_output, pin_no, pin_signal)
 
+    @naming(joint="joint_id")
     def set_encoder(self, joint_id: int, encoder: int, speed: int) -> Any:
         """Send one joint to an encoder position.
 
@@ -459,6 +487,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_encoder, joint_id, encoder, speed)
 
+    @naming(speed="sp")
     def set_encoders(self, encoders: Sequence[int], sp: int) -> Any:
         """Send all joints to encoder positions.
 
@@ -478,6 +507,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Set the four-piece motor's zero to its position."""
         return self._ask(results.plain, self.arm.set_four_pieces_zero)
 
+    @naming(free="flag")
     def set_free_mode(self, flag: int) -> Any:
         """Turn free mode on or off.
 
@@ -497,6 +527,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Set the gripper's protective current."""
         return self._order(self.arm.set_gripper_protect_current, current)
 
+    @naming(state="flag", gripper="_type_1", torque="is_torque")
     def set_gripper_state(
         self, flag: int, speed: int, _type_1: int | None = None, is_torque: int | None = None
     ) -> Any:
@@ -506,6 +537,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_gripper_state, flag, speed, _type_1, is_torque)
 
+    @naming(value="gripper_value", gripper="gripper_type", torque="is_torque")
     def set_gripper_value(
         self,
         gripper_value: int,
@@ -521,6 +553,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
             self.arm.set_gripper_value, gripper_value, speed, gripper_type, is_torque
         )
 
+    @naming(joint="id")
     def set_joint_max(self, id: int, angle: float) -> Any:
         """Set the largest angle of a joint.
 
@@ -528,6 +561,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_joint_max, id, angle)
 
+    @naming(joint="id")
     def set_joint_min(self, id: int, angle: float) -> Any:
         """Set the smallest angle of a joint.
 
@@ -535,6 +569,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_joint_min, id, angle)
 
+    @naming(mode="move_type")
     def set_movement_type(self, move_type: int) -> Any:
         """Set the path to coordinates.
 
@@ -542,6 +577,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_movement_type, move_type)
 
+    @naming(pin="pin_no", mode="pin_mode")
     def set_pin_mode(self, pin_no: int, pin_mode: int) -> Any:
         """Set what a pin of the Atom is used for.
 
@@ -549,6 +585,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_pin_mode, pin_no, pin_mode)
 
+    @naming(duty="pin_val")
     def set_pwm_output(self, channel: int, frequency: int, pin_val: int) -> Any:
         """Set a PWM output of the Atom.
 
@@ -556,6 +593,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_pwm_output, channel, frequency, pin_val)
 
+    @naming(frame="rftype")
     def set_reference_frame(self, rftype: int) -> Any:
         """Set the reference frame.
 
@@ -567,6 +605,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Set the TCP port."""
         return self._order(self.arm.set_server_port, port)
 
+    @naming(joint="servo_id")
     def set_servo_calibration(self, servo_id: int) -> Any:
         """Set a joint's zero to its position.
 
@@ -574,6 +613,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._order(self.arm.set_servo_calibration, servo_id)
 
+    @naming(joint="servo_id", register="data_id")
     def set_servo_data(
         self, servo_id: int, data_id: int, value: int, mode: int | None = None
     ) -> Any:
@@ -591,6 +631,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Set the tool reference."""
         return self._order(self.arm.set_tool_reference, coords)
 
+    @naming(transparent="mode")
     def set_transponder_mode(self, mode: int) -> Any:
         """Turn the transponder on or off.
 
@@ -598,6 +639,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """
         return self._ask(results.plain, self.arm.set_transponder_mode, mode)
 
+    @naming(vision="flag")
     def set_vision_mode(self, flag: int) -> Any:
         """Turn vision mode on or off.
 
@@ -609,6 +651,7 @@ class MyCobot280(Homing, WaitingWithMode, StoppingGripper, Pins):
         """Set the world reference."""
         return self._order(self.arm.set_world_reference, coords)
 
+    @naming(coords="target_coords", angles="current_angles")
     def solve_inv_kinematics(
         self, target_coords: Sequence[float], current_angles: Sequence[float]
     ) -> Any:

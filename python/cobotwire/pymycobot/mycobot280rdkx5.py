@@ -9,6 +9,7 @@ from cobotwire.editions import mycobot280_rdkx5
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.helpers import WaitingWithMode
+from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,6 +62,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Power all servos."""
         return self._order(self.arm.focus_all_servos)
 
+    @naming(joint="servo_id")
     def focus_servo(self, servo_id: int) -> Any:
         """Power a servo.
 
@@ -84,6 +86,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Read the coordinates."""
         return self._ask(results.plain, self.arm.get_coords)
 
+    @naming(pin="pin_no")
     def get_digital_input(self, pin_no: int) -> Any:
         """Read a pin of the Atom.
 
@@ -99,6 +102,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Read how many points are recorded."""
         return self._ask(results.plain, self.arm.drag_get_record_len)
 
+    @naming(joint="servo_id")
     def get_encoder(self, servo_id: int) -> Any:
         """Read the encoder of one joint.
 
@@ -122,6 +126,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Read the gripper's protective current."""
         return self._ask(results.plain, self.arm.get_gripper_protect_current)
 
+    @naming(gripper="gripper_type")
     def get_gripper_value(self, gripper_type: int | None = 1) -> Any:
         """Read the gripper's opening.
 
@@ -129,6 +134,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._ask(results.plain, self.arm.get_gripper_value, gripper_type)
 
+    @naming(joint="joint_id")
     def get_joint_max_angle(self, joint_id: int) -> Any:
         """Read the largest angle of a joint.
 
@@ -136,6 +142,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._ask(results.plain, self.arm.get_joint_max_angle, joint_id)
 
+    @naming(joint="joint_id")
     def get_joint_min_angle(self, joint_id: int) -> Any:
         """Read the smallest angle of a joint.
 
@@ -171,6 +178,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Read the currents of the servos."""
         return self._ask(results.plain, self.arm.get_servo_currents)
 
+    @naming(joint="servo_id", register="address")
     def get_servo_data(self, servo_id: int, address: int, mode: int | None = None) -> Any:
         """Read a servo register.
 
@@ -226,6 +234,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Check whether the gripper moves."""
         return self._ask(results.plain, self.arm.is_gripper_moving)
 
+    @naming(target="data", kind="mode")
     def is_in_position(self, data: Sequence[float], mode: int = 0) -> Any:
         """Check whether a target is reached.
 
@@ -245,6 +254,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Check whether the arm has power."""
         return self._ask(results.plain, self.arm.is_power_on)
 
+    @naming(joint="servo_id")
     def is_servo_enable(self, servo_id: int) -> Any:
         """Check whether a servo is connected.
 
@@ -260,6 +270,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Check whether the Atom is connected."""
         return self._ask(results.plain, self.arm.is_controller_connected)
 
+    @naming(joint="joint_id")
     def jog_angle(self, joint_id: int, direction: int, speed: int) -> Any:
         """Jog a joint.
 
@@ -267,6 +278,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.jog_angle, joint_id, direction, speed)
 
+    @naming(axis="coord_id")
     def jog_coord(self, coord_id: int, direction: int, speed: int) -> Any:
         """Jog a coordinate.
 
@@ -274,6 +286,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.jog_coord, coord_id, direction, speed)
 
+    @naming(joint="joint_id")
     def jog_increment_angle(self, joint_id: int, increment: float, speed: int) -> Any:
         """Jog a joint by a step.
 
@@ -281,6 +294,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.jog_increment_angle, joint_id, increment, speed)
 
+    @naming(axis="coord_id")
     def jog_increment_coord(self, coord_id: int, increment: float, speed: int) -> Any:
         """Jog a coordinate by a step.
 
@@ -288,6 +302,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.jog_increment_coord, coord_id, increment, speed)
 
+    @naming(axis="end_direction")
     def jog_rpy(self, end_direction: int, direction: int, speed: int) -> Any:
         """Jog a rotation of the end.
 
@@ -295,6 +310,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.jog_rpy, end_direction, direction, speed)
 
+    @naming(joint="joint_id")
     def joint_brake(self, joint_id: int) -> Any:
         """Brake a joint.
 
@@ -326,6 +342,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Release all servos."""
         return self._order(self.arm.release_all_servos)
 
+    @naming(joint="servo_id")
     def release_servo(self, servo_id: int) -> Any:
         """Release a servo.
 
@@ -337,6 +354,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Resume."""
         return self._order(self.arm.resume)
 
+    @naming(joint="joint_id")
     def send_angle(self, joint_id: int, angle: float, speed: int, _async: bool = False) -> Any:
         """Send one joint to an angle.
 
@@ -351,6 +369,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.send_angles, angles, speed, quiet=_async)
 
+    @naming(axis="coord_id")
     def send_coord(self, coord_id: int, coord: float, speed: int, _async: bool = False) -> Any:
         """Send one coordinate.
 
@@ -358,6 +377,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.send_coord, coord_id, coord, speed, quiet=_async)
 
+    @naming(mode="coord_mode")
     def send_coords(
         self,
         coords: Sequence[float],
@@ -371,6 +391,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.send_coords, coords, speed, coord_mode, quiet=_async)
 
+    @naming(torque="gripper_torque")
     def set_HTS_gripper_torque(self, gripper_torque: int) -> Any:
         """Set the gripper's torque.
 
@@ -378,6 +399,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._ask(results.plain, self.arm.set_HTS_gripper_torque, gripper_torque)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_digital_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the Atom.
 
@@ -385,6 +407,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_digital_output, pin_no, pin_signal)
 
+    @naming(joint="servo_id")
     def set_encoder(self, servo_id: int, encoder: int, speed: int) -> Any:
         """Send one joint to an encoder position.
 
@@ -400,6 +423,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Send all joints to encoder positions at individual speeds."""
         return self._order(self.arm.set_encoders_drag, encoders, speeds)
 
+    @naming(end="end_type")
     def set_end_type(self, end_type: int) -> Any:
         """Set the end type.
 
@@ -411,6 +435,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Set the four-piece motor's zero to its position."""
         return self._ask(results.plain, self.arm.set_four_pieces_zero)
 
+    @naming(mode="fresh_mode")
     def set_fresh_mode(self, fresh_mode: int) -> Any:
         """Set how a new target changes a running motion.
 
@@ -422,6 +447,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Set the gripper's zero to its position."""
         return self._order(self.arm.set_gripper_calibration)
 
+    @naming(current="protect_current")
     def set_gripper_protect_current(self, protect_current: int) -> Any:
         """Set the gripper's protective current.
 
@@ -429,6 +455,9 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_gripper_protect_current, protect_current)
 
+    @naming(
+        state="gripper_state", speed="gripper_speed", gripper="gripper_type", torque="is_torque"
+    )
     def set_gripper_state(
         self,
         gripper_state: int,
@@ -444,6 +473,9 @@ class MyCobot280RDKX5(WaitingWithMode):
             self.arm.set_gripper_state, gripper_state, gripper_speed, gripper_type, is_torque
         )
 
+    @naming(
+        value="gripper_value", speed="gripper_speed", gripper="gripper_type", torque="is_torque"
+    )
     def set_gripper_value(
         self,
         gripper_value: int,
@@ -459,6 +491,7 @@ class MyCobot280RDKX5(WaitingWithMode):
             self.arm.set_gripper_value, gripper_value, gripper_speed, gripper_type, is_torque
         )
 
+    @naming(joint="joint_id")
     def set_joint_max(self, joint_id: int, angle: float) -> Any:
         """Set the largest angle of a joint.
 
@@ -466,6 +499,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_joint_max, joint_id, angle)
 
+    @naming(joint="joint_id")
     def set_joint_min(self, joint_id: int, angle: float) -> Any:
         """Set the smallest angle of a joint.
 
@@ -473,6 +507,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_joint_min, joint_id, angle)
 
+    @naming(monitoring="monitor_state")
     def set_monitor_state(self, monitor_state: int) -> Any:
         """Turn monitoring on or off.
 
@@ -480,6 +515,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_monitor_state, monitor_state)
 
+    @naming(mode="move_type")
     def set_movement_type(self, move_type: int) -> Any:
         """Set the path to coordinates.
 
@@ -487,6 +523,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_movement_type, move_type)
 
+    @naming(frame="reference_frame_type")
     def set_reference_frame(self, reference_frame_type: int) -> Any:
         """Set the reference frame.
 
@@ -494,6 +531,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_reference_frame, reference_frame_type)
 
+    @naming(joint="servo_id")
     def set_servo_calibration(self, servo_id: int) -> Any:
         """Set a joint's zero to its position.
 
@@ -501,6 +539,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_servo_calibration, servo_id)
 
+    @naming(joint="servo_id", register="address")
     def set_servo_data(
         self, servo_id: int, address: int, value: int, mode: int | None = None
     ) -> Any:
@@ -510,6 +549,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """
         return self._order(self.arm.set_servo_data, servo_id, address, value, mode)
 
+    @naming(red="r", green="g", blue="b")
     def set_tool_color(self, r: int = 0, g: int = 0, b: int = 0) -> Any:
         """Set the colour of the light.
 
@@ -521,6 +561,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Set the tool reference."""
         return self._order(self.arm.set_tool_reference, coords)
 
+    @naming(vision="vision_mode")
     def set_vision_mode(self, vision_mode: int) -> Any:
         """Turn vision mode on or off.
 
@@ -532,6 +573,7 @@ class MyCobot280RDKX5(WaitingWithMode):
         """Set the world reference."""
         return self._order(self.arm.set_world_reference, coords)
 
+    @naming(coords="target_coords", angles="current_angles")
     def solve_inv_kinematics(
         self, target_coords: Sequence[float], current_angles: Sequence[float]
     ) -> Any:

@@ -9,7 +9,7 @@ from cobotwire.pymycobot.layer.helpers import HomingQuietly
 from cobotwire.pymycobot.mycobot280 import MyCobot280
 
 
-class MyCobot280Socket(MyCobot280, HomingQuietly):
+class MyCobot280Socket(HomingQuietly, MyCobot280):
     """A myCobot 280 behind a TCP server."""
 
     NATIVE = mycobot280.CLIENT

@@ -9,6 +9,7 @@ from cobotwire.editions import mycobot320
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.helpers import Homing, Pins, WaitingWithMode
+from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,6 +46,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Power all servos."""
         return self._order(self.arm.focus_all_servos)
 
+    @naming(joint="servo_id")
     def focus_servo(self, servo_id: int) -> Any:
         """Power a servo.
 
@@ -68,6 +70,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the Atom's firmware version."""
         return self._ask(results.plain, self.arm.get_atom_version)
 
+    @naming(pin="pin_no")
     def get_basic_input(self, pin_no: int) -> Any:
         """Read a pin of the base.
 
@@ -87,6 +90,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the planned coordinates."""
         return self._ask(results.plain, self.arm.get_coords_plan)
 
+    @naming(pin="pin_no")
     def get_digital_input(self, pin_no: int) -> Any:
         """Read a pin of the Atom.
 
@@ -94,6 +98,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._ask(results.plain, self.arm.get_digital_input, pin_no)
 
+    @naming(joint="joint_id")
     def get_encoder(self, joint_id: int) -> Any:
         """Read the encoder of one joint.
 
@@ -129,6 +134,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the minor version of the firmware."""
         return self._ask(results.plain, self.arm.get_hand_firmware_minor_version, gripper_id)
 
+    @naming(joint="joint_id")
     def get_hand_gripper_angle(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the position of a joint of the hand.
 
@@ -140,6 +146,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the positions of the hand."""
         return self._ask(results.plain, self.arm.get_hand_gripper_angles, gripper_id)
 
+    @naming(joint="joint_id")
     def get_hand_gripper_clockwise(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the dead zone clockwise.
 
@@ -147,6 +154,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._ask(results.plain, self.arm.get_hand_gripper_clockwise, joint_id, gripper_id)
 
+    @naming(joint="joint_id")
     def get_hand_gripper_counterclockwise(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the dead zone counterclockwise.
 
@@ -156,6 +164,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
             results.plain, self.arm.get_hand_gripper_counterclockwise, joint_id, gripper_id
         )
 
+    @naming(joint="joint_id")
     def get_hand_gripper_d(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the D of a joint of the hand.
 
@@ -163,6 +172,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._ask(results.plain, self.arm.get_hand_gripper_d, joint_id, gripper_id)
 
+    @naming(joint="joint_id")
     def get_hand_gripper_default_speed(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the speed of a joint of the hand.
 
@@ -172,6 +182,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
             results.plain, self.arm.get_hand_gripper_default_speed, joint_id, gripper_id
         )
 
+    @naming(joint="joint_id")
     def get_hand_gripper_i(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the I of a joint of the hand.
 
@@ -183,6 +194,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the number on the bus."""
         return self._ask(results.plain, self.arm.get_hand_gripper_id, gripper_id)
 
+    @naming(joint="joint_id")
     def get_hand_gripper_min_pressure(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the minimum starting force.
 
@@ -192,6 +204,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
             results.plain, self.arm.get_hand_gripper_min_pressure, joint_id, gripper_id
         )
 
+    @naming(joint="joint_id")
     def get_hand_gripper_p(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the P of a joint of the hand.
 
@@ -203,6 +216,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Check what the hand does."""
         return self._ask(results.plain, self.arm.get_hand_gripper_status, gripper_id)
 
+    @naming(joint="joint_id")
     def get_hand_gripper_torque(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Read the torque of a joint of the hand.
 
@@ -214,6 +228,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read which hand it is."""
         return self._ask(results.plain, self.arm.get_hand_gripper_type, gripper_id)
 
+    @naming(joint="joint_id")
     def get_joint_max_angle(self, joint_id: int) -> Any:
         """Read the largest angle of a joint.
 
@@ -221,6 +236,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._ask(results.plain, self.arm.get_joint_max_angle, joint_id)
 
+    @naming(joint="joint_id")
     def get_joint_min_angle(self, joint_id: int) -> Any:
         """Read the smallest angle of a joint.
 
@@ -272,6 +288,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the currents of the servos."""
         return self._ask(results.plain, self.arm.get_servo_currents)
 
+    @naming(joint="servo_id", register="data_id")
     def get_servo_data(self, servo_id: int, data_id: int, mode: int | None = None) -> Any:
         """Read a servo register.
 
@@ -327,6 +344,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Check whether the Atom is connected."""
         return self._ask(results.plain, self.arm.is_controller_connected)
 
+    @naming(target="data", kind="id")
     def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:
         """Check whether a target is reached.
 
@@ -346,6 +364,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Check whether the arm has power."""
         return self._ask(results.plain, self.arm.is_power_on)
 
+    @naming(joint="servo_id")
     def is_servo_enable(self, servo_id: int) -> Any:
         """Check whether a servo is connected.
 
@@ -353,6 +372,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._ask(results.plain, self.arm.is_servo_enable, servo_id)
 
+    @naming(joint="joint_id")
     def jog_angle(self, joint_id: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a joint.
 
@@ -360,6 +380,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.jog_angle, joint_id, direction, speed, quiet=_async)
 
+    @naming(axis="coord_id")
     def jog_coord(self, coord_id: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a coordinate.
 
@@ -367,6 +388,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.jog_coord, coord_id, direction, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def jog_increment(
         self, joint_id: int, increment: float, speed: int, _async: bool = False
     ) -> Any:
@@ -376,6 +398,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.jog_increment, joint_id, increment, speed, quiet=_async)
 
+    @naming(joint="joint_id")
     def jog_increment_angle(self, joint_id: int, increment: float, speed: int) -> Any:
         """Jog a joint by a step.
 
@@ -383,6 +406,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.jog_increment_angle, joint_id, increment, speed)
 
+    @naming(axis="id")
     def jog_increment_coord(self, id: int, increment: float, speed: int) -> Any:
         """Jog a coordinate by a step.
 
@@ -390,6 +414,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.jog_increment_coord, id, increment, speed)
 
+    @naming(axis="end_direction")
     def jog_rpy(self, end_direction: int, direction: int, speed: int) -> Any:
         """Jog a rotation of the end.
 
@@ -397,6 +422,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.jog_rpy, end_direction, direction, speed)
 
+    @naming(joint="joint_id")
     def joint_brake(self, joint_id: int) -> Any:
         """Brake a joint.
 
@@ -420,6 +446,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the joints' errors."""
         return self._ask(results.error_classes, self.arm.read_next_error)
 
+    @naming(undamped="data")
     def release_all_servos(self, data: int | None = None) -> Any:
         """Release all servos.
 
@@ -427,6 +454,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.release_all_servos, data)
 
+    @naming(joint="servo_id", undamped="mode")
     def release_servo(self, servo_id: int, mode: int | None = None) -> Any:
         """Release a servo.
 
@@ -438,6 +466,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Resume."""
         return self._order(self.arm.resume)
 
+    @naming(joint="id", angle="degree")
     def send_angle(self, id: int, degree: float, speed: int, _async: bool = False) -> Any:
         """Send one joint to an angle.
 
@@ -452,6 +481,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.send_angles, angles, speed, quiet=_async)
 
+    @naming(axis="id")
     def send_coord(self, id: int, coord: float, speed: int, _async: bool = False) -> Any:
         """Send one coordinate.
 
@@ -472,6 +502,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Send all joints to angles in radians."""
         return self._order(self.arm.send_radians, radians, speed)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_basic_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the base.
 
@@ -479,6 +510,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_basic_output, pin_no, pin_signal)
 
+    @naming(red="r", green="g", blue="b")
     def set_color(self, r: int = 0, g: int = 0, b: int = 0) -> Any:
         """Set the colour of the light.
 
@@ -486,6 +518,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_color, r, g, b)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_digital_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the Atom.
 
@@ -493,6 +526,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_digital_output, pin_no, pin_signal)
 
+    @naming(state="status")
     def set_electric_gripper(self, status: int) -> Any:
         """Open or close the electric gripper.
 
@@ -500,6 +534,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_electric_gripper, status)
 
+    @naming(joint="joint_id")
     def set_encoder(self, joint_id: int, encoder: int, speed: int) -> Any:
         """Send one joint to an encoder position.
 
@@ -507,6 +542,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_encoder, joint_id, encoder, speed)
 
+    @naming(speed="sp")
     def set_encoders(self, encoders: Sequence[int], sp: int) -> Any:
         """Send all joints to encoder positions.
 
@@ -534,6 +570,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Set how the gripper is controlled."""
         return self._order(self.arm.set_gripper_mode, mode)
 
+    @naming(state="flag", gripper="_type_1")
     def set_gripper_state(self, flag: int, speed: int, _type_1: int | None = None) -> Any:
         """Open or close the gripper.
 
@@ -541,6 +578,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_gripper_state, flag, speed, _type_1)
 
+    @naming(value="gripper_value", gripper="gripper_type")
     def set_gripper_value(
         self, gripper_value: int, speed: int, gripper_type: int | None = None
     ) -> Any:
@@ -550,6 +588,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_gripper_value, gripper_value, speed, gripper_type)
 
+    @naming(joint="joint_id", value="gripper_angle")
     def set_hand_gripper_angle(
         self, joint_id: int, gripper_angle: int, gripper_id: int = 14
     ) -> Any:
@@ -559,6 +598,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_angle, joint_id, gripper_angle, gripper_id)
 
+    @naming(positions="gripper_angles")
     def set_hand_gripper_angles(
         self, gripper_angles: Sequence[int], speed: int, gripper_id: int = 14
     ) -> Any:
@@ -568,6 +608,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_angles, gripper_angles, speed, gripper_id)
 
+    @naming(joint="joint_id")
     def set_hand_gripper_calibrate(self, joint_id: int, gripper_id: int = 14) -> Any:
         """Set the zero of a joint of the hand to its position.
 
@@ -575,6 +616,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_calibrate, joint_id, gripper_id)
 
+    @naming(joint="joint_id")
     def set_hand_gripper_clockwise(self, joint_id: int, value: int, gripper_id: int = 14) -> Any:
         """Set the dead zone clockwise.
 
@@ -582,6 +624,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_clockwise, joint_id, value, gripper_id)
 
+    @naming(joint="joint_id")
     def set_hand_gripper_counterclockwise(
         self, joint_id: int, value: int, gripper_id: int = 14
     ) -> Any:
@@ -591,6 +634,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_counterclockwise, joint_id, value, gripper_id)
 
+    @naming(joint="joint_id")
     def set_hand_gripper_d(self, joint_id: int, value: int, gripper_id: int = 14) -> Any:
         """Set the D of a joint of the hand.
 
@@ -598,6 +642,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_d, joint_id, value, gripper_id)
 
+    @naming(enabled="flag")
     def set_hand_gripper_enabled(self, flag: int, gripper_id: int = 14) -> Any:
         """Switch the hand on or off.
 
@@ -605,6 +650,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_enabled, flag, gripper_id)
 
+    @naming(joint="joint_id")
     def set_hand_gripper_i(self, joint_id: int, value: int, gripper_id: int = 14) -> Any:
         """Set the I of a joint of the hand.
 
@@ -612,6 +658,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_i, joint_id, value, gripper_id)
 
+    @naming(number="id_value")
     def set_hand_gripper_id(self, id_value: int, gripper_id: int = 14) -> Any:
         """Set the number on the bus.
 
@@ -619,6 +666,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_id, id_value, gripper_id)
 
+    @naming(joint="joint_id")
     def set_hand_gripper_min_pressure(self, joint_id: int, value: int, gripper_id: int = 14) -> Any:
         """Set the minimum starting force.
 
@@ -626,6 +674,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_min_pressure, joint_id, value, gripper_id)
 
+    @naming(joint="joint_id")
     def set_hand_gripper_p(self, joint_id: int, value: int, gripper_id: int = 14) -> Any:
         """Set the P of a joint of the hand.
 
@@ -633,6 +682,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_p, joint_id, value, gripper_id)
 
+    @naming(pose="pinch_pose", rank="rank_mode", idle="idle_flag")
     def set_hand_gripper_pinch_action(
         self, pinch_pose: int, rank_mode: int, idle_flag: int | None = False, gripper_id: int = 14
     ) -> Any:
@@ -648,6 +698,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
             gripper_id,
         )
 
+    @naming(joint="joint_id")
     def set_hand_gripper_speed(self, joint_id: int, speed: int, gripper_id: int = 14) -> Any:
         """Set the speed of a joint of the hand.
 
@@ -655,6 +706,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_speed, joint_id, speed, gripper_id)
 
+    @naming(joint="joint_id", torque="torque_value")
     def set_hand_gripper_torque(
         self, joint_id: int, torque_value: int, gripper_id: int = 14
     ) -> Any:
@@ -664,6 +716,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_hand_gripper_torque, joint_id, torque_value, gripper_id)
 
+    @naming(joint="id")
     def set_joint_max(self, id: int, angle: float) -> Any:
         """Set the largest angle of a joint.
 
@@ -671,6 +724,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_joint_max, id, angle)
 
+    @naming(joint="id")
     def set_joint_min(self, id: int, angle: float) -> Any:
         """Set the smallest angle of a joint.
 
@@ -678,6 +732,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_joint_min, id, angle)
 
+    @naming(mode="move_type")
     def set_movement_type(self, move_type: int) -> Any:
         """Set the path to coordinates.
 
@@ -689,6 +744,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Write a register of the gripper."""
         return self._order(self.arm.set_pro_gripper, address, value, gripper_id)
 
+    @naming(value="gripper_angle")
     def set_pro_gripper_abs_angle(self, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Set the gripper's opening without a ramp.
 
@@ -696,6 +752,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_pro_gripper_abs_angle, gripper_angle, gripper_id)
 
+    @naming(value="gripper_angle")
     def set_pro_gripper_angle(self, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Set the gripper's opening.
 
@@ -731,6 +788,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Stop the gripper."""
         return self._order(self.arm.set_pro_gripper_stop, gripper_id)
 
+    @naming(torque="torque_value")
     def set_pro_gripper_torque(self, torque_value: int, gripper_id: int = 14) -> Any:
         """Set the gripper's torque.
 
@@ -738,6 +796,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_pro_gripper_torque, torque_value, gripper_id)
 
+    @naming(frame="rftype")
     def set_reference_frame(self, rftype: int) -> Any:
         """Set the reference frame.
 
@@ -749,6 +808,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Set the TCP port."""
         return self._order(self.arm.set_server_port, port)
 
+    @naming(joint="servo_id")
     def set_servo_calibration(self, servo_id: int) -> Any:
         """Set a joint's zero to its position.
 
@@ -756,6 +816,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_servo_calibration, servo_id)
 
+    @naming(joint="servo_id", register="data_id")
     def set_servo_data(
         self, servo_id: int, data_id: int, value: int, mode: int | None = None
     ) -> Any:
@@ -773,6 +834,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Set the tool reference."""
         return self._order(self.arm.set_tool_reference, coords)
 
+    @naming(vision="flag")
     def set_vision_mode(self, flag: int) -> Any:
         """Turn vision mode on or off.
 
@@ -780,6 +842,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """
         return self._order(self.arm.set_vision_mode, flag)
 
+    @naming(compensating="mode")
     def set_void_compensate(self, mode: int) -> Any:
         """Turn the compensation of play on or off.
 
@@ -791,6 +854,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Set the world reference."""
         return self._order(self.arm.set_world_reference, coords)
 
+    @naming(coords="target_coords", angles="current_angles")
     def solve_inv_kinematics(
         self, target_coords: Sequence[float], current_angles: Sequence[float]
     ) -> Any:

@@ -9,6 +9,7 @@ from cobotwire.editions import mypalletizer260
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.helpers import Homing, Pins, WaitingWithoutMode
+from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,6 +37,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Power all servos."""
         return self._send(self.arm.focus_all_servos)
 
+    @naming(joint="servo_id")
     def focus_servo(self, servo_id: int) -> Any:
         """Power a servo.
 
@@ -51,6 +53,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Read the joint angles."""
         return self._ask(results.plain, self.arm.get_angles)
 
+    @naming(pin="pin_no")
     def get_basic_input(self, pin_no: int) -> Any:
         """Read a pin of the base.
 
@@ -66,6 +69,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Read the coordinates."""
         return self._ask(results.plain, self.arm.get_coords)
 
+    @naming(pin="pin_no")
     def get_digital_input(self, pin_no: int) -> Any:
         """Read a pin of the Atom.
 
@@ -73,6 +77,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._ask(results.plain, self.arm.get_digital_input, pin_no)
 
+    @naming(joint="joint_id")
     def get_encoder(self, joint_id: int) -> Any:
         """Read the encoder of one joint.
 
@@ -92,6 +97,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Read the feed override."""
         return self._ask(results.plain, self.arm.get_feed_override)
 
+    @naming(gripper="gripper_type")
     def get_gripper_value(self, gripper_type: int | None = None) -> Any:
         """Read the gripper's opening.
 
@@ -99,6 +105,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._ask(results.plain, self.arm.get_gripper_value, gripper_type)
 
+    @naming(joint="joint_id")
     def get_joint_max_angle(self, joint_id: int) -> Any:
         """Read the largest angle of a joint.
 
@@ -106,6 +113,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._ask(results.plain, self.arm.get_joint_max_angle, joint_id)
 
+    @naming(joint="joint_id")
     def get_joint_min_angle(self, joint_id: int) -> Any:
         """Read the smallest angle of a joint.
 
@@ -117,6 +125,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Read the joint angles in radians."""
         return self._ask(results.radians, self.arm.get_radians)
 
+    @naming(joint="servo_id", register="data_id")
     def get_servo_data(self, servo_id: int, data_id: int, mode: int | None = None) -> Any:
         """Read a servo register.
 
@@ -156,6 +165,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Check whether the gripper moves."""
         return self._ask(results.plain, self.arm.is_gripper_moving)
 
+    @naming(target="data", kind="id")
     def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:
         """Check whether a target is reached.
 
@@ -175,6 +185,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Check whether the arm has power."""
         return self._ask(results.plain, self.arm.is_power_on)
 
+    @naming(joint="servo_id")
     def is_servo_enable(self, servo_id: int) -> Any:
         """Check whether a servo is connected.
 
@@ -182,6 +193,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._ask(results.plain, self.arm.is_servo_enable, servo_id)
 
+    @naming(joint="joint_id")
     def jog_absolute(self, joint_id: int, angle: float, speed: int) -> Any:
         """Jog a joint to an angle.
 
@@ -189,6 +201,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.jog_absolute, joint_id, angle, speed)
 
+    @naming(joint="joint_id")
     def jog_angle(self, joint_id: int, direction: int, speed: int) -> Any:
         """Jog a joint.
 
@@ -196,6 +209,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.jog_angle, joint_id, direction, speed)
 
+    @naming(axis="coord_id")
     def jog_coord(self, coord_id: int, direction: int, speed: int, _async: bool = False) -> Any:
         """Jog a coordinate.
 
@@ -203,6 +217,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.jog_coord, coord_id, direction, speed)
 
+    @naming(joint="joint_id")
     def jog_increment(self, joint_id: int, increment: float, speed: int) -> Any:
         """Jog a joint by a step.
 
@@ -214,6 +229,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Stop jogging."""
         return self._send(self.arm.jog_stop)
 
+    @naming(joint="joint_id")
     def joint_brake(self, joint_id: int) -> Any:
         """Brake a joint.
 
@@ -233,6 +249,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Power on."""
         return self._send(self.arm.power_on)
 
+    @naming(undamped="data")
     def release_all_servos(self, data: int | None = None) -> Any:
         """Release all servos.
 
@@ -240,6 +257,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.release_all_servos, data)
 
+    @naming(joint="servo_id", undamped="mode")
     def release_servo(self, servo_id: int, mode: int | None = None) -> Any:
         """Release a servo.
 
@@ -251,6 +269,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Resume."""
         return self._send(self.arm.resume)
 
+    @naming(joint="id", angle="degree")
     def send_angle(self, id: int, degree: float, speed: int) -> Any:
         """Send one joint to an angle.
 
@@ -262,6 +281,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Send all joints to angles."""
         return self._send(self.arm.send_angles, angles, speed)
 
+    @naming(axis="id")
     def send_coord(self, id: int, coord: float, speed: int) -> Any:
         """Send one coordinate.
 
@@ -277,6 +297,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Send all joints to angles in radians."""
         return self._send(self.arm.send_radians, radians, speed)
 
+    @naming(acceleration="acc")
     def set_acceleration(self, acc: int) -> Any:
         """Set the acceleration.
 
@@ -284,6 +305,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_acceleration, acc)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_basic_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the base.
 
@@ -291,6 +313,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_basic_output, pin_no, pin_signal)
 
+    @naming(red="r", green="g", blue="b")
     def set_color(self, r: int = 0, g: int = 0, b: int = 0) -> Any:
         """Set the colour of the light.
 
@@ -298,6 +321,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_color, r, g, b)
 
+    @naming(pin="pin_no", high="pin_signal")
     def set_digital_output(self, pin_no: int, pin_signal: int) -> Any:
         """Set a pin of the Atom.
 
@@ -305,6 +329,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_digital_output, pin_no, pin_signal)
 
+    @naming(joint="joint_id")
     def set_encoder(self, joint_id: int, encoder: int, speed: int) -> Any:
         """Send one joint to an encoder position.
 
@@ -312,6 +337,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_encoder, joint_id, encoder, speed)
 
+    @naming(speed="sp")
     def set_encoders(self, encoders: Sequence[int], sp: int) -> Any:
         """Send all joints to encoder positions.
 
@@ -323,6 +349,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Send all joints to encoder positions at individual speeds."""
         return self._send(self.arm.set_encoders_drag, encoders, speeds)
 
+    @naming(free="flag")
     def set_free_mode(self, flag: int) -> Any:
         """Turn free mode on or off.
 
@@ -334,6 +361,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Set the gripper's zero to its position."""
         return self._send(self.arm.set_gripper_calibration)
 
+    @naming(state="flag", gripper="_type_1")
     def set_gripper_state(self, flag: int, speed: int, _type_1: int | None = None) -> Any:
         """Open or close the gripper.
 
@@ -341,6 +369,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_gripper_state, flag, speed, _type_1)
 
+    @naming(value="gripper_value", gripper="gripper_type")
     def set_gripper_value(
         self, gripper_value: int, speed: int, gripper_type: int | None = None
     ) -> Any:
@@ -350,6 +379,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_gripper_value, gripper_value, speed, gripper_type)
 
+    @naming(joint="id")
     def set_joint_max(self, id: int, angle: float) -> Any:
         """Set the largest angle of a joint.
 
@@ -357,6 +387,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_joint_max, id, angle)
 
+    @naming(joint="id")
     def set_joint_min(self, id: int, angle: float) -> Any:
         """Set the smallest angle of a joint.
 
@@ -364,6 +395,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_joint_min, id, angle)
 
+    @naming(pin="pin_no", mode="pin_mode")
     def set_pin_mode(self, pin_no: int, pin_mode: int) -> Any:
         """Set what a pin of the Atom is used for.
 
@@ -375,6 +407,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """Set the TCP port."""
         return self._send(self.arm.set_server_port, port)
 
+    @naming(joint="servo_id")
     def set_servo_calibration(self, servo_id: int) -> Any:
         """Set a joint's zero to its position.
 
@@ -382,6 +415,7 @@ class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
         """
         return self._send(self.arm.set_servo_calibration, servo_id)
 
+    @naming(joint="servo_id", register="data_id")
     def set_servo_data(
         self, servo_id: int, data_id: int, value: int, mode: int | None = None
     ) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from cobotwire_codegen.errors import Problem, SpecError, nearest
 from cobotwire_codegen.language.records import Entry, Key
@@ -16,9 +17,18 @@ from cobotwire_codegen.reader import Reader
 from cobotwire_codegen.render.arguments import arguments
 
 # A default is a plain literal: None, a truth value, a number, a quoted word.
+_NUMBER = re.compile(r"-?\d+\Z")
 _PARAMETER = re.compile(
     r"(_?[a-z][A-Za-z0-9_]*)(?:=(None|True|False|-?\d+(?:\.\d+)?|'[\w./-]*'))?\Z"
 )
+
+
+class _Stated(NamedTuple):
+    """What the file states: the shared methods, the classes, both by name; and the editions."""
+
+    methods: Mapping[str, Entry]
+    classes: Mapping[str, Entry]
+    editions: Mapping[str, Edition]
 
 
 def build_library(path: Path, root: Path, editions: Iterable[Edition]) -> Library:
@@ -31,13 +41,13 @@ def build_library(path: Path, root: Path, editions: Iterable[Edition]) -> Librar
     node = load(path, path.relative_to(root).as_posix())
     spec = language.Library
     reader = Reader(node, spec, "the library", problems)
-    shared = {name: (name, place, node) for name, place, node in reader.get(spec.methods)}
-    known = {edition.name: edition for edition in editions}
-    classes = [
-        built
-        for entry in reader.get(spec.classes)
-        if (built := _class(entry, shared, known, problems)) is not None
-    ]
+    stated = _Stated(
+        {entry[0]: entry for entry in reader.get(spec.methods)},
+        {entry[0]: entry for entry in reader.get(spec.classes)},
+        {edition.name: edition for edition in editions},
+    )
+    built = (_class(entry, stated, problems) for entry in stated.classes.values())
+    classes = [each for each in built if each is not None]
     _check_likes(reader, classes)
     if problems:
         raise SpecError(problems)
@@ -59,39 +69,75 @@ def _check_likes(reader: Reader, classes: list[LibraryClass]) -> None:
         earlier.add(each.name)
 
 
-def _class(
-    entry: Entry,
-    shared: Mapping[str, Entry],
-    editions: Mapping[str, Edition],
-    problems: list[Problem],
-) -> LibraryClass | None:
+def _class(entry: Entry, stated: _Stated, problems: list[Problem]) -> LibraryClass | None:
     name, _, node = entry
     spec = language.Class
     reader = Reader(node, spec, f"the class {name}", problems)
-    edition = editions.get(reader.get(spec.edition))
-    if edition is None:
-        given = reader.get(spec.edition)
-        message = f"{reader.what} has no edition {given}{nearest(given, editions)}"
-        reader.problem("unknown-word", message, reader.place_of(spec.edition))
+    edition = _edition(reader, spec.edition, stated)
+    elsewhere = _edition(reader, spec.elsewhere, stated) if reader.get(spec.elsewhere) else edition
+    if edition is None or elsewhere is None:
         return None
     like = reader.get(spec.like)
-    own = {key: (key, place, node) for key, place, node in reader.get(spec.methods)}
+    own = {entry[0]: entry for entry in reader.get(spec.methods)}
     commands = {command.name: command for command in edition.commands if not command.event}
-    offered = _offered(reader, commands)
+    other = _other(reader, stated)
+    offered = [each for each in _offered(reader, commands) if each not in other.lacks]
+    shared = {key: value for key, value in stated.methods.items() if key in offered}
+    taken = {key: value for key, value in other.methods.items() if other.calls[key] in commands}
     # A class like another one states only its own differences.
-    wanted = own if like else {**dict.fromkeys(offered), **_of(shared, offered), **own}
+    wanted = own if like else {**dict.fromkeys(offered), **shared, **taken, **own}
     methods = [_method(key, given, commands, problems) for key, given in wanted.items()]
     return LibraryClass(
         name,
         reader.get(spec.module),
         reader.get(spec.doc),
         edition,
+        elsewhere,
+        reader.get(spec.ports),
         reader.get(spec.opens),
         _parameters(reader, spec.constructor),
         like,
         reader.get(spec.helpers),
         tuple(sorted(filter(None, methods), key=lambda method: method.name)),
     )
+
+
+def _edition(reader: Reader, key: Key[str], stated: _Stated) -> Edition | None:
+    given = reader.get(key)
+    found = stated.editions.get(given)
+    if found is None:
+        message = f"{reader.what} has no edition {given}{nearest(given, stated.editions)}"
+        reader.problem("unknown-word", message, reader.place_of(key))
+    return found
+
+
+class _Other(NamedTuple):
+    """What another class states: its methods, which commands they call, and what it lacks."""
+
+    methods: Mapping[str, Entry]
+    calls: Mapping[str, str]
+    lacks: tuple[str, ...]
+
+
+def _other(reader: Reader, stated: _Stated) -> _Other:
+    """Return what the class states whose methods a class has too; nothing if there is none."""
+    key = language.Class.methods_of
+    name = reader.get(key)
+    if not name:
+        return _Other({}, {}, ())
+    entry = stated.classes.get(name)
+    if entry is None:
+        message = f"{reader.what} has no class {name}{nearest(name, stated.classes)}"
+        reader.problem("unknown-word", message, reader.place_of(key))
+        return _Other({}, {}, ())
+    # What is wrong there is reported with that class.
+    other = Reader(entry[2], language.Class, f"the class {name}", [])
+    methods = {each[0]: each for each in other.get(language.Class.methods)}
+    calls = {
+        key: Reader(node, language.Method, key, []).get(language.Method.calls) or key
+        for key, _, node in methods.values()
+    }
+    return _Other(methods, calls, other.get(language.Class.lacks))
 
 
 def _offered(reader: Reader, commands: Mapping[str, Command]) -> list[str]:
@@ -102,11 +148,6 @@ def _offered(reader: Reader, commands: Mapping[str, Command]) -> list[str]:
         message = f"{reader.what} lacks {name}, but no command has that name"
         reader.problem("unknown-command", message + nearest(name, commands), reader.place_of(key))
     return [name for name in commands if name not in lacks]
-
-
-def _of(shared: Mapping[str, Entry], offered: list[str]) -> dict[str, Entry]:
-    """Return the shared methods that a class offers."""
-    return {name: entry for name, entry in shared.items() if name in offered}
 
 
 def _method(
@@ -126,7 +167,7 @@ def _method(
     parameters = _parameters(reader, spec.parameters) or ours.parameters
     passes = reader.get(spec.passes)
     names = tuple(each.name for each in parameters)
-    for unknown in (each for each in passes if each not in names):
+    for unknown in (each for each in passes if each not in names and not _NUMBER.match(each)):
         message = f"{reader.what} has no parameter {unknown}{nearest(unknown, names)}"
         reader.problem("unknown-word", message, reader.place_of(spec.passes))
     passed = passes or tuple(each for each in names if each != QUIET)

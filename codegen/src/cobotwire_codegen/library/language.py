@@ -12,6 +12,7 @@ RESULTS = {
     "listed": "A list of one number.",
     "nothing": "None; for orders with an acknowledgement.",
     "done": "1 when the order is sent; for orders without an acknowledgement.",
+    "ended": "The status with which the motion ended, which is waited for; 0 is success.",
     "joined": "The parts of all named tuples in one list.",
     "radians": "Radians, rounded to thousandths.",
     "bit_numbers": "For each byte the list of the bits that are set, or 0.",
@@ -27,8 +28,9 @@ class Method(Record):
     parameters = optional(Texts(), "All parameters in their order: `name`, or `name=default`.")
     calls = optional(Text(), "Our method; left out: that of the same name.")
     passes = optional(
-        Names(),
-        "The parameters that our method is given, in its order; left out: all but `_async`.",
+        Texts(),
+        "The parameters that our method is given, in its order, or numbers in quotes instead; "
+        "left out: all but `_async`.",
     )
     result = optional(Word(RESULTS, RESULTS.values()), "How the result is given.", "plain")
 
@@ -38,11 +40,16 @@ class Class(Record):
 
     module = required(Text(), "The module of the library that has the class.")
     edition = required(Text(), "Our edition whose client it calls.")
+    ports = optional(Texts(), "The ports that have this edition; only with `elsewhere`.")
+    elsewhere = optional(Text(), "The edition on all other ports; left out: the same.")
     constructor = required(
         Texts(), "The parameters of its constructor; the first two say what it opens."
     )
     opens = optional(Word(("serial", "socket")), "What its constructor opens.", "serial")
-    like = optional(Text(), "A class that has the same methods.")
+    like = optional(Text(), "A class of which it is a subclass: it has its methods.")
+    methods_of = optional(
+        Text(), "A class for another edition: what it states about methods holds here too."
+    )
     helpers = optional(Names(), "Classes of the layer with methods of several requests.")
     lacks = optional(Names(), "Our methods that the class does not have under our name.")
     methods = optional(Named(Method, METHOD), "Methods that differ from those of other classes.")

@@ -19,8 +19,8 @@ class Parameter:
 class Method:
     """A method of the library.
 
-    ``command`` is what it sends, by the name of our method; ``passes`` are the parameters that our
-    method is given; ``result`` is how its result is given.
+    ``command`` is what it sends, by the name of our method; ``passes`` are the parameters and the
+    numbers that our method is given; ``result`` is how its result is given.
     """
 
     name: str
@@ -30,19 +30,30 @@ class Method:
     result: str
 
     @property
+    def takes(self) -> frozenset[str]:
+        """The names of its parameters."""
+        return frozenset(parameter.name for parameter in self.parameters)
+
+    @property
     def may_be_quiet(self) -> bool:
         """Whether a caller may choose not to wait for the acknowledgement."""
-        return any(parameter.name == QUIET for parameter in self.parameters)
+        return QUIET in self.takes
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryClass:
-    """A class of the library. ``like`` is the class whose methods it has; empty if none."""
+    """A class of the library.
+
+    ``edition`` is that of ``ports``, and ``elsewhere`` that of all others, or of all if the two are
+    the same. ``like`` is the class whose methods it has; empty if none.
+    """
 
     name: str
     module: str
     doc: str
     edition: Edition
+    elsewhere: Edition
+    ports: tuple[str, ...]
     opens: str
     constructor: tuple[Parameter, ...]
     like: str
@@ -62,5 +73,7 @@ class Library:
     classes: tuple[LibraryClass, ...]
 
 
+# The result of a motion that is waited for.
+ENDED = "ended"
 # The parameter that says whether a method waits for its acknowledgement.
 QUIET = "_async"

@@ -8,7 +8,7 @@ from itertools import groupby, zip_longest
 from pathlib import PurePosixPath
 
 from cobotwire_codegen.library.language import RESULTS
-from cobotwire_codegen.library.model import QUIET, Library, LibraryClass, Method, Parameter
+from cobotwire_codegen.library.model import ENDED, QUIET, Library, LibraryClass, Method, Parameter
 from cobotwire_codegen.model import Value
 from cobotwire_codegen.render import Files, environment
 from cobotwire_codegen.render.arguments import Argument, arguments, keyword_only
@@ -35,6 +35,8 @@ def render_library(library: Library) -> Files:
         head=head,
         imports=imports,
         names=names,
+        naming=naming,
+        native=native,
         our_call=our_call,
         sequences=sequences,
         typing=typing,
@@ -64,7 +66,7 @@ def _class_json(given: LibraryClass) -> str:
     head = {
         "opens": given.opens,
         "constructor": [each.name for each in given.constructor],
-        "native": given.edition.class_name,
+        "native": given.elsewhere.class_name,
         "joints": given.edition.joints,
         "like": given.like,
     }
@@ -153,26 +155,59 @@ def _annotation(name: str, ours: dict[str, Argument]) -> str:
     return _ENUM.sub("int", ours[name].annotation).replace("bool", "int")
 
 
-def call(method: Method) -> str:
-    """Return the body of a method."""
-    ours = f"self.arm.{method.command.name}"
+def call(given: LibraryClass, method: Method) -> str:
+    """Return the body of a method of a class."""
+    name = method.command.name
+    everywhere = any(each.name == name for each in given.elsewhere.commands)
+    ours = f"self.arm.{name}" if everywhere else f'self._only_here("{name}")'
     passed = _passed(method)
+    if method.result == ENDED:
+        return laid_out("return self._move(", [ours, *passed, *_quiet(method)], ")", 8)
     if _asks(method):
         parts = [f"results.{method.result}", ours, *passed]
         return laid_out("return self._ask(", parts, ")", 8)
     if not method.command.ack:
         order = "_finish" if method.result == "done" else "_send"
         return laid_out(f"return self.{order}(", [ours, *passed], ")", 8)
-    quiet = [f"quiet={QUIET}"] if method.may_be_quiet else []
     gives = [f"gives=results.{method.result}"] if method.result != "plain" else []
-    return laid_out("return self._order(", [ours, *passed, *quiet, *gives], ")", 8)
+    return laid_out("return self._order(", [ours, *passed, *_quiet(method), *gives], ")", 8)
+
+
+def _quiet(method: Method) -> list[str]:
+    return [f"quiet={QUIET}"] if method.may_be_quiet else []
+
+
+def naming(method: Method) -> str:
+    """Return the decorator that names the library's parameters in errors; empty if not needed."""
+    pairs = zip(method.passes, arguments(method.command))
+    names = [
+        f'{ours.name}="{theirs}"'
+        for theirs, ours in pairs
+        if theirs in method.takes and theirs != ours.name
+    ]
+    return laid_out("@naming(", names, ")", 4) if names else ""
+
+
+def native(given: LibraryClass) -> list[str]:
+    """Return the attributes that say which of our clients a class uses."""
+    here, there = (f"{each.name}.{each.class_name}" for each in (given.edition, given.elsewhere))
+    if here == there:
+        return [f"NATIVE = {given.edition.name}.CLIENT", f"arm: {here}"]
+    ports = ", ".join(f'"{port}"' for port in given.ports)
+    return [
+        f"NATIVE = {given.edition.name}.CLIENT",
+        f"ELSEWHERE = {given.elsewhere.name}.CLIENT",
+        f"PORTS = ({ports})",
+        f"arm: {there} | {here}",
+    ]
 
 
 def _passed(method: Method) -> list[str]:
     """Return what our method is given. A flag that is False by default is left out then."""
+    # A number has no default.
     defaults = {each.name: each.default for each in method.parameters}
     ours = {name: each.default for name, each in zip(method.passes, arguments(method.command))}
-    left_out = {name for name in ours if (defaults[name], ours[name]) == ("False", "None")}
+    left_out = {name for name in ours if (defaults.get(name), ours[name]) == ("False", "None")}
     return [f"{name} or None" if name in left_out else name for name in method.passes]
 
 
@@ -191,8 +226,8 @@ def names(library: Library) -> list[str]:
 
 
 def bases(given: LibraryClass) -> str:
-    """Return the bases of a class: what it is like, the helpers, or else what all share."""
-    found = [*([given.like] if given.like else []), *given.helpers]
+    """Return the bases of a class: the helpers, what it is like, or else what all share."""
+    found = [*given.helpers, *([given.like] if given.like else [])]
     return ", ".join(found or ["CompatibleClient"])
 
 
@@ -211,21 +246,32 @@ def typing(classes: list[LibraryClass]) -> str:
 def imports(library: Library, classes: list[LibraryClass]) -> list[str]:
     """Return the imports of a module."""
     layer = "cobotwire.pymycobot.layer"
-    editions = sorted({each.edition.name for each in classes})
+    editions = sorted(
+        {name for each in classes for name in (each.edition.name, each.elsewhere.name)}
+    )
     found = [f"from cobotwire.editions import {', '.join(editions)}"]
     methods = [method for given in classes for method in given.methods]
-    if any(_asks(each) or (each.command.ack and each.result != "plain") for each in methods):
+    if any(map(_gives, methods)):
         found.append(f"from {layer} import results")
     shared = ["CompatibleClient"] * any(bases(each) == "CompatibleClient" for each in classes)
     found.append(f"from {layer}.client import {', '.join([*shared, 'OnFailure'])}")
     helpers = sorted({helper for each in classes for helper in each.helpers})
     if helpers:
         found.append(f"from {layer}.helpers import {', '.join(helpers)}")
+    if any(map(naming, methods)):
+        found.append(f"from {layer}.naming import naming")
     here = {each.name for each in classes}
     modules = {each.name: each.module for each in library.classes}
     likes = sorted({each.like for each in classes} - here - {""})
     found += [f"from cobotwire.pymycobot.{modules[like]} import {like}" for like in likes]
     return sorted(found)
+
+
+def _gives(method: Method) -> bool:
+    """Return whether a method names a function for its result."""
+    if method.result == ENDED:
+        return False
+    return _asks(method) or (method.command.ack and method.result != "plain")
 
 
 def _asks(method: Method) -> bool:

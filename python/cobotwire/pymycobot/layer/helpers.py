@@ -9,6 +9,7 @@ from typing import Any, Self
 
 from cobotwire.protocol.errors import MotionTimeout, UsageError
 from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
+from cobotwire.pymycobot.layer.naming import naming
 
 HOME_SPEED = 10
 
@@ -21,6 +22,7 @@ class Waiting(CompatibleClient):
         time.sleep(t)
         return self
 
+    @naming(angles="degrees")
     def sync_send_angles(self, degrees: Sequence[float], speed: int, timeout: float = 15) -> int:
         """Move all joints to angles, and wait until they are there: ``move_angles``.
 
@@ -102,6 +104,7 @@ class StoppingGripper(TorqueGripper):
 class TwoPositions(CompatibleClient):
     """Asks for two kinds of targets by one method, where the protocol has two commands."""
 
+    @naming(angles="data", target="data", coords="data")
     def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:
         """Check whether joint angles are reached, or coordinates if ``id`` is 1."""
         query = self.arm.is_in_position_coords if id == 1 else self.arm.is_in_position

@@ -48,7 +48,12 @@ def ours(call: Call, arguments: Sequence[cst.Arg]) -> list[cst.Arg] | None:
 
 
 def _default(call: Call, parameter: str, default: str) -> cst.BaseExpression | None:
-    """Return what the library would use for an argument that is left out, if ours differs."""
+    """Return what the library would use for an argument that is left out, if ours differs.
+
+    A number that no parameter gives is always written.
+    """
+    if parameter not in call.parameters:
+        return cst.parse_expression(parameter)
     theirs = call.parameters[parameter]
     return cst.parse_expression(theirs) if theirs and theirs != default else None
 
