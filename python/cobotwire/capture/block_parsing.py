@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import BinaryIO, NamedTuple
 
 from cobotwire.capture import block_encoding as blocks
@@ -40,35 +40,59 @@ def blocks_of(file: BinaryIO, name: str) -> Iterator[Block]:
         CaptureError: the file is not a pcapng file, or it is damaged.
         Truncated: the file ends inside a block.
     """
-    offset, order = 0, ""
-    while head := _take(file, 8, offset):
-        kind = struct.unpack("<I", head[:4])[0]
-        if kind == blocks.SECTION:
-            magic = _take(file, 4, offset, within=True)
-            order = _order_of(magic, name, offset)
+    cut = cut_blocks(name)
+    item = next(cut, None)
+    while item is not None:
+        if isinstance(item, Block):
+            yield item
+            item = next(cut, None)
         else:
-            magic = b""
-            if not order:
-                raise CaptureError(name, offset, NOT_PCAPNG)
-            kind = struct.unpack(order + "I", head[:4])[0]
-        size = struct.unpack(order + "I", head[4:])[0]
+            try:
+                item = cut.send(_read(file, item))
+            except StopIteration:
+                return
+
+
+def cut_blocks(name: str) -> Generator[int | Block, bytes, None]:
+    """Cut a file into blocks without reading it: yield a number of bytes to send, or a block.
+
+    Send exactly that number of bytes, or fewer if the file ends there.
+
+    Raises:
+        CaptureError: the file is not a pcapng file, or it is damaged.
+        Truncated: the file ends inside a block.
+    """
+    offset, order = 0, ""
+    while head := (yield 8):
+        if len(head) < 8:
+            raise Truncated(offset)
+        kind = struct.unpack("<I", head[:4])[0]
+        magic = b""
+        if kind == blocks.SECTION:
+            magic = yield 4
+            if len(magic) < 4:
+                raise Truncated(offset)
+            order = _order_of(magic, name, offset)
+        elif not order:
+            raise CaptureError(name, offset, NOT_PCAPNG)
+        kind, size = struct.unpack(order + "II", head)
         _check_size(size, kind, name, offset)
-        rest = magic + _take(file, size - 8 - len(magic), offset, within=True)
+        rest = magic + (yield size - 8 - len(magic))
+        if len(rest) < size - 8:
+            raise Truncated(offset)
         if rest[-4:] != head[4:]:
             raise CaptureError(name, offset, "damaged: the two lengths of a block differ")
         yield Block(offset, kind, rest[:-4], order)
         offset += size
 
 
-def _take(file: BinaryIO, size: int, offset: int, within: bool = False) -> bytes:
-    """Return exactly ``size`` bytes; none if the file ends here, unless ``within`` a block."""
-    data = b""
-    while len(data) < size:
+def _read(file: BinaryIO, size: int) -> bytes:
+    """Return exactly ``size`` bytes, or fewer if the file ends."""
+    data = file.read(size)
+    while data and len(data) < size:
         more = file.read(size - len(data))
         if not more:
-            if data or within:
-                raise Truncated(offset)
-            return b""
+            break
         data += more
     return data
 

@@ -54,6 +54,25 @@ def in_order(streams: Iterable[Any]) -> pa.Table:
     return table.replace_schema_metadata(metadata)
 
 
+def stamped_table(
+    rows: Any, time: memoryview, direction: memoryview, names: Sequence[str], interface: memoryview
+) -> pa.Table:
+    """Return the table of some rows with three more columns in front: when and where.
+
+    ``time`` has nanoseconds since 1970 (UTC), and ``direction`` indexes ``names``.
+    """
+    table = pa.table(rows)
+    directions = pa.DictionaryArray.from_arrays(_flat(direction), pa.array(names))
+    times = _flat(time).view(pa.timestamp("ns"))
+    for name, column in (
+        ("interface", _flat(interface)),
+        ("direction", directions),
+        ("time", times),
+    ):
+        table = table.add_column(0, pa.field(name, column.type, nullable=False), column)
+    return table
+
+
 def _array(field: Field, column: memoryview, rows: int) -> Any:
     """Return a column: a list or row of numbers becomes lists, bytes and text become values."""
     if not field.many:

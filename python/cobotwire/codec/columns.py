@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     import numpy as np
     from typing_extensions import Buffer
 
+    Arrays = dict[str, np.ndarray[Any, Any]]
+
 
 # The integer types of raw columns with their bounds: smaller before larger, unsigned before signed.
 _INTEGERS = (
@@ -131,7 +133,7 @@ class Rows:
     def __repr__(self) -> str:
         return f"<Rows {self.command.name} {self.direction} {self.variant_index}: {len(self)}>"
 
-    def to_numpy(self) -> dict[str, np.ndarray[Any, Any]]:
+    def to_numpy(self) -> Arrays:
         """Return the columns as arrays on the same memory, by name, ``offset`` included.
 
         An array has a dimension more for a field of several numbers, and two more for a list of
@@ -173,9 +175,10 @@ class Rows:
 class Columns(Sequence[Rows]):
     """The messages of a stream: the rows of each variant that occurred, in the order of the table.
 
-    ``counters`` accounts for every byte since the start of the stream. ``noise`` holds the spans of
-    bytes that belong to no frame. ``rejected`` holds the offsets of legal frames with a value that
-    the edition does not allow. These frames are in no rows; decoding one raises the error.
+    ``table`` is the edition's, and ``raw`` tells whether the columns hold raw values. ``counters``
+    accounts for every byte since the start of the stream. ``noise`` holds the spans of bytes that
+    belong to no frame. ``rejected`` holds the offsets of legal frames with a value that the edition
+    does not allow. These frames are in no rows; decoding one raises the error.
     """
 
     def __init__(
@@ -187,8 +190,8 @@ class Columns(Sequence[Rows]):
         counters: Counters,
         raw: bool = False,
     ) -> None:
-        self._table = table
-        self._raw = raw
+        self.table = table
+        self.raw = raw
         self._rows = rows
         self._rejected = rejected
         self._noise = noise
@@ -229,7 +232,7 @@ class Columns(Sequence[Rows]):
         Raises:
             UsageError: there is no command or variant of that name, or several variants occurred.
         """
-        variants = self._table.command(command).variants(direction)
+        variants = self.table.command(command).variants(direction)
         legal = range(len(variants))
         argument = f"variant of {command} {direction}"
         if not legal:
@@ -252,9 +255,9 @@ class Columns(Sequence[Rows]):
             return found[0]
         chosen = variant or 0
         empty = memoryview(b"").cast("Q")
-        codes: list[Any] = [cell_type(field, self._raw) for field in variants[chosen].fields]
+        codes: list[Any] = [cell_type(field, self.raw) for field in variants[chosen].fields]
         columns = [memoryview(b"").cast(code) for code in codes]
-        return Rows(self._table.command(command), direction, chosen, empty, columns)
+        return Rows(self.table.command(command), direction, chosen, empty, columns)
 
     def to_arrow(self, command: str, direction: Direction = "reply") -> Any:
         """Return the rows of one message as a ``pyarrow.Table``, in the order of the stream.
@@ -277,3 +280,40 @@ class Columns(Sequence[Rows]):
 
     def __repr__(self) -> str:
         return f"<Columns {list(self._rows)!r}>"
+
+
+def join_columns(buffers: Sequence[Buffer]) -> memoryview[Any]:
+    """Return a copy of columns of one type, one after another."""
+    views = [memoryview(buffer) for buffer in buffers]
+    filled = [view for view in views if view.nbytes]
+    if len(filled) < 2:
+        return filled[0] if filled else views[0]
+    code: Any = filled[0].format
+    joined = memoryview(b"".join([view.tobytes() for view in filled]))
+    _, *across = filled[0].shape or ()
+    return joined.cast(code, (sum(map(len, filled)), *across)) if across else joined.cast(code)
+
+
+def join_rows(found: Sequence[Rows]) -> Rows:
+    """Return a copy of rows of one variant, one after another."""
+    first = found[0]
+    return Rows(
+        first.command,
+        first.direction,
+        first.variant_index,
+        join_columns([rows._offset for rows in found]),
+        [join_columns(columns) for columns in zip(*[rows._columns for rows in found])],
+    )
+
+
+def stamp_arrays(
+    time: memoryview, direction: memoryview, names: Sequence[str], interface: memoryview
+) -> Arrays:
+    """Return as arrays when and where messages were captured; ``direction`` indexes ``names``."""
+    import numpy as np
+
+    return {
+        "time": np.asarray(time).view("datetime64[ns]"),
+        "direction": np.asarray(names)[np.asarray(direction)],
+        "interface": np.asarray(interface),
+    }

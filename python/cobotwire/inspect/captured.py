@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.capture.packet import Direction
+from cobotwire.capture.packet import Direction, Interface
 from cobotwire.capture.reader import CaptureReader
 from cobotwire.capture.streams import DirectionStream, cut
 from cobotwire.codec.interface import Codec, Frame, Listening
@@ -96,6 +96,18 @@ def diagnose_capture(
 def codec_of_interface(capture: CaptureReader, interface: int, default_edition: str) -> Codec:
     """Return the codec of the edition that the capture names, or else of the default edition."""
     return _codec(capture.interfaces[interface].edition, default_edition)
+
+
+def recorded_codecs(default_edition: str = editions.DEFAULT) -> Callable[[Interface], Codec]:
+    """Return a function from an interface to the codec of the edition that it names.
+
+    ::
+
+        columns = read_columns("arm.pcapng", recorded_codecs())
+
+    If an interface names no edition, the codec is that of the default edition.
+    """
+    return lambda interface: _codec(interface.edition, default_edition)
 
 
 @lru_cache

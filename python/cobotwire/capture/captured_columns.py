@@ -1,0 +1,302 @@
+"""Hold the messages of a capture as columns: as in a raw stream, with times and directions."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+from cobotwire.capture.packet import Direction, Interface
+from cobotwire.codec.columns import Columns, Rows, join_rows, stamp_arrays
+from cobotwire.codec.events import Counters
+from cobotwire.protocol import table as tables
+from cobotwire.protocol.errors import CaptureError, UsageError
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer
+
+    from cobotwire.codec.columns import Arrays
+
+# The directions of packets; a column of directions holds indexes into this.
+DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent")
+
+
+class Part(NamedTuple):
+    """Some adjacent rows that come from one stream, and their number."""
+
+    interface: int
+    direction: Direction
+    number: int
+
+
+class TimedSpans(NamedTuple):
+    """The spans of noise in one stream, as one-dimensional memoryviews.
+
+    ``time`` holds the time of the first byte of each span, in nanoseconds since 1970 (UTC);
+    ``offset`` its position in the stream; ``size`` its number of bytes.
+    """
+
+    time: memoryview
+    offset: memoryview
+    size: memoryview
+
+
+class TimedOffsets(NamedTuple):
+    """The positions of some bytes in one stream with their times, as memoryviews."""
+
+    time: memoryview
+    offset: memoryview
+
+
+class CapturedRows:
+    """All messages of one variant in a capture: a column for each field, and where and when.
+
+    Attributes:
+        command: the command of the messages.
+        message_direction: whether they are requests or replies.
+        variant_index: the index of their variant.
+        parts: the streams that the rows come from, one after another.
+    """
+
+    def __init__(self, rows: Rows, time: Buffer, parts: Sequence[Part]) -> None:
+        self._rows = rows
+        self._time = time
+        self.parts = tuple(parts)
+        self.command = rows.command
+        self.message_direction = rows.direction
+        self.variant_index = rows.variant_index
+
+    @property
+    def variant(self) -> tables.Variant:
+        """The variant of the messages, with its fields."""
+        return self._rows.variant
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the fields' columns."""
+        return self._rows.names
+
+    @property
+    def time(self) -> memoryview:
+        """The time of the first byte of each message: 64-bit nanoseconds since 1970 (UTC)."""
+        return memoryview(self._time)
+
+    @property
+    def offset(self) -> memoryview:
+        """The start of each message among the bytes of its interface and direction."""
+        return self._rows.offset
+
+    @property
+    def direction(self) -> memoryview:
+        """The direction of each message's packets: 8-bit indexes into ``DIRECTIONS``."""
+        parts = [
+            array("b", [DIRECTIONS.index(part.direction)]) * part.number for part in self.parts
+        ]
+        return memoryview(sum(parts, array("b")))
+
+    @property
+    def interface(self) -> memoryview:
+        """The index of each message's interface: 32-bit unsigned integers."""
+        parts = [array("I", [part.interface]) * part.number for part in self.parts]
+        return memoryview(sum(parts, array("I")))
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __getitem__(self, name: str) -> memoryview[Any]:
+        """Return the column of a field.
+
+        Raises:
+            UsageError: the variant has no such field.
+        """
+        return self._rows[name]
+
+    def __repr__(self) -> str:
+        command, direction = self.command.name, self.message_direction
+        return f"<CapturedRows {command} {direction} {self.variant_index}: {len(self)}>"
+
+    def to_numpy(self) -> Arrays:
+        """Return the columns as arrays by name: time, direction, interface, offset, the fields.
+
+        ``time`` is ``datetime64[ns]``; ``direction`` holds texts. Fields are as in
+        :meth:`cobotwire.codec.columns.Rows.to_numpy`.
+
+        Raises:
+            ImportError: NumPy (the extra ``numpy``) is not installed.
+        """
+        stamps = stamp_arrays(self.time, self.direction, DIRECTIONS, self.interface)
+        return {**stamps, **self._rows.to_numpy()}
+
+    def to_arrow(self) -> Any:
+        """Return the rows as a ``pyarrow.Table``.
+
+        The columns are ``time`` (``timestamp[ns]``, UTC), ``direction`` (dictionary),
+        ``interface``, ``offset`` and the fields, which are as in
+        :meth:`cobotwire.codec.columns.Rows.__arrow_c_stream__`.
+
+        Raises:
+            ImportError: pyarrow (the extra ``arrow``) is not installed.
+        """
+        from cobotwire.codec.arrow import stamped_table
+
+        return stamped_table(self._rows, self.time, self.direction, DIRECTIONS, self.interface)
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """Return the Arrow PyCapsule stream of :meth:`to_arrow`."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+
+@dataclass(frozen=True)
+class StreamColumns:
+    """The messages of one direction of one interface, which are one stream of bytes.
+
+    Attributes:
+        interface: an index into ``CapturedColumns.interfaces``.
+        direction: the direction of the packets.
+        columns: rows, rejected frames, noise and counters; the counters cover the stream from its
+            start.
+        times: for each of the rows in ``columns``, the times of the messages.
+        rejected_time: the times of the rejected frames.
+        noise_time: the times of the spans of noise.
+    """
+
+    interface: int
+    direction: Direction
+    columns: Columns
+    times: Sequence[Buffer]
+    rejected_time: Buffer
+    noise_time: Buffer
+
+    @property
+    def counters(self) -> Counters:
+        """The counts since the start of the stream."""
+        return self.columns.counters
+
+    @property
+    def noise(self) -> TimedSpans:
+        """The spans of noise with their times."""
+        return TimedSpans(memoryview(self.noise_time), *self.columns.noise)
+
+    @property
+    def rejected(self) -> TimedOffsets:
+        """The legal frames with a value that the edition does not allow, with their times."""
+        return TimedOffsets(memoryview(self.rejected_time), self.columns.rejected)
+
+    def __iter__(self) -> Iterator[CapturedRows]:
+        """Yield the rows of each variant that occurred, in the order of the table."""
+        for rows, time in zip(self.columns, self.times):
+            yield CapturedRows(rows, time, [Part(self.interface, self.direction, len(rows))])
+
+
+@dataclass(frozen=True)
+class CapturedColumns:
+    """The messages of a capture, or of a batch of it.
+
+    Attributes:
+        name: the name of the file, for messages.
+        application: the name of the program that wrote the capture.
+        interfaces: the interfaces that the file describes so far.
+        streams: one for each interface and direction that had packets so far, in the order of
+            their first packets.
+        size: the bytes of the file read so far, after decompression.
+        finished: whether the recorder was closed: nothing is missing at the end.
+        truncated_at: the offset of the incomplete block at the end of the file; None if the last
+            block is complete, or the end has not been read yet.
+        error: why the file cannot be read to its end; None if nothing is wrong so far. The columns
+            hold everything before that place.
+    """
+
+    name: str
+    application: str
+    interfaces: Sequence[Interface]
+    streams: Sequence[StreamColumns]
+    size: int
+    finished: bool
+    truncated_at: int | None
+    error: CaptureError | None
+
+    def __iter__(self) -> Iterator[CapturedRows]:
+        """Yield the rows of each stream and variant that occurred."""
+        for stream in self.streams:
+            yield from stream
+
+    def __len__(self) -> int:
+        """Return the number of messages."""
+        return sum(map(len, self))
+
+    def rows(
+        self,
+        command: str,
+        direction: tables.Direction = "reply",
+        variant: int | None = None,
+        *,
+        interface: int | None = None,
+        captured: Direction | None = None,
+    ) -> CapturedRows:
+        """Return the rows of one message; empty rows if it did not occur.
+
+        Rows of several streams are one after another, stream by stream, each in the order of its
+        stream.
+
+        Args:
+            command: the name of the command.
+            direction: whether to return its requests or its replies.
+            variant: the index of the variant; required only if several of them occurred.
+            interface: restricts the rows to one interface.
+            captured: restricts the rows to packets of that direction.
+
+        Raises:
+            UsageError: there is no such command, variant or interface; or several variants or
+                editions occurred.
+        """
+        if interface is not None and not 0 <= interface < len(self.interfaces):
+            raise UsageError("interface", interface, f"0..{len(self.interfaces) - 1}")
+        streams = [
+            stream
+            for stream in self.streams
+            if interface in (None, stream.interface) and captured in (None, stream.direction)
+        ]
+        if not streams:
+            raise self._no_stream(interface, captured)
+        found = [_rows_of(stream, command, direction, variant) for stream in streams]
+        filled = [rows for rows in found if len(rows)] or found[:1]
+        kinds = {(id(rows.command), rows.variant_index) for rows in filled}
+        if len(kinds) > 1:
+            raise self._several(command, direction, filled)
+        return filled[0] if len(filled) == 1 else _joined(filled)
+
+    def _no_stream(self, interface: int | None, captured: Direction | None) -> UsageError:
+        what = "packets" if captured is None else f"packets of direction {captured!r}"
+        where = self.name if interface is None else f"interface {interface} of {self.name}"
+        return UsageError("capture", self.name, message=f"{where} has no {what}")
+
+    def _several(
+        self, command: str, direction: tables.Direction, found: Sequence[CapturedRows]
+    ) -> UsageError:
+        if len({id(rows.command) for rows in found}) > 1:
+            where = sorted({rows.parts[0].interface for rows in found})
+            what = " and ".join(map(str, where))
+            message = f"interfaces {what} have different editions: choose one with interface="
+            return UsageError("interface", None, message=message)
+        occurred = " and ".join(str(index) for index in sorted({r.variant_index for r in found}))
+        message = f"variants {occurred} of the {command} {direction} occurred"
+        return UsageError("variant", None, message=f"{message}: choose one with variant=")
+
+
+def _rows_of(
+    stream: StreamColumns, command: str, direction: tables.Direction, variant: int | None
+) -> CapturedRows:
+    rows = stream.columns.rows(command, direction, variant)
+    part = Part(stream.interface, stream.direction, len(rows))
+    for found, time in zip(stream.columns, stream.times):
+        if found is rows:
+            return CapturedRows(rows, time, [part])
+    return CapturedRows(rows, memoryview(b"").cast("q"), [part])
+
+
+def _joined(found: Sequence[CapturedRows]) -> CapturedRows:
+    times = b"".join([cast("bytes", rows.time) for rows in found])
+    rows = join_rows([rows._rows for rows in found])
+    parts = [part for rows in found for part in rows.parts]
+    return CapturedRows(rows, memoryview(times).cast("q"), parts)

@@ -1,0 +1,129 @@
+"""Interpret the blocks of a pcapng file: sections, interfaces, packets and statistics."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple, NoReturn
+
+from cobotwire.capture import block_encoding as blocks
+from cobotwire.capture.block_parsing import Block, Fields
+from cobotwire.capture.packet import Direction, Interface, Packet, with_comment
+from cobotwire.protocol.errors import CaptureError
+
+DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent", "unknown")
+MICROSECONDS = 6
+# Files of other applications hold raw chunks; ours hold frames and noise.
+OURS = "cobotwire"
+
+
+class _Format(NamedTuple):
+    """How to read the packets of one interface."""
+
+    number: int
+    link_type: int
+    resolution: int
+    offset_seconds: int
+
+    def nanoseconds(self, high: int, low: int) -> int:
+        """Return a time stamp in nanoseconds; finer fractions are cut off."""
+        exponent = self.resolution & 0x7F
+        units: int = 2**exponent if self.resolution & 0x80 else 10**exponent
+        return (high << 32 | low) * 1_000_000_000 // units + self.offset_seconds * 1_000_000_000
+
+
+class PacketParser:
+    """Turns the blocks of a file into packets.
+
+    Attributes:
+        name: the name of the file, for messages.
+        interfaces: the interfaces that the blocks so far describe.
+        application: the name of the program that wrote the capture.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.interfaces: list[Interface] = []
+        self.application = ""
+        self._formats: list[_Format] = []
+        self._finished: set[int] = set()
+        self._endian: Literal["little", "big"] = "little"
+
+    @property
+    def finished(self) -> bool:
+        """Whether each interface has its statistics, which the recorder writes at the end."""
+        return len(self._finished) == len(self.interfaces) > 0
+
+    def take(self, block: Block) -> Packet | None:
+        """Interpret the next block; return its packet if it is one.
+
+        Raises:
+            CaptureError: the block is damaged, or it belongs to a recording of another kind.
+        """
+        fields = Fields(block, self.name)
+        if block.kind == blocks.PACKET:
+            return self._packet(block, fields)
+        if block.kind == blocks.SECTION:
+            self._section(block, fields)
+        elif block.kind == blocks.INTERFACE:
+            self._interface(block, fields)
+        elif block.kind == blocks.STATISTICS:
+            self._finished.add(self._format(block, fields).number)
+        elif block.kind in (blocks.SIMPLE_PACKET, blocks.OBSOLETE_PACKET):
+            self._reject(block, "its packets have neither a time nor a direction")
+        # Other blocks (names, secrets, private ones) are skipped.
+        return None
+
+    def _section(self, block: Block, fields: Fields) -> None:
+        _, major, _, _ = fields.numbers("IHHq")
+        if major != blocks.VERSION[0]:
+            self._reject(block, f"it has pcapng version {major}; supported: {blocks.VERSION[0]}")
+        # Interface indexes start from 0 in each section.
+        self._formats = []
+        self._endian = "little" if block.order == "<" else "big"
+        options = dict(fields.options())
+        self.application = _text(options.get(blocks.SECTION_APPLICATION, b""))
+
+    def _interface(self, block: Block, fields: Fields) -> None:
+        link_type, _, _ = fields.numbers("HHI")
+        options = dict(fields.options())
+        for code in (blocks.INTERFACE_SPEED, blocks.INTERFACE_OFFSET):
+            if len(options.get(code, b"")) > blocks.NUMBER_SIZE:
+                self._reject(block, "damaged: a number of an interface is too long")
+        description = _text(options.get(blocks.INTERFACE_DESCRIPTION, b""))
+        key, _, edition = description.partition(" ")
+        speed = int.from_bytes(options.get(blocks.INTERFACE_SPEED, b""), self._endian)
+        name = _text(options.get(blocks.INTERFACE_NAME, b""))
+        self.interfaces.append(Interface(name, edition if key == "edition" else "", speed))
+        resolution = options.get(blocks.INTERFACE_RESOLUTION) or bytes([MICROSECONDS])
+        offset = options.get(blocks.INTERFACE_OFFSET, b"")
+        seconds = int.from_bytes(offset, self._endian, signed=True)
+        self._formats.append(_Format(len(self.interfaces) - 1, link_type, resolution[0], seconds))
+
+    def _packet(self, block: Block, fields: Fields) -> Packet:
+        format = self._format(block, fields)
+        if format.link_type not in blocks.USER_LINK_TYPES:
+            self._reject(block, f"link type {format.link_type} is not that of a serial recording")
+        high, low, size, _ = fields.numbers("IIII")
+        data = fields.data(size)
+        options = dict(fields.options())
+        flags = int.from_bytes(options.get(blocks.PACKET_FLAGS, b""), self._endian)
+        packet = Packet(
+            format.nanoseconds(high, low),
+            DIRECTIONS[flags & 3],
+            data,
+            "frame" if self.application.startswith(OURS) else "bytes",
+            interface=format.number,
+        )
+        return with_comment(packet, _text(options.get(blocks.COMMENT, b"")))
+
+    def _format(self, block: Block, fields: Fields) -> _Format:
+        (index,) = fields.numbers("I")
+        if index >= len(self._formats):
+            self._reject(block, f"damaged: the file does not describe interface {index}")
+        return self._formats[index]
+
+    def _reject(self, block: Block, why: str) -> NoReturn:
+        raise CaptureError(self.name, block.offset, why)
+
+
+def _text(value: bytes) -> str:
+    return value.rstrip(b"\0").decode("utf-8", "replace")
