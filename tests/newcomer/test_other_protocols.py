@@ -32,7 +32,7 @@ import sys
 import {name} as p
 from cobotwire.simulator import PtyServer, SimulatedArm
 server = PtyServer(SimulatedArm(p.TABLE))
-with server, p.CLIENT(server.url, record="a.pcapng") as device:
+with server, p.CLIENT(server.url, timeout=10, record="a.pcapng") as device:
     print(device.codec)
 {calls}
 print("cobotwire._native" in sys.modules)
