@@ -100,9 +100,14 @@ class NativeCodec:
         """
 
     def column_reader(
-        self, listening: Listening = "both", *, raw: bool = False
+        self, listening: Listening = "both", *, raw: bool = False, offset: int = 0
     ) -> NativeColumnReader:
-        """Return a reader for a stream that comes in pieces, or is larger than memory."""
+        """Return a reader for a stream that comes in pieces, or is larger than memory.
+
+        Raises:
+            UsageError: ``offset``, the place of the first byte in the stream, is negative or beyond
+                63 bits.
+        """
 
 @final
 class NativeFramer:

@@ -174,6 +174,15 @@ class Codec(Protocol):
         """
         ...
 
-    def column_reader(self, listening: Listening = "both", *, raw: bool = False) -> ColumnReader:
-        """Return a reader for a stream that comes in pieces, or is larger than memory."""
+    def column_reader(
+        self, listening: Listening = "both", *, raw: bool = False, offset: int = 0
+    ) -> ColumnReader:
+        """Return a reader for a stream that comes in pieces, or is larger than memory.
+
+        ``offset`` is the place of the first byte in the stream: the offsets of rows, rejected
+        frames and noise count from there. The counters count only what is fed.
+
+        Raises:
+            UsageError: ``offset`` is negative or beyond 63 bits.
+        """
         ...

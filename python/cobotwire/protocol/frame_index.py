@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from cobotwire.protocol.table import Command, Direction, Table, Variant
@@ -54,3 +55,9 @@ class FrameIndex:
 
     def _key(self, id: int, length: int) -> tuple[int | None, int]:
         return (id if self._has_id else None), length
+
+
+def longest_frame(table: Table, directions: Iterable[Direction] = ("request", "reply")) -> int:
+    """Return the size of the longest frame of these directions; 0 if they have no messages."""
+    lengths = [length for each in directions for length in FrameIndex(table, each).lengths]
+    return table.frame.overhead + max(lengths) if lengths else 0

@@ -56,6 +56,11 @@ def reject_shared(what: str) -> UsageError:
     return UsageError(what.replace(" ", "_"), message=message)
 
 
+def reject_offset(given: Any) -> UsageError:
+    """Return the error for an offset at which no stretch of a stream can begin."""
+    return UsageError("offset", given, "0 to 2**63 - 1")
+
+
 def reject_value(
     field: Field, case: Case, element: int, fault: ValueFault, value: Any
 ) -> UsageError:

@@ -20,6 +20,14 @@ pub(crate) struct Crossing {
 }
 
 impl Seam {
+    /// Return a seam before the first byte, which is at `offset` in the stream.
+    pub(crate) fn at(offset: u64) -> Self {
+        Self {
+            kept: Vec::new(),
+            offset,
+        }
+    }
+
     /// Return the number of bytes that wait.
     pub(crate) fn pending(&self) -> usize {
         self.kept.len()

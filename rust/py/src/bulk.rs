@@ -111,9 +111,10 @@ pub struct NativeColumnReader {
 }
 
 impl NativeColumnReader {
-    pub fn new(edition: Arc<Edition>, listening: Listening, raw: bool) -> Self {
+    /// Return a reader; the first byte that it takes is at `offset` of the stream.
+    pub fn new(edition: Arc<Edition>, listening: Listening, raw: bool, offset: u64) -> Self {
         let numbers = if raw { Numbers::Raw } else { Numbers::Physical };
-        let core = Self::reader(&edition, listening, numbers, None);
+        let core = Self::reader(&edition, listening, numbers, None).starting_at(offset);
         Self {
             core: Exclusive::new("column reader", core),
             edition,

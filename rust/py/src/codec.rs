@@ -173,23 +173,33 @@ impl NativeCodec {
         raw: bool,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let reader = NativeColumnReader::new(Arc::clone(&self.edition), listen(listening)?, raw);
+        let reader = NativeColumnReader::new(Arc::clone(&self.edition), listen(listening)?, raw, 0);
         reader.all_of(data, out)
     }
 
     /// Return a reader for a stream that comes in chunks, or is larger than memory.
     #[pyo3(
-        signature = (listening = None, *, raw = false),
-        text_signature = "($self, listening='both', *, raw=False)"
+        signature = (listening = None, *, raw = false, offset = None),
+        text_signature = "($self, listening='both', *, raw=False, offset=0)"
     )]
     fn column_reader(
         &self,
         listening: Option<&Bound<'_, PyAny>>,
         raw: bool,
+        offset: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<NativeColumnReader> {
         let edition = Arc::clone(&self.edition);
-        Ok(NativeColumnReader::new(edition, listen(listening)?, raw))
+        let listening = listen(listening)?;
+        let offset = offset.map_or(Ok(0), start)?;
+        Ok(NativeColumnReader::new(edition, listening, raw, offset))
     }
+}
+
+/// Return an offset; the largest one leaves room for a stream of any length after it.
+fn start(offset: &Bound<'_, PyAny>) -> PyResult<u64> {
+    let start = offset.extract::<i64>().ok();
+    let start = start.and_then(|start| u64::try_from(start).ok());
+    start.ok_or_else(|| errors::bad_offset(offset))
 }
 
 impl NativeCodec {

@@ -52,6 +52,12 @@ pub fn shared(py: Python<'_>, name: &str) -> PyErr {
     raised(Names::get(py).and_then(|names| names.reject_shared.bind(py).call1((name,))))
 }
 
+/// Return the error of an offset at which no stream can start.
+pub fn bad_offset(given: &Bound<'_, PyAny>) -> PyErr {
+    let py = given.py();
+    raised(Names::get(py).and_then(|names| names.reject_offset.bind(py).call1((given,))))
+}
+
 /// Return the error of an address that the frame format does not have.
 pub fn bad_address(given: &Bound<'_, PyAny>, addresses: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();

@@ -22,6 +22,7 @@ pub struct Names {
     pub reject_raw: Py<PyAny>,
     pub reject_frame: Py<PyAny>,
     pub reject_shared: Py<PyAny>,
+    pub reject_offset: Py<PyAny>,
     /// `operator.index`
     pub index: Py<PyAny>,
     pub float: Py<PyAny>,
@@ -76,6 +77,7 @@ impl Names {
             reject_raw: from("cobotwire.protocol.rejection", "reject_raw")?,
             reject_frame: from("cobotwire.protocol.rejection", "reject_frame")?,
             reject_shared: from("cobotwire.protocol.rejection", "reject_shared")?,
+            reject_offset: from("cobotwire.protocol.rejection", "reject_offset")?,
             index: from("operator", "index")?,
             float: from("builtins", "float")?,
             bool: py.get_type::<PyBool>().into_any().unbind(),

@@ -92,10 +92,12 @@ class ReferenceCodec:
         return ReferenceColumnReader(self.table, framer, raw).all_of(data)
 
     def column_reader(
-        self, listening: Listening = "both", *, raw: bool = False
+        self, listening: Listening = "both", *, raw: bool = False, offset: int = 0
     ) -> ReferenceColumnReader:
         """Return a reader for a stream that comes in pieces."""
-        return ReferenceColumnReader(self.table, self.framer(listening), raw)
+        framer = self.framer(listening)
+        framer.start_at(offset)
+        return ReferenceColumnReader(self.table, framer, raw)
 
     def _judge(self, direction: Direction) -> Judge:
         if direction not in ("request", "reply"):

@@ -7,11 +7,12 @@ skips the bytes that a false header claimed. A candidate that more bytes could c
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, SupportsIndex
 
 from cobotwire.codec.events import Counters, Event, Frame, Noise, NoiseReason, Read
 from cobotwire.codec.interface import Data
 from cobotwire.codec.reference.judge import Judge
+from cobotwire.protocol.rejection import reject_offset
 
 
 class _State(NamedTuple):
@@ -49,6 +50,16 @@ class ReferenceFramer:
         """The counts since the framer was created."""
         counters = self._state.counters
         return counters._replace(frames=dict(counters.frames), noise=dict(counters.noise))
+
+    def start_at(self, offset: int) -> None:
+        """Count offsets from ``offset`` on; nothing has been fed yet.
+
+        Raises:
+            UsageError: it is negative or beyond 63 bits.
+        """
+        if not isinstance(offset, SupportsIndex) or not 0 <= offset.__index__() < 2**63:
+            raise reject_offset(offset)
+        self._state = self._state._replace(offset=offset.__index__())
 
     def feed(self, data: Data) -> list[Event]:
         """Take bytes; return the events that are certain by now."""

@@ -75,6 +75,13 @@ impl ColumnReader {
         }
     }
 
+    /// Return the reader of a stretch that begins at `offset` of its stream.
+    #[must_use]
+    pub fn starting_at(mut self, offset: u64) -> Self {
+        self.stream.start_at(offset);
+        self
+    }
+
     /// Reserve memory for the values of `data`, estimated from parts of it.
     pub fn expect(&mut self, data: &[u8], advise: Advise) {
         let Sorter { plans, rows, .. } = &mut self.sorter;

@@ -53,6 +53,11 @@ impl Stream {
         }
     }
 
+    /// Count offsets from `offset` on. Nothing has been fed yet.
+    pub(crate) fn start_at(&mut self, offset: u64) {
+        self.seam = Seam::at(offset);
+    }
+
     pub(crate) fn pending(&self) -> usize {
         self.seam.pending()
     }

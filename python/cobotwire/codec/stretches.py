@@ -1,0 +1,173 @@
+"""Divide a stream into stretches that can be decoded on their own, and decode one of them.
+
+A scan has no memory: what it finds from a position on depends only on the bytes from there on. So
+two scans that ever stand at the same position agree from there on. A frame that begins before a
+position reaches at most the longest frame beyond it, so the scan of the whole stream enters the
+bytes after any cut at one of a few positions. Where the scans from all of these have met, the scan
+of the whole stream stands too. A stretch goes from the meeting point of one cut to that of the next
+one. Each is found from the bytes after its cut alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from heapq import heapify, heappop, heappush
+from typing import NamedTuple, Protocol
+
+from cobotwire.codec.columns import Columns
+from cobotwire.codec.events import Counters, Frame, NoiseReason
+from cobotwire.codec.interface import Codec, Listening
+from cobotwire.protocol.frame_index import longest_frame
+from cobotwire.protocol.table import Direction
+
+# Scans that have not met within this many bytes probably never do: the bytes were made so. Then the
+# cut does not count, and the stretch before it goes on.
+PATIENCE = 1 << 16
+# Bytes that are read and decoded at once.
+CHUNK = 1 << 23
+
+
+class Stream(Protocol):
+    """The bytes of a stream, which any part of a program may read at any place."""
+
+    @property
+    def size(self) -> int:
+        """The number of bytes."""
+        ...
+
+    def read(self, offset: int, size: int) -> bytes:
+        """Return ``size`` bytes from ``offset`` on, or as many as there are."""
+        ...
+
+
+class Stretch(NamedTuple):
+    """The bytes from ``start`` to before ``end``, which the scan of the stream visits both."""
+
+    start: int
+    end: int
+
+    def __bool__(self) -> bool:
+        return self.start < self.end
+
+
+class Divider:
+    """Divides a stream at cuts; a cut may be at any byte."""
+
+    def __init__(
+        self,
+        codec: Codec,
+        listening: Listening,
+        stream: Stream,
+        cuts: Sequence[int],
+        patience: int = PATIENCE,
+    ) -> None:
+        """Take the cuts in their order; piece ``k`` lies between cut ``k - 1`` and cut ``k``."""
+        self._codec = codec
+        self._listening: Listening = listening
+        self._stream = stream
+        self._cuts = cuts
+        self._patience = patience
+        self._reach = _reach(codec, listening)
+
+    def stretch(self, piece: int) -> Stretch:
+        """Return the stretch that belongs to a piece, counted from 0; it may be empty.
+
+        The stretches of all pieces, one after another, are the stream. If the scans after a cut do
+        not meet within the patience, the piece after it has an empty stretch.
+        """
+        cuts = self._cuts
+        start = self.meeting_point(cuts[piece - 1]) if piece else 0
+        if start is None:
+            return Stretch(0, 0)
+        later = (self.meeting_point(cut) for cut in cuts[piece:])
+        end = next((point for point in later if point is not None), self._stream.size)
+        return Stretch(start, end)
+
+    def meeting_point(self, cut: int) -> int | None:
+        """Return the first position from ``cut`` on at which all scans from before it stand.
+
+        None: they do not meet within the patience.
+        """
+        reach = self._reach
+        window = self._stream.read(cut, self._patience + 2 * reach)
+        # A frame that begins before the cut ends at one of these, at most.
+        places = list(range(min(reach, len(window) + 1)))
+        heapify(places)
+        while True:
+            place = heappop(places)
+            while places and places[0] == place:
+                heappop(places)
+            if not places:
+                return cut + place
+            if place > self._patience:
+                return None
+            heappush(places, place + self._step(window[place : place + reach]))
+
+    def _step(self, candidate: bytes) -> int:
+        """Return the size of the frame at the start of ``candidate``; 1 if there is none."""
+        framer = self._codec.framer(self._listening)
+        first = [*framer.feed(candidate), *framer.flush()][0]
+        return len(first.data) if isinstance(first, Frame) else 1
+
+
+def decode_stretch(
+    codec: Codec,
+    listening: Listening,
+    stream: Stream,
+    stretch: Stretch,
+    *,
+    raw: bool = False,
+    chunk: int = CHUNK,
+) -> Iterator[Columns]:
+    """Yield the columns of a stretch, chunk by chunk, with the offsets that the stream has.
+
+    The counters of the last columns are those of the stretch.
+    """
+    start, end = stretch
+    reader = codec.column_reader(listening, raw=raw, offset=start)
+    counters = Counters(0, {}, {}, 0)
+    for at in range(start, end, chunk):
+        columns = reader.feed(stream.read(at, min(chunk, end - at)))
+        counters = columns.counters
+        yield columns
+    waiting = reader.pending
+    last = reader.flush()
+    if waiting and end < stream.size:
+        # The scan of the stream stands at the end, so no frame crosses it, and the flush was right
+        # to refute what waited. But the reasons lie in the bytes that follow.
+        ahead = stream.read(end - waiting, waiting + _reach(codec, listening))
+        noise = _with_reasons(counters, _noise_of(codec, listening, ahead, waiting))
+        last.counters = last.counters._replace(noise=noise)
+    yield last
+
+
+def _noise_of(
+    codec: Codec, listening: Listening, data: bytes, end: int
+) -> Iterator[tuple[NoiseReason, int]]:
+    """Yield the reasons of the noise in ``data`` before ``end``, with the number of bytes."""
+    framer = codec.framer(listening)
+    for event in [*framer.feed(data), *framer.flush()]:
+        if not isinstance(event, Frame) and event.offset < end:
+            yield event.reason, min(len(event.data), end - event.offset)
+
+
+def _with_reasons(
+    counters: Counters, more: Iterator[tuple[NoiseReason, int]]
+) -> dict[NoiseReason, int]:
+    noise = dict(counters.noise)
+    for reason, size in more:
+        noise[reason] = noise.get(reason, 0) + size
+    return noise
+
+
+def _reach(codec: Codec, listening: Listening) -> int:
+    """Return the number of bytes that decide about a candidate, at most."""
+    directions: tuple[Direction, ...] = (
+        ("request", "reply") if listening == "both" else (listening,)
+    )
+    return max(longest_frame(codec.table, directions), codec.table.frame.head_size)
+
+
+def even_cuts(size: int, piece: int) -> range:
+    """Return the cuts that divide ``size`` bytes into pieces of ``piece`` bytes."""
+    return range(piece, size, piece)

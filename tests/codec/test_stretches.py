@@ -1,0 +1,226 @@
+"""Stretches of a stream, decoded on their own, hold exactly what one scan finds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import random_tables
+import strategies
+from cobotwire import codec as codecs
+from cobotwire.codec.columns import Columns
+from cobotwire.codec.interface import Codec, Listening
+from cobotwire.codec.stretches import PATIENCE, Divider, decode_stretch, even_cuts
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Table
+from strategies import TABLES, codec_of
+
+LISTENING = st.sampled_from(["request", "reply", "both"])
+NAMES: list[codecs.CodecName] = ["reference", "native"]
+EACH_CODEC = pytest.mark.parametrize("name", NAMES)
+# Each example decodes several pieces; `make fuzz` sets how many it has time for.
+SOME = settings(max_examples=max(1, (settings.default or settings()).max_examples // 3))
+FLAG = bytes.fromhex("FE FE 03 12 01 FA")
+# Frames of 17 bytes that hold a frame of 6 each: a scan that starts inside one finds others.
+OUTER = bytes.fromhex("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 12 01 FA FA")
+
+
+class Bytes(NamedTuple):
+    """A stream in memory."""
+
+    data: bytes
+
+    @property
+    def size(self) -> int:
+        return len(self.data)
+
+    def read(self, offset: int, size: int) -> bytes:
+        return self.data[offset : offset + size]
+
+
+class Found(NamedTuple):
+    """Everything that columns hold, as plain values."""
+
+    rows: dict[Any, list[str]]
+    rejected: list[int]
+    noise: list[tuple[int, int]]
+    bytes: int
+    frames: dict[int, int]
+    reasons: dict[str, int]
+
+
+def found(parts: Sequence[Columns], ends: Sequence[Columns]) -> Found:
+    """Join columns in their order; ``ends`` have the counters of the stretches."""
+    rows: dict[Any, list[str]] = {}
+    rejected: list[int] = []
+    noise: list[tuple[int, int]] = []
+    frames: dict[int, int] = {}
+    reasons: dict[str, int] = {}
+    for part in parts:
+        for each in part:
+            key = each.command.name, each.direction, each.variant_index
+            columns = [each[name].tolist() for name in each.names]
+            # Written out, because a float may be no number, which does not equal itself.
+            rows.setdefault(key, []).extend(map(repr, zip(each.offset.tolist(), *columns)))
+        rejected += part.rejected.tolist()
+        for at, size in zip(part.noise.offset.tolist(), part.noise.size.tolist()):
+            if noise and sum(noise[-1]) == at:
+                noise[-1] = noise[-1][0], noise[-1][1] + size
+            else:
+                noise.append((at, size))
+    for end in ends:
+        for id, count in end.counters.frames.items():
+            frames[id] = frames.get(id, 0) + count
+        for reason, size in end.counters.noise.items():
+            reasons[reason] = reasons.get(reason, 0) + size
+    total = sum(end.counters.bytes for end in ends)
+    return Found(rows, rejected, noise, total, frames, reasons)
+
+
+def whole(codec: Codec, listening: Listening, data: bytes, raw: bool = False) -> Found:
+    columns = codec.decode_columns(data, listening, raw=raw)
+    return found([columns], [columns])
+
+
+def divided(
+    codec: Codec,
+    listening: Listening,
+    data: bytes,
+    cuts: Sequence[int],
+    patience: int = PATIENCE,
+    chunk: int = 1 << 20,
+    raw: bool = False,
+) -> Found:
+    """Decode every piece on its own."""
+    stream = Bytes(data)
+    parts: list[Columns] = []
+    ends: list[Columns] = []
+    for piece in range(len(cuts) + 1):
+        # Each worker has a divider of its own.
+        stretch = Divider(codec, listening, stream, cuts, patience).stretch(piece)
+        decoded = list(decode_stretch(codec, listening, stream, stretch, raw=raw, chunk=chunk))
+        parts += decoded
+        ends.append(decoded[-1])
+    return found(parts, ends)
+
+
+@st.composite
+def cuts(draw: st.DrawFn, size: int) -> list[int]:
+    """Draw any cuts, also several at one byte, or even ones."""
+    if draw(st.booleans()):
+        return list(even_cuts(size, draw(st.integers(1 + size // 12, size + 1))))
+    return sorted(draw(st.lists(st.integers(0, size), max_size=6)))
+
+
+def adversarial(draw: st.DrawFn) -> bytes:
+    """Draw chains of frames within frames, of which each may be read in two ways."""
+    step = draw(st.sampled_from([OUTER, OUTER[:4] + FLAG + OUTER[:4] + FLAG[:3], OUTER[4:], FLAG]))
+    start = draw(st.integers(0, len(step)))
+    return step[start:] + step * draw(st.integers(0, 40)) + step[: draw(st.integers(0, 17))]
+
+
+@st.composite
+def streams(draw: st.DrawFn, table: Table) -> bytes:
+    """Draw the bytes of a bad line, with stretches that were made to mislead among them."""
+    parts = [draw(strategies.streams(table))]
+    if draw(st.booleans()):
+        parts += [adversarial(draw), draw(strategies.streams(table))]
+    return b"".join(parts)
+
+
+@EACH_CODEC
+@pytest.mark.parametrize("edition", TABLES)
+@SOME
+@given(data=st.data(), listening=LISTENING, raw=st.booleans())
+def test_pieces_cut_at_any_bytes_hold_what_one_scan_finds(
+    name: codecs.CodecName, edition: str, data: st.DataObject, listening: Listening, raw: bool
+) -> None:
+    codec = codec_of(edition, name)
+    stream = data.draw(streams(codec.table))
+    pieces = divided(
+        codec,
+        listening,
+        stream,
+        data.draw(cuts(len(stream))),
+        patience=data.draw(st.sampled_from([0, 5, 40, PATIENCE])),
+        chunk=data.draw(st.sampled_from([1, 7, 64, 1 << 20])),
+        raw=raw,
+    )
+    assert pieces == whole(codec, listening, stream, raw)
+
+
+@SOME
+@given(data=st.data(), listening=LISTENING)
+def test_pieces_of_random_tables_hold_what_one_scan_finds(
+    data: st.DataObject, listening: Listening
+) -> None:
+    """With other headers, layouts, checks and ids, and replies without an id."""
+    table = data.draw(random_tables.tables())
+    stream = data.draw(random_tables.streams(table))
+    places = data.draw(cuts(len(stream)))
+    patience = data.draw(st.sampled_from([3, PATIENCE]))
+    for name in NAMES:
+        codec = codecs.load(table, name)
+        pieces = divided(codec, listening, stream, places, patience)
+        assert pieces == whole(codec, listening, stream)
+
+
+@EACH_CODEC
+def test_chain_of_frames_within_frames_is_read_from_its_start(name: codecs.CodecName) -> None:
+    """Scans from inside a chain never meet its true scan, so the pieces belong to the first."""
+    # A frame at 0, 17, 34 and so on, and one across the end of each: two readings that never meet.
+    link = bytes.fromhex("FE FE 0E 20 00 00 00 FA FE FE 0E 20 00 00 00 00 FA")
+    stream = b"\0" + link * 400 + b"\0\0" + FLAG
+    codec = codec_of("mycobot", name)
+    places = list(even_cuts(len(stream), 1000))
+    divider = Divider(codec, "reply", Bytes(stream), places, patience=200)
+    assert [bool(divider.stretch(piece)) for piece in range(7)] == [True] + [False] * 6
+    assert divided(codec, "reply", stream, places, patience=200) == whole(codec, "reply", stream)
+
+
+@EACH_CODEC
+def test_scans_of_a_clean_line_meet_within_two_frames(name: codecs.CodecName) -> None:
+    codec = codec_of("mycobot280", name)
+    stream = Bytes((OUTER[:4] + bytes(12) + b"\xfa") * 100)
+    divider = Divider(codec, "reply", stream, [])
+    for cut in range(1, 200):
+        point = divider.meeting_point(cut)
+        assert point is not None
+        assert point % 17 == 0
+        assert cut <= point < cut + 17 + 29
+
+
+def test_stretches_follow_one_another_without_a_gap() -> None:
+    codec = codec_of("mycobot280", "native")
+    stream = Bytes((FLAG + b"\0\xfe" + OUTER) * 300)
+    places = [100, 100, 101, 3000, 7000]
+    divider = Divider(codec, "both", stream, places)
+    stretches = [divider.stretch(piece) for piece in range(6)]
+    assert stretches[0].start == 0
+    assert stretches[-1].end == stream.size
+    assert all(left.end == right.start for left, right in pairwise(stretches))
+
+
+@EACH_CODEC
+def test_offset_of_a_reader_is_where_its_stream_begins(name: codecs.CodecName) -> None:
+    codec = codec_of("mycobot280", name)
+    reader = codec.column_reader("reply", offset=1 << 40)
+    parts = [reader.feed(FLAG + b"\0" + FLAG[:3]), reader.feed(FLAG[3:] + FLAG[:4] + b"\7\xfa")]
+    parts.append(reader.flush())
+    offsets = [at - (1 << 40) for part in parts for rows in part for at in rows.offset.tolist()]
+    assert offsets == [0, 7]
+    assert [at - (1 << 40) for part in parts for at in part.rejected.tolist()] == [13]
+    assert [at - (1 << 40) for part in parts for at in part.noise.offset.tolist()] == [6]
+    assert parts[-1].counters.bytes == 19
+
+
+@EACH_CODEC
+@pytest.mark.parametrize("wrong", [-1, 1 << 63, 1.5, "0"])
+def test_offset_that_no_stream_has_is_rejected(name: codecs.CodecName, wrong: Any) -> None:
+    with pytest.raises(UsageError, match="allowed: 0 to"):
+        codec_of("mycobot280", name).column_reader("reply", offset=wrong)
