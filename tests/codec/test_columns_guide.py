@@ -24,7 +24,7 @@ def test_examples_of_the_columns_guide_run(tmp_path: Path, monkeypatch: pytest.M
     names |= {"pyarrow": pyarrow, "pandas": pandas}
     text = (ROOT / "docs/columns.md").read_text()
     examples = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    assert len(examples) == 3
+    assert len(examples) == 4
     for example in examples:
         exec(compile(example, "docs/columns.md", "exec"), names)
     assert names["angles"].to_numpy()["angles"].shape == (3, 6)

@@ -15,11 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import arrow_values
 import random_values
 import vectors
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
-from cobotwire.protocol.errors import CobotwireError, UsageError
+from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.table import Direction
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.emit import Target, write
@@ -62,13 +63,6 @@ def frames(draw: st.DrawFn, edition: Edition) -> bytes:
     return build_frame(edition.frame, command, direction, counted)
 
 
-def plain(value: Any) -> Any:
-    """Return a decoded value as Arrow returns it: numbers are floats, and tuples lists."""
-    if isinstance(value, tuple):
-        return [plain(each) for each in value]
-    return value if isinstance(value, str | bytes) else float(value)
-
-
 @settings(max_examples=40)
 @given(data=st.data())
 def test_arrow_holds_the_decoded_values_in_the_order_of_the_stream(
@@ -82,11 +76,10 @@ def test_arrow_holds_the_decoded_values_in_the_order_of_the_stream(
             message = sensor.decode("reply", frame)
         except CobotwireError:
             continue
-        values = [plain(value) for value in message.values]
-        expected.setdefault(message.command.name, []).append(values)
+        expected.setdefault(message.command.name, []).append(arrow_values.row(message))
     for name, rows in expected.items():
         table = columns.to_arrow(name)
-        assert [list(row.values())[1:] for row in table.to_pylist()] == rows
+        assert table.drop_columns("offset").to_pylist() == rows
         table.validate(full=True)
 
 
@@ -94,10 +87,10 @@ def test_types_are_those_of_the_fields_and_stay_without_rows(sensor: Codec) -> N
     right = {
         ("get_name", "label"): pa.utf8(),
         ("get_name", "serial"): pa.binary(),
-        ("get_satellites", "satellites"): pa.list_(pa.list_(pa.float64(), 2)),
+        ("get_satellites", "satellites"): pa.list_(pa.list_(pa.int64(), 2)),
         ("get_satellites", "words"): pa.list_(pa.utf8()),
         ("get_joints", "joints"): pa.list_(pa.list_(pa.float64(), 5), 4),
-        ("get_status", "status"): pa.list_(pa.float64(), 4),
+        ("get_status", "status"): pa.list_(pa.int64(), 4),
     }
     columns = sensor.decode_columns(b"")
     for (command, field), type in right.items():
@@ -135,10 +128,11 @@ def test_pandas_and_polars_have_texts_bytes_and_lists(sensor: Codec, edition: Ed
     assert pl.DataFrame(columns.to_arrow("get_satellites"))["words"].to_list() == [["GPS", "é"]]
 
 
-def test_variants_with_other_fields_are_not_put_together(codec: Codec) -> None:
+def test_field_that_a_variant_lacks_is_null(codec: Codec) -> None:
     with_echo, without = "FE FE 04 50 05 01 FA", "FE FE 03 50 01 FA"
-    stream = bytes.fromhex(with_echo + without)
-    columns = codec.decode_columns(stream, "reply")
-    assert len(columns) == 2
-    with pytest.raises(UsageError, match="variants 0 and 1 of the is_servo_enable reply"):
-        columns.to_arrow(columns[0].command.name)
+    columns = codec.decode_columns(bytes.fromhex(without + with_echo + without), "reply")
+    table = columns.to_arrow("is_servo_enable")
+    assert table["joint"].to_pylist() == [None, 5, None]
+    assert table["enabled"].to_pylist() == [True, True, True]
+    assert table["offset"].to_pylist() == [0, 6, 13]
+    assert table.schema == codec.decode_columns(b"").to_arrow("is_servo_enable").schema

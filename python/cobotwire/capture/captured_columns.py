@@ -128,19 +128,21 @@ class CapturedRows:
         stamps = stamp_arrays(self.time, self.direction, DIRECTIONS, self.interface)
         return {**stamps, **self._rows.to_numpy()}
 
-    def to_arrow(self) -> Any:
+    def to_arrow(self, *, wide: bool = False) -> Any:
         """Return the rows as a ``pyarrow.Table``.
 
         The columns are ``time`` (``timestamp[ns]``, UTC), ``direction`` (dictionary),
         ``interface``, ``offset`` and the fields, which are as in
-        :meth:`cobotwire.codec.columns.Rows.__arrow_c_stream__`.
+        :meth:`cobotwire.codec.columns.Rows.to_arrow`.
 
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.
         """
         from cobotwire.codec.arrow import stamped_table
 
-        return stamped_table(self._rows, self.time, self.direction, DIRECTIONS, self.interface)
+        return stamped_table(
+            self._rows, self.time, self.direction, DIRECTIONS, self.interface, wide
+        )
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """Return the Arrow PyCapsule stream of :meth:`to_arrow`."""

@@ -1,130 +1,142 @@
-"""Make an Arrow table of columns, on the same memory. No other module imports pyarrow."""
+"""Make Arrow tables of messages. Only the modules ``arrow*`` of this room import pyarrow."""
 
 from __future__ import annotations
 
-from array import array
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
-from cobotwire.protocol.fields import Field
+from cobotwire.codec.arrow_cells import LARGEST, cells, flat
+from cobotwire.codec.arrow_layout import Layout
+from cobotwire.codec.table_columns import TableColumn
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.fields import Variant
 
-# The Arrow type of each memoryview format.
-TYPES = {
-    "d": pa.float64(),
-    "b": pa.int8(),
-    "B": pa.uint8(),
-    "h": pa.int16(),
-    "H": pa.uint16(),
-    "i": pa.int32(),
-    "I": pa.uint32(),
-    "q": pa.int64(),
-    "Q": pa.uint64(),
-}
-# Longer columns of bytes, texts or lists need offsets of 64 bits.
-LARGEST = 2**31 - 1
+if TYPE_CHECKING:
+    from cobotwire.codec.columns import Rows
 
 
-def arrow_table(
-    offset: memoryview,
-    columns: Sequence[tuple[Field, memoryview]],
-    metadata: Mapping[str, str],
-) -> pa.Table:
-    """Return the columns of some rows as a table without nulls; ``offset`` is the first column.
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The rows of one variant of a message.
 
-    Numbers, bytes, and texts without padding stay where they are. Each field carries its units as
-    metadata.
+    Attributes:
+        variant: the variant.
+        offset: the start of each message in its stream, as 64-bit unsigned integers.
+        columns: the numbers of each field, in the order of the fields.
+        leading: the columns before the fields, by name: arrays, or buffers of numbers.
     """
-    arrays = [_flat(offset)]
-    fields = [pa.field("offset", arrays[0].type, nullable=False)]
-    for field, column in columns:
-        array = _array(field, column, len(offset))
-        units = dict.fromkeys(number.unit for number in field.numbers)
-        described = {"unit": ", ".join(units)} if any(units) else None
-        fields.append(pa.field(field.name, array.type, nullable=False, metadata=described))
-        arrays.append(array)
-    return pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata=dict(metadata)))
+
+    variant: Variant
+    offset: memoryview
+    columns: Sequence[memoryview]
+    leading: Mapping[str, Any]
+
+    def pieces(self) -> Iterator[Part]:
+        """Yield the rows in pieces that fit into Arrow's arrays."""
+        rows = len(self.offset)
+        longest = max([field.size for field in self.variant.fields], default=0)
+        most = LARGEST // max(2 * longest, 1)  # a Latin-1 letter has at most two bytes in UTF-8
+        if rows <= most:
+            yield self
+            return
+        for start in range(0, rows, most):
+            span = slice(start, min(start + most, rows))
+            yield replace(
+                self,
+                offset=self.offset[span],
+                columns=[_cut(column, rows, span) for column in self.columns],
+                leading={name: as_array(values)[span] for name, values in self.leading.items()},
+            )
 
 
-def in_order(streams: Iterable[Any]) -> pa.Table:
-    """Return the rows of tables with the same columns in the order of their offsets."""
-    table = pa.concat_tables([pa.table(stream) for stream in streams]).sort_by("offset")
-    metadata = {key: text for key, text in table.schema.metadata.items() if key != b"variant"}
-    return table.replace_schema_metadata(metadata)
+def arrow_table(layout: Layout, parts: Sequence[Part], metadata: Mapping[str, str]) -> pa.Table:
+    """Return the rows of variants as one table, in the order of their offsets.
+
+    A value that a variant lacks is null. At least one part must be given; it may have no rows.
+
+    Raises:
+        UsageError: a leading column has the name of another column, or another number of rows.
+    """
+    columns = [*layout.columns()]
+    leading = [
+        pa.field(name, as_array(values).type, nullable=False)
+        for name, values in parts[0].leading.items()
+    ]
+    names = {column.name for column, _ in columns}
+    for field in leading:
+        if field.name in names:
+            message = f"the {layout.command.name} {layout.direction} has a column {field.name}"
+            raise UsageError("leading", field.name, message=f"{message}: rename the leading one")
+    schema = pa.schema([*leading, *[field for _, field in columns]], metadata=dict(metadata))
+    pieces = [piece for part in parts for piece in part.pieces()]
+    table = pa.concat_tables([_piece_table(piece, columns, schema) for piece in pieces])
+    if len(parts) == 1:
+        return table
+    offsets = pa.chunked_array([flat(piece.offset) for piece in pieces], pa.uint64())
+    return table.take(pc.sort_indices(offsets))
+
+
+def as_array(values: Any) -> Any:
+    """Return an array, or the numbers of a buffer, as an Arrow array."""
+    return values if isinstance(values, pa.Array) else flat(memoryview(values))
+
+
+def times(nanoseconds: Any) -> Any:
+    """Return a column of times in UTC from a buffer of 64-bit integers: nanoseconds since 1970."""
+    return flat(memoryview(nanoseconds)).cast(pa.int64()).cast(pa.timestamp("ns", "UTC"))
+
+
+def repeated(text: str, choices: Sequence[str], rows: int) -> Any:
+    """Return a dictionary column that has the same text in all rows, which is one of ``choices``.
+
+    Tables of different texts have the same type if they have the same choices.
+    """
+    index = pa.repeat(pa.scalar(choices.index(text), pa.int8()), rows)
+    return pa.DictionaryArray.from_arrays(index, pa.array(choices, pa.utf8()))
 
 
 def stamped_table(
-    rows: Any, time: memoryview, direction: memoryview, names: Sequence[str], interface: memoryview
+    rows: Rows,
+    time: memoryview,
+    direction: memoryview,
+    names: Sequence[str],
+    interface: memoryview,
+    wide: bool = False,
 ) -> pa.Table:
     """Return the table of some rows with three more columns in front: when and where.
 
     ``time`` has nanoseconds since 1970 (UTC), and ``direction`` indexes ``names``.
     """
-    table = pa.table(rows)
-    directions = pa.DictionaryArray.from_arrays(_flat(direction), pa.array(names))
-    times = _flat(time).view(pa.timestamp("ns"))
-    for name, column in (
-        ("interface", _flat(interface)),
-        ("direction", directions),
-        ("time", times),
-    ):
-        table = table.add_column(0, pa.field(name, column.type, nullable=False), column)
-    return table
+    directions = pa.DictionaryArray.from_arrays(flat(direction), pa.array(names, pa.utf8()))
+    leading = {"time": times(time), "direction": directions, "interface": interface}
+    return rows.to_arrow(wide=wide, leading={**leading, "offset": rows.offset})
 
 
-def _array(field: Field, column: memoryview, rows: int) -> Any:
-    """Return a column: a list or row of numbers becomes lists, bytes and text become values."""
-    if not field.many:
-        return _flat(column)
-    count, *each = field.dimensions
-    if field.kind == "bytes":
-        return _spans(pa.binary(), pa.large_binary(), column, rows, count)
-    if field.kind == "text" and not each:
-        return _texts(field, column, rows, count)
-    if field.kind == "text":
-        elements = _texts(field, column, rows * count, *each)
-    else:
-        elements = _flat(column)
-        if each:
-            elements = _fixed(elements, each[0], rows * count)
-    if field.sizes is None:
-        return _fixed(elements, count, rows)
-    # Variants with other numbers of elements have the same type.
-    small = rows * count <= LARGEST
-    lists = pa.ListArray if small else pa.LargeListArray
-    offsets = pa.py_buffer(_offsets(rows, count, small))
-    index = pa.Array.from_buffers(pa.int32() if small else pa.int64(), rows + 1, [None, offsets])
-    return lists.from_arrays(index, elements)
+def _piece_table(piece: Part, columns: Sequence[tuple[TableColumn, Any]], schema: Any) -> Any:
+    rows = len(piece.offset)
+    arrays = [as_array(values) for values in piece.leading.values()]
+    for values, name in zip(arrays, piece.leading):
+        if len(values) != rows:
+            message = f"the leading column {name} has {len(values)} rows, and the table {rows}"
+            raise UsageError("leading", len(values), str(rows), message=message)
+    for column, field in columns:
+        found = column.find(piece.variant)
+        if found is None:
+            arrays.append(pa.nulls(rows, field.type))
+            continue
+        index, part = found
+        array = cells(piece.variant.fields[index], piece.columns[index], rows, part)
+        arrays.append(array if array.type == field.type else array.cast(field.type))
+    return pa.Table.from_arrays(arrays, schema=schema)
 
 
-def _flat(column: memoryview) -> Any:
-    size = column.nbytes // column.itemsize
-    return pa.Array.from_buffers(TYPES[column.format], size, [None, pa.py_buffer(column)])
-
-
-def _fixed(elements: Any, size: int, rows: int) -> Any:
-    """Return rows of ``size`` elements each."""
-    type = pa.list_(elements.type, size)
-    return pa.Array.from_buffers(type, rows, [None], children=[elements])
-
-
-def _spans(small: Any, large: Any, column: memoryview, rows: int, size: int) -> Any:
-    """Return values of ``size`` bytes each on the memory of a column."""
-    fits = rows * size <= LARGEST
-    buffers = [None, pa.py_buffer(_offsets(rows, size, fits)), pa.py_buffer(column)]
-    return pa.Array.from_buffers(small if fits else large, rows, buffers)
-
-
-def _offsets(rows: int, size: int, small: bool) -> array[int]:
-    ends = range(0, rows * size + 1, size) if size else [0] * (rows + 1)
-    return array("i" if small else "q", ends)
-
-
-def _texts(field: Field, column: memoryview, rows: int, size: int) -> Any:
-    if field.padding < 0 and field.encoding != "latin-1":
-        return _spans(pa.utf8(), pa.large_utf8(), column, rows, size)
-    data = column.tobytes()
-    texts = [field.text(data[row * size : (row + 1) * size]) for row in range(rows)]
-    fits = sum(map(len, texts)) * 2 <= LARGEST  # a Latin-1 letter has at most two bytes in UTF-8
-    return pa.array(texts, pa.utf8() if fits else pa.large_utf8())
+def _cut(column: memoryview, rows: int, span: slice) -> memoryview:
+    """Return the numbers of some rows."""
+    size = column.nbytes // rows
+    part = column.cast("B")[span.start * size : span.stop * size]
+    format: Any = column.format
+    return part.cast(format)

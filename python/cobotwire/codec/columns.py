@@ -2,42 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
+from cobotwire.codec.cell_types import cell_type
 from cobotwire.codec.events import Counters
+from cobotwire.codec.table_columns import column_name
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Command, Direction, Field, Table, Variant
+from cobotwire.protocol.table import Command, Direction, Table, Variant
 
 if TYPE_CHECKING:
     import numpy as np
     from typing_extensions import Buffer
 
+    from cobotwire.codec.arrow import Part
+
     Arrays = dict[str, np.ndarray[Any, Any]]
-
-
-# The integer types of raw columns with their bounds: smaller before larger, unsigned before signed.
-_INTEGERS = (
-    ("B", 0, 2**8 - 1),
-    ("b", -(2**7), 2**7 - 1),
-    ("H", 0, 2**16 - 1),
-    ("h", -(2**15), 2**15 - 1),
-    ("I", 0, 2**32 - 1),
-    ("i", -(2**31), 2**31 - 1),
-    ("q", -(2**63), 2**63 - 1),
-)
-
-
-def cell_type(field: Field, raw: bool) -> str:
-    """Return the type code of a field's column.
-
-    Bytes and text are bytes, physical values 64-bit floats. Raw values have the smallest integer
-    type that holds every one that the field allows.
-    """
-    if not raw:
-        return "B" if field.kind in ("bytes", "text") else "d"
-    low, high = field.raw_range
-    return next(code for code, least, most in _INTEGERS if least <= low and high <= most)
 
 
 class Spans(NamedTuple):
@@ -148,28 +128,55 @@ class Rows:
         arrays = {"offset": np.asarray(self.offset)}
         for field, column in zip(self.variant.fields, self._columns):
             shape = (rows, *field.dimensions)
-            arrays[field.name] = np.asarray(memoryview(column)).reshape(shape)
+            arrays[column_name(field.name, self.direction)] = np.asarray(
+                memoryview(column)
+            ).reshape(shape)
         return arrays
 
-    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
-        """Return the Arrow PyCapsule stream, which polars, DuckDB, pandas and pyarrow read.
+    def to_arrow(self, *, wide: bool = False, leading: Mapping[str, Any] | None = None) -> Any:
+        """Return the rows as a ``pyarrow.Table``, on the same memory where the types allow it.
 
-        Bytes are ``binary``, texts ``utf8``, and lists are lists; variants that differ only in the
-        number of elements have the same schema. Each field's unit is its metadata.
+        The columns are ``offset`` and one for each field: floats are ``float64``, integers
+        ``int64``, flags ``bool``, enums dictionaries of their names, bytes ``binary``, texts
+        ``utf8``; rows of numbers are fixed-size lists. With ``wide`` each number of a row has a
+        column of its own: ``j1`` to ``j6``. The metadata of an Arrow field has its ``unit``. Raw
+        values are integers.
+
+        ``leading`` takes the place of ``offset``: columns by name, each a pyarrow array or a buffer
+        of numbers, with one element for each row.
 
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.
+            UsageError: a leading column has another number of rows, or the name of a field.
         """
         from cobotwire.codec.arrow import arrow_table
+        from cobotwire.codec.arrow_layout import Layout
 
+        raw = all(memoryview(column).format != "d" for column in self._columns)
+        layout = Layout(self.command, self.direction, (self.variant,), raw, wide)
         metadata = {
             "command": self.command.name,
             "direction": self.direction,
             "variant": str(self.variant_index),
         }
+        return arrow_table(layout, [self._part(leading)], metadata)
+
+    def _part(self, leading: Mapping[str, Any] | None) -> Part:
+        from cobotwire.codec.arrow import Part
+
         columns = [memoryview(column) for column in self._columns]
-        table = arrow_table(self.offset, list(zip(self.variant.fields, columns)), metadata)
-        return table.__arrow_c_stream__(requested_schema)
+        first = {"offset": self.offset} if leading is None else leading
+        return Part(self.variant, self.offset, columns, first)
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """Return the Arrow PyCapsule stream, which polars, DuckDB, pandas and pyarrow read.
+
+        It has the columns of :meth:`to_arrow`.
+
+        Raises:
+            ImportError: pyarrow (the extra ``arrow``) is not installed.
+        """
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
 
 
 class Columns(Sequence[Rows]):
@@ -259,24 +266,37 @@ class Columns(Sequence[Rows]):
         columns = [memoryview(b"").cast(code) for code in codes]
         return Rows(self.table.command(command), direction, chosen, empty, columns)
 
-    def to_arrow(self, command: str, direction: Direction = "reply") -> Any:
-        """Return the rows of one message as a ``pyarrow.Table``, in the order of the stream.
+    def to_arrow(
+        self,
+        command: str,
+        direction: Direction = "reply",
+        *,
+        wide: bool = False,
+        leading: Callable[[Rows], Mapping[str, Any]] | None = None,
+    ) -> Any:
+        """Return all rows of one message as a ``pyarrow.Table``, in the order of the stream.
 
-        Variants that differ only in the number of elements of bytes, texts or lists are together.
+        The columns are those of :meth:`Rows.to_arrow`, for all variants together: a value that a
+        variant lacks is null. Their names, types and order depend on the message only, so tables of
+        several captures, or without rows, go together. ``leading`` returns the leading columns of
+        the rows of one variant, which take the place of ``offset``.
 
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.
-            UsageError: there is no such command, or variants with other fields occurred.
+            UsageError: there is no such command, or two variants have a field of the same name with
+                types that have nothing in common.
         """
-        from cobotwire.codec.arrow import in_order
+        from cobotwire.codec.arrow import arrow_table
+        from cobotwire.codec.arrow_layout import Layout
 
         first = self.rows(command, direction, 0)
         found = [
             rows for rows in self if rows.command is first.command and rows.direction == direction
         ]
-        if len({rows.names for rows in found}) > 1:
-            self.rows(command, direction)
-        return in_order(found or [first])
+        parts = [rows._part(leading and leading(rows)) for rows in found or [first]]
+        variants = first.command.variants(direction)
+        layout = Layout(first.command, direction, variants, self.raw, wide)
+        return arrow_table(layout, parts, {"command": command, "direction": direction})
 
     def __repr__(self) -> str:
         return f"<Columns {list(self._rows)!r}>"

@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from threading import RLock
 from typing import Any
 
-from cobotwire.codec.columns import Columns, Rows, Scan, cell_type
+from cobotwire.codec.cell_types import cell_type
+from cobotwire.codec.columns import Columns, Rows, Scan
 from cobotwire.codec.events import DecodedMessage, Event, Frame, Noise
 from cobotwire.codec.interface import Data
 from cobotwire.codec.reference.framer import ReferenceFramer
