@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -14,9 +14,6 @@ from cobotwire.codec.arrow_layout import Layout
 from cobotwire.codec.table_columns import TableColumn
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.fields import Variant
-
-if TYPE_CHECKING:
-    from cobotwire.codec.columns import Rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +97,7 @@ def repeated(text: str, choices: Sequence[str], rows: int) -> Any:
 
 
 def stamped_table(
-    rows: Rows,
+    rows: Any,
     time: memoryview,
     direction: memoryview,
     names: Sequence[str],
@@ -113,7 +110,8 @@ def stamped_table(
     """
     directions = pa.DictionaryArray.from_arrays(flat(direction), pa.array(names, pa.utf8()))
     leading = {"time": times(time), "direction": directions, "interface": interface}
-    return rows.to_arrow(wide=wide, leading={**leading, "offset": rows.offset})
+    leading["offset"] = rows.offset
+    return rows.to_arrow(wide=wide, leading=leading)
 
 
 def _piece_table(piece: Part, columns: Sequence[tuple[TableColumn, Any]], schema: Any) -> Any:
