@@ -3,7 +3,8 @@ PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
 # The Python tests run in four lanes at once. The first computes; the others also wait for ports, so
-# that two processors are seldom idle. The last lane has all tests that no other lane names.
+# that two processors are seldom idle. The first lets the others go first (nice), because a test
+# that waits for a reply has a deadline. The last lane has all tests that no other lane names.
 COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec)
 SIMULATING := $(addprefix tests/,conformance docs inspect simulator)
 CALLING := $(addprefix tests/,cli newcomer peers)
@@ -44,7 +45,7 @@ python-test: .venv/.tools .venv/.native ## run the Python tests on both codecs, 
 	$(MAKE) --no-print-directory --jobs 4 $(IN_TURN) computing-tests simulating-tests calling-tests waiting-tests
 
 computing-tests:
-	$(BIN)/python -m pytest $(COMPUTING)
+	nice -n 5 $(BIN)/python -m pytest $(COMPUTING)
 
 simulating-tests:
 	$(BIN)/python -m pytest $(SIMULATING)

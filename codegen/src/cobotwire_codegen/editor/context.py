@@ -7,7 +7,7 @@ by the open brackets of its line.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,7 +28,7 @@ class Context:
     colon of that key.
     """
 
-    keys: dict[str, Key[Any]]
+    keys: Mapping[str, Key[Any]]
     value_of: str = ""
 
     @property
@@ -91,10 +91,10 @@ def _inner_path(before: str) -> tuple[list[str], str]:
     return [name for name in opened if name], key
 
 
-Level = dict[str, Key[Any]] | Named
+Level = Mapping[str, Key[Any]] | Named
 
 
-def _descend(root: Described, path: list[str]) -> dict[str, Key[Any]]:
+def _descend(root: Described, path: list[str]) -> Mapping[str, Key[Any]]:
     """Return the keys of the mapping at a path.
 
     If a place can hold one of several records, the keys of all of them are returned: the key that
@@ -121,7 +121,7 @@ def _inside(level: Level, step: str) -> Iterator[Level]:
         yield from (keys for record in shape.records for keys in _records(record))
 
 
-def _records(described: Described) -> Iterator[dict[str, Key[Any]]]:
+def _records(described: Described) -> Iterator[Mapping[str, Key[Any]]]:
     if isinstance(described, Choice):
         yield from (keys for option in described.options() for keys in _records(option))
     else:

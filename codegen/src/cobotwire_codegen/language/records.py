@@ -6,6 +6,9 @@ The reader, the JSON schema and the reference page are all derived from these cl
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping as ReadOnly
+from functools import cache
+from types import MappingProxyType
 from typing import Any, ClassVar, Generic, TypeVar
 
 from cobotwire_codegen.errors import Place
@@ -65,7 +68,8 @@ class Record:
     EXCLUSIVE: ClassVar[tuple[tuple[str, str], ...]] = ()
 
     @classmethod
-    def keys(cls) -> dict[str, Key[Any]]:
+    @cache
+    def keys(cls) -> ReadOnly[str, Key[Any]]:
         """Return the keys by name, the required ones first."""
         found = [
             key
@@ -75,7 +79,8 @@ class Record:
         ]
         # A key that a subclass describes again counts once.
         named = {key.name: key for key in found}
-        return dict(sorted(named.items(), key=lambda item: not item[1].required))
+        ordered = sorted(named.items(), key=lambda item: not item[1].required)
+        return MappingProxyType(dict(ordered))
 
     @classmethod
     def definition(cls) -> str:

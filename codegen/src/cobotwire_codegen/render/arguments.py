@@ -18,6 +18,7 @@ from cobotwire_codegen.model import (
     Variant,
     named_fields,
 )
+from cobotwire_codegen.render.by_identity import by_identity
 from cobotwire_codegen.render.parameters import Parameter, argument_type, parameters
 from cobotwire_codegen.render.words import decimal
 
@@ -38,6 +39,7 @@ class Argument:
         return f"{self.name}: {self.annotation}{default}"
 
 
+@by_identity
 def arguments(command: Command) -> tuple[Argument, ...]:
     """Return all arguments of a method in their order."""
     fields = {parameter.name: parameter for parameter in parameters(command)}
@@ -47,6 +49,7 @@ def arguments(command: Command) -> tuple[Argument, ...]:
     )
 
 
+@by_identity
 def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
     """Return the arguments of each variant; nothing if the head of the method states them.
 

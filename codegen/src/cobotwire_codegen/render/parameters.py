@@ -34,8 +34,9 @@ class Parameter:
     @property
     def types(self) -> tuple[Type, ...]:
         """Every type that it can have, each once."""
-        found = (type for field in self.fields for _, type in lower.cases(field))
-        return tuple(dict.fromkeys(found))
+        # One object is compared by its identity first, because hashing a type takes long.
+        found = {id(type): type for field in self.fields for _, type in lower.cases(field)}
+        return tuple(found.values()) if len(found) == 1 else tuple(dict.fromkeys(found.values()))
 
     @property
     def doc(self) -> str:
