@@ -104,6 +104,60 @@ def test_default_that_ours_lacks_is_written() -> None:
     assert migrate(f"{head}mc.get_gripper_value()\n").text.endswith("mc.get_gripper_value(1)\n")
 
 
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("mb.get_angles(1)", "mb.left.get_angles()"),
+        ("mb.send_angle(2, 1, 30, 50)", "mb.right.send_angle(1, 30, 50)"),
+        (
+            "mb.send_angle(3, joint=1, angle=30, speed=50)",
+            "mb.waist.send_angle(joint=1, angle=30, speed=50)",
+        ),
+        ("mb.power_on()", "mb.power_on()"),
+        ("mb.stop(0)", "mb.all.stop()"),
+        ("mb.set_tool_color(side, 255, 0, 0)", "mb.at(side).set_color(255, 0, 0)"),
+        ("mb.sync_send_angles(1, row, 50)", "mb.left.move_angles(row, 50, timeout=15)"),
+        ("mb.get_base_coords()", "mb.get_base_coords()"),
+    ],
+)
+def test_address_becomes_a_part_of_the_robot(before: str, after: str) -> None:
+    head = "from {} import MyBuddy\nmb = MyBuddy(port)\n"
+    found = migrate(f"{head.format('pymycobot')}{before}\n")
+    assert found.text == f"{head.format('cobotwire')}{after}\n"
+    assert found.decisions == ()
+
+
+@pytest.mark.parametrize(
+    ("opened", "before", "after"),
+    [
+        ("MyCobot(port)", "mc.sync_send_angles(row, 50)", "mc.move_angles(row, 50, timeout=30)"),
+        ("MyCobot(port)", "mc.go_home()", "mc.send_angles([0] * 6, 10)"),
+        ("MechArm(port)", "mc.release_servo(1)", "mc.release_servo(1)"),
+        ("MyPalletizer(port)", "mc.send_coords(row, 50)", "mc.send_coords(row, 50)"),
+    ],
+)
+def test_older_class_becomes_class_of_its_robot(opened: str, before: str, after: str) -> None:
+    name = opened.partition("(")[0]
+    native = {"MyCobot": "MyCobot280", "MechArm": "MechArm270"}.get(name, "MyPalletizer260")
+    found = migrate(f"from pymycobot import {name}\nmc = {opened}\n{before}\n")
+    assert found.text == f"from cobotwire import {native}\nmc = {native}(port)\n{after}\n"
+    assert found.decisions == ()
+
+
+def test_home_of_a_socket_class_waits() -> None:
+    head = "from pymycobot import MyCobotSocket\nmc = MyCobotSocket('10.0.0.2')\n"
+    found = migrate(f"{head}mc.go_home()\n").text
+    assert found.endswith("mc.move_angles([0] * 6, 30)\n")
+
+
+def test_reason_of_absent_name_is_listed() -> None:
+    head = "from pymycobot import MyBuddy\nmb = MyBuddy(port)\n"
+    [decision] = migrate(f"{head}mb.set_color(1, 2, 3)\n").decisions
+    assert "set_color: The library puts the first argument in the place" in decision.what
+    [decision] = migrate(f"{head}mb.set_gpio_output(1, 1)\n").decisions
+    assert decision.what.startswith("our clients drive no pins of this computer")
+
+
 def test_time_is_imported_where_it_is_needed() -> None:
     assert "\nimport time\n" in migrate(f"{HEAD}mc.wait(2)\n").text
     assert migrate(f"import time\n{HEAD}mc.wait(2)\n").text.count("import time") == 1

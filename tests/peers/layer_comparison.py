@@ -12,13 +12,17 @@ from typing import Any, NamedTuple
 import cobotwire.pymycobot as ours
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from layer_rulings import FRAMES, RESULTS, UNANSWERED
+from layer_rulings import FRAMES, OTHER_FRAMES, RESULTS, UNANSWERED
 from pymycobot_classes import REJECTIONS
 from robots.comparison import calls_of, raised
 from robots.driving import ArmPort, driven
 from robots.robot import Call, Robot
 
 REJECTED = "rejected"
+# The result of a method that returns the arm, so that calls can be chained.
+ITSELF = "the arm itself"
+# The result of a call that waits for bytes that never come.
+ENDLESS = "waits for ever"
 
 
 class Recorded(MemoryTransport):
@@ -65,7 +69,9 @@ def call_theirs(robot: Robot, call: Call) -> Called:
             result = getattr(peer, call.method)(*call.theirs)
         except (*REJECTIONS, *raised()):
             return Called(port.written, REJECTED)
-        return Called(port.written, result)
+        except TimeoutError:
+            return Called(port.written, ENDLESS)
+        return Called(port.written, ITSELF if result is peer else result)
 
 
 def call_ours(robot: Robot, call: Call) -> Called:
@@ -78,7 +84,7 @@ def call_ours(robot: Robot, call: Call) -> Called:
         result = getattr(layer, call.method)(*call.theirs)
     except (ValueError, TypeError, TimeoutError):
         result = REJECTED
-    return Called(transport.written, result)
+    return Called(transport.written, ITSELF if result is layer else result)
 
 
 class Compared(NamedTuple):
@@ -105,7 +111,7 @@ def compare(robot: Robot, stride: int = 1) -> Compared:
             equal += 1
         elif (
             (robot.peer, call.method) in UNANSWERED
-            or (call.method in FRAMES and mine.result == theirs.result)
+            or (_may_write_others(robot, call) and mine.result == theirs.result)
             or ((robot.peer, call.method) in RESULTS and mine.written == theirs.written)
         ):
             ruled += 1
@@ -113,6 +119,10 @@ def compare(robot: Robot, stride: int = 1) -> Compared:
         else:
             left.append(f"{call.method}{call.theirs}: {mine}, not {theirs}")
     return Compared(equal, ruled, left, needed)
+
+
+def _may_write_others(robot: Robot, call: Call) -> bool:
+    return call.method in FRAMES or (robot.peer, call.method) in OTHER_FRAMES
 
 
 def _sample(robot: Robot, stride: int) -> Iterator[Call]:

@@ -21,17 +21,22 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     from pymycobot import (
         CommandGenerator,
+        MechArm,
         MechArm270,
         Mercury,
         MyArm,
         MyArmC,
         MyArmM,
         MyBuddy,
+        MyBuddySocket,
         MyCobot,
         MyCobot280,
         MyCobot280RDKX5,
         MyCobot320,
+        MyCobotSocket,
+        MyPalletizer,
         MyPalletizer260,
+        MyPalletizerSocket,
         Pro400,
         Pro450Client,
         Pro630,
@@ -52,6 +57,7 @@ __all__ = ["CLASSES", "REJECTIONS", "MyCobot", "MyCobot280", "MyPalletizer260"]
 __all__ += ["peer_on", "recording_client", "without_port", "written"]
 
 CLASSES: dict[str, type[Any]] = {
+    "MechArm": MechArm,
     "MechArm270": MechArm270,
     # The class serves three robots; two of them have the same messages.
     "Mercury (A1)": Mercury,
@@ -60,11 +66,15 @@ CLASSES: dict[str, type[Any]] = {
     "MyArmC": MyArmC,
     "MyArmM": MyArmM,
     "MyBuddy": MyBuddy,
+    "MyBuddySocket": MyBuddySocket,
     "MyCobot": MyCobot,
     "MyCobot280": MyCobot280,
     "MyCobot280RDKX5": MyCobot280RDKX5,
     "MyCobot320": MyCobot320,
+    "MyCobotSocket": MyCobotSocket,
+    "MyPalletizer": MyPalletizer,
     "MyPalletizer260": MyPalletizer260,
+    "MyPalletizerSocket": MyPalletizerSocket,
     "Pro400": Pro400,
     "Pro450Client": Pro450Client,
     "Pro630": Pro630,
@@ -97,8 +107,9 @@ def peer_on(name: str, port: Any) -> Any:
     peer = object.__new__(kind)
     if issubclass(kind, CommandGenerator):
         CommandGenerator.__init__(peer)
-        # Each module has its own argument check under this name.
-        peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
+        # Most modules have an argument check of their own under this name.
+        check = getattr(sys.modules[kind.__module__], "calibration_parameters", None)
+        peer.calibration_parameters = check or calibration_parameters
     elif issubclass(kind, MyArmC | MyArmM):
         DataProcessor.__init__(peer)
         peer.calibration_parameters = partial(calibration_parameters, class_name=kind.__name__)

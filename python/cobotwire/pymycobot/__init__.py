@@ -19,18 +19,25 @@ from cobotwire.pymycobot.constants import PI_BAUD, PI_PORT
 from cobotwire.pymycobot.genre import Angle, Coord
 
 if TYPE_CHECKING:
+    from cobotwire.pymycobot.mecharm import MechArm
     from cobotwire.pymycobot.mecharm270 import MechArm270
     from cobotwire.pymycobot.mecharmsocket import MechArmSocket
     from cobotwire.pymycobot.myarm import MyArm
     from cobotwire.pymycobot.myarmc import MyArmC
     from cobotwire.pymycobot.myarmm import MyArmM
     from cobotwire.pymycobot.myarmsocket import MyArmSocket
+    from cobotwire.pymycobot.mybuddy import MyBuddy
+    from cobotwire.pymycobot.mybuddysocket import MyBuddySocket
+    from cobotwire.pymycobot.mycobot import MyCobot
     from cobotwire.pymycobot.mycobot280 import MyCobot280
     from cobotwire.pymycobot.mycobot280rdkx5 import MyCobot280RDKX5, MyCobot280RDKX5Socket
     from cobotwire.pymycobot.mycobot280socket import MyCobot280Socket
     from cobotwire.pymycobot.mycobot320 import MyCobot320
     from cobotwire.pymycobot.mycobot320socket import MyCobot320Socket
+    from cobotwire.pymycobot.mycobotsocket import MyCobotSocket
+    from cobotwire.pymycobot.mypalletizer import MyPalletizer
     from cobotwire.pymycobot.mypalletizer260 import MyPalletizer260
+    from cobotwire.pymycobot.mypalletizersocket import MyPalletizerSocket
 
 # The module of each class; it is imported when the class is used.
 _MODULES = {
@@ -41,12 +48,19 @@ _MODULES = {
     "MechArm270": "mecharm270",
     "MechArmSocket": "mecharmsocket",
     "MyPalletizer260": "mypalletizer260",
+    "MyPalletizerSocket": "mypalletizersocket",
     "MyCobot320": "mycobot320",
     "MyCobot320Socket": "mycobot320socket",
     "MyArm": "myarm",
     "MyArmSocket": "myarmsocket",
     "MyArmM": "myarmm",
     "MyArmC": "myarmc",
+    "MyBuddySocket": "mybuddysocket",
+    "MyBuddy": "mybuddy",
+    "MyCobotSocket": "mycobotsocket",
+    "MyCobot": "mycobot",
+    "MechArm": "mecharm",
+    "MyPalletizer": "mypalletizer",
 }
 
 __all__ = [
@@ -54,19 +68,26 @@ __all__ = [
     "PI_PORT",
     "Angle",
     "Coord",
+    "MechArm",
     "MechArm270",
     "MechArmSocket",
     "MyArm",
     "MyArmC",
     "MyArmM",
     "MyArmSocket",
+    "MyBuddy",
+    "MyBuddySocket",
+    "MyCobot",
     "MyCobot280",
     "MyCobot280RDKX5",
     "MyCobot280RDKX5Socket",
     "MyCobot280Socket",
     "MyCobot320",
     "MyCobot320Socket",
+    "MyCobotSocket",
+    "MyPalletizer",
     "MyPalletizer260",
+    "MyPalletizerSocket",
     "utils",
 ]
 

@@ -11,7 +11,7 @@ from cobotwire_codegen.errors import Problem, SpecError, nearest
 from cobotwire_codegen.language.records import Entry, Key
 from cobotwire_codegen.library import language
 from cobotwire_codegen.library.model import QUIET, Library, LibraryClass, Method, Parameter
-from cobotwire_codegen.load import load
+from cobotwire_codegen.load import Node, load
 from cobotwire_codegen.model import Command, Edition
 from cobotwire_codegen.reader import Reader
 from cobotwire_codegen.render.arguments import arguments
@@ -51,13 +51,18 @@ def build_library(path: Path, root: Path, editions: Iterable[Edition]) -> Librar
     _check_likes(reader, classes)
     if problems:
         raise SpecError(problems)
-    absent = [
+    absent = _absent(reader.get(spec.absent), problems)
+    return Library(reader.get(spec.library), absent, tuple(classes))
+
+
+def _absent(groups: tuple[Node, ...], problems: list[Problem]) -> tuple[tuple[str, str], ...]:
+    """Return names that have no counterpart, each with why."""
+    return tuple(
         (name, group.get(language.Absent.why))
-        for node in reader.get(spec.absent)
+        for node in groups
         for group in [Reader(node, language.Absent, "a group of names", problems)]
         for name in group.get(language.Absent.names)
-    ]
-    return Library(reader.get(spec.library), tuple(absent), tuple(classes))
+    )
 
 
 def _check_likes(reader: Reader, classes: list[LibraryClass]) -> None:
@@ -86,7 +91,8 @@ def _class(entry: Entry, stated: _Stated, problems: list[Problem]) -> LibraryCla
     taken = {key: value for key, value in other.methods.items() if other.calls[key] in commands}
     # A class like another one states only its own differences.
     wanted = own if like else {**dict.fromkeys(offered), **shared, **taken, **own}
-    methods = [_method(key, given, commands, problems) for key, given in wanted.items()]
+    addresses = reader.get(spec.addresses)
+    methods = [_method(key, given, commands, addresses, problems) for key, given in wanted.items()]
     return LibraryClass(
         name,
         reader.get(spec.module),
@@ -98,6 +104,8 @@ def _class(entry: Entry, stated: _Stated, problems: list[Problem]) -> LibraryCla
         _parameters(reader, spec.constructor),
         like,
         reader.get(spec.helpers),
+        reader.get(spec.orders),
+        _absent(reader.get(spec.absent), problems),
         tuple(sorted(filter(None, methods), key=lambda method: method.name)),
     )
 
@@ -151,7 +159,11 @@ def _offered(reader: Reader, commands: Mapping[str, Command]) -> list[str]:
 
 
 def _method(
-    name: str, entry: Entry | None, commands: Mapping[str, Command], problems: list[Problem]
+    name: str,
+    entry: Entry | None,
+    commands: Mapping[str, Command],
+    addresses: tuple[str, ...],
+    problems: list[Problem],
 ) -> Method | None:
     if entry is None:
         return _as_ours(name, commands[name])
@@ -165,17 +177,27 @@ def _method(
         return None
     ours = _as_ours(name, command)
     parameters = _parameters(reader, spec.parameters) or ours.parameters
-    passes = reader.get(spec.passes)
     names = tuple(each.name for each in parameters)
-    for unknown in (each for each in passes if each not in names and not _NUMBER.match(each)):
-        message = f"{reader.what} has no parameter {unknown}{nearest(unknown, names)}"
-        reader.problem("unknown-word", message, reader.place_of(spec.passes))
-    passed = passes or tuple(each for each in names if each != QUIET)
+    passes, lacks = _known(reader, spec.passes, names), _known(reader, spec.lacks, names)
+    kept = {QUIET, *addresses, *lacks}
+    passed = passes or tuple(each for each in names if each not in kept)
     most = len(command.argument_names)
     if len(passed) > most:
         message = f"{reader.what} passes {len(passed)} parameters, but {called} takes {most}"
         reader.problem("bad-number", message)
-    return Method(name, command, parameters, passed, reader.get(spec.result))
+    address = next((each for each in names if each in addresses), "")
+    return Method(name, command, parameters, passed, reader.get(spec.result), address, lacks)
+
+
+def _known(
+    reader: Reader, key: Key[tuple[str, ...]], parameters: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return the parameters that a key lists; note those that the method does not have."""
+    listed = reader.get(key)
+    for unknown in (each for each in listed if each not in parameters and not _NUMBER.match(each)):
+        message = f"{reader.what} has no parameter {unknown}{nearest(unknown, parameters)}"
+        reader.problem("unknown-word", message, reader.place_of(key))
+    return listed
 
 
 def _as_ours(name: str, command: Command) -> Method:

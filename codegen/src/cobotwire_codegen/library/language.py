@@ -21,6 +21,13 @@ RESULTS = {
     "words_of_text": "The first word of the first text, and the last word of the last.",
 }
 
+# How the orders of a class return that the edition may acknowledge.
+ORDERS = {
+    "acknowledged": "1 once the acknowledgement has come.",
+    "sent": "1 once the order is sent.",
+    "listed": "A list with 1 once the order is sent.",
+}
+
 
 class Method(Record):
     """A method of the library, as far as it differs from ours."""
@@ -30,9 +37,19 @@ class Method(Record):
     passes = optional(
         Texts(),
         "The parameters that our method is given, in its order, or numbers in quotes instead; "
-        "left out: all but `_async`.",
+        "left out: all but `_async` and those of `addresses` and `lacks`.",
+    )
+    lacks = optional(
+        Names(), "Parameters that the edition cannot send; an error says so, unless they are None."
     )
     result = optional(Word(RESULTS, RESULTS.values()), "How the result is given.", "plain")
+
+
+class Absent(Record):
+    """Names without a counterpart; an error that says why is raised where one is used."""
+
+    names = required(Names(), "The names.")
+    why = required(Text(), "Why.")
 
 
 class Class(Record):
@@ -52,15 +69,15 @@ class Class(Record):
     )
     helpers = optional(Names(), "Classes of the layer with methods of several requests.")
     lacks = optional(Names(), "Our methods that the class does not have under our name.")
+    addresses = optional(
+        Names(), "The parameters of its methods that select the device that a request goes to."
+    )
+    orders = optional(
+        Word(ORDERS, ORDERS.values()), "What its orders return, and when.", "acknowledged"
+    )
+    absent = optional(Listed(Absent), "Public names of the class that have no counterpart.")
     methods = optional(Named(Method, METHOD), "Methods that differ from those of other classes.")
     doc = required(Text(), "What the class is for.")
-
-
-class Absent(Record):
-    """Names of the library without a counterpart."""
-
-    names = required(Names(), "The names.")
-    why = required(Text(), "Why.")
 
 
 class Library(Record):
@@ -68,5 +85,7 @@ class Library(Record):
 
     library = required(Text(), "Its name and version.")
     methods = required(Named(Method, METHOD), "Methods, where a class says nothing else.")
-    absent = required(Listed(Absent), "Public names of its classes that have no counterpart.")
+    absent = required(
+        Listed(Absent), "Public names that no class of ours has, of any of its classes."
+    )
     classes = required(Named(Class, CLASS), "Its classes, in the order of the documentation.")

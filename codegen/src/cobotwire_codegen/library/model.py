@@ -20,7 +20,8 @@ class Method:
     """A method of the library.
 
     ``command`` is what it sends, by the name of our method; ``passes`` are the parameters and the
-    numbers that our method is given; ``result`` is how its result is given.
+    numbers that our method is given; ``result`` is how its result is given. ``address`` is the
+    parameter that selects the device; ``lacks`` are parameters that cannot be sent.
     """
 
     name: str
@@ -28,6 +29,8 @@ class Method:
     parameters: tuple[Parameter, ...]
     passes: tuple[str, ...]
     result: str
+    address: str = ""
+    lacks: tuple[str, ...] = ()
 
     @property
     def takes(self) -> frozenset[str]:
@@ -45,7 +48,8 @@ class LibraryClass:
     """A class of the library.
 
     ``edition`` is that of ``ports``, and ``elsewhere`` that of all others, or of all if the two are
-    the same. ``like`` is the class whose methods it has; empty if none.
+    the same. ``like`` is the class whose methods it has; empty if none. ``orders`` says what its
+    orders return, and when. ``absent`` are its names that have no counterpart, each with why.
     """
 
     name: str
@@ -58,6 +62,8 @@ class LibraryClass:
     constructor: tuple[Parameter, ...]
     like: str
     helpers: tuple[str, ...]
+    orders: str
+    absent: tuple[tuple[str, str], ...]
     methods: tuple[Method, ...]
 
 

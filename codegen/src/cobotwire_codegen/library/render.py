@@ -22,6 +22,8 @@ _OPTIONS = {
     "thread_lock": "bool",
     "timeout": "float",
 }
+# The modules of helpers that concern one robot; the others are in ``helpers``.
+_HELPERS = {"Limbs": "buddy", "LimbPins": "buddy"}
 _ENUM = re.compile(r"\b[A-Z]\w* \| int\b")
 
 
@@ -52,6 +54,7 @@ def render_library(library: Library) -> Files:
     index = jinja.get_template("library/index.py.j2")
     made[PurePosixPath("__init__.py")] = index.render(library=library)
     made[PurePosixPath("calls.json")] = calls_json(library)
+    made[PurePosixPath("absent.json")] = absent_json(library)
     return made
 
 
@@ -59,6 +62,13 @@ def calls_json(library: Library) -> str:
     """Return how each method of the library is called in our client, for tools."""
     classes = (f'"{given.name}": {_class_json(given)}' for given in library.classes)
     return "{\n" + ",\n".join(classes) + "\n}\n"
+
+
+def absent_json(library: Library) -> str:
+    """Return why names have no counterpart, by class; those of all classes have the class ``*``."""
+    found = [("*", library.absent)] + [(each.name, each.absent) for each in library.classes]
+    data = {name: dict(absent) for name, absent in found if absent}
+    return json.dumps(data, indent=1) + "\n"
 
 
 def _class_json(given: LibraryClass) -> str:
@@ -69,6 +79,8 @@ def _class_json(given: LibraryClass) -> str:
         "native": given.elsewhere.class_name,
         "joints": given.edition.joints,
         "like": given.like,
+        "helpers": given.helpers,
+        "devices": {str(a.value): a.attribute for a in given.edition.frame.addresses},
     }
     methods = (f'  "{each.name}": {json.dumps(_as_data(each))}' for each in given.methods)
     listed = ",\n".join(methods)
@@ -79,6 +91,7 @@ def _as_data(method: Method) -> dict[str, object]:
     ours = arguments(method.command)
     return {
         "calls": method.command.name,
+        "address": method.address,
         "parameters": {each.name: each.default for each in method.parameters},
         "arguments": {
             argument.name: [name, argument.default] for name, argument in zip(method.passes, ours)
@@ -98,7 +111,9 @@ def _gives_row(method: Method) -> bool:
 def render_page(library: Library) -> Files:
     """Return the page with the calls of the library beside ours."""
     jinja = environment()
-    jinja.globals.update(differing=differing, results=RESULTS, their_call=their_call)
+    jinja.globals.update(
+        differing=differing, native_call=native_call, results=RESULTS, their_call=their_call
+    )
     text = jinja.get_template("library/page.md.j2").render(library=library)
     return {PurePosixPath("pymycobot.md"): text}
 
@@ -142,13 +157,17 @@ def head(method: Method) -> str:
     parts = ["self"]
     for parameter in method.parameters:
         default = f" = {parameter.default}" if parameter.default else ""
-        parts.append(f"{parameter.name}: {_annotation(parameter.name, ours)}{default}")
+        parts.append(
+            f"{parameter.name}: {_annotation(parameter.name, ours, method.address)}{default}"
+        )
     return laid_out(f"def {method.name}(", parts, ") -> Any:", 4)
 
 
-def _annotation(name: str, ours: dict[str, Argument]) -> str:
+def _annotation(name: str, ours: dict[str, Argument], address: str) -> str:
     if name == QUIET:
         return "bool"
+    if name == address:
+        return "int"
     if name not in ours:
         return "object"
     # The library has no enums, and takes 0 and 1 where we take a flag.
@@ -157,9 +176,17 @@ def _annotation(name: str, ours: dict[str, Argument]) -> str:
 
 def call(given: LibraryClass, method: Method) -> str:
     """Return the body of a method of a class."""
+    lacks = [f"{name}={name}" for name in method.lacks]
+    first = laid_out("self._lacks(", lacks, ")", 8) + "\n        " if lacks else ""
+    return first + _returned(given, method)
+
+
+def _returned(given: LibraryClass, method: Method) -> str:
+    """Return the statement that calls our method."""
     name = method.command.name
     everywhere = any(each.name == name for each in given.elsewhere.commands)
-    ours = f"self.arm.{name}" if everywhere else f'self._only_here("{name}")'
+    device = f".at({method.address})" if method.address else ""
+    ours = f"self.arm{device}.{name}" if everywhere else f'self._only_here("{name}")'
     passed = _passed(method)
     if method.result == ENDED:
         return laid_out("return self._move(", [ours, *passed, *_quiet(method)], ")", 8)
@@ -185,19 +212,23 @@ def naming(method: Method) -> str:
         for theirs, ours in pairs
         if theirs in method.takes and theirs != ours.name
     ]
+    if method.address:
+        names.append(f'address="{method.address}"')
     return laid_out("@naming(", names, ")", 4) if names else ""
 
 
 def native(given: LibraryClass) -> list[str]:
     """Return the attributes that say which of our clients a class uses."""
     here, there = (f"{each.name}.{each.class_name}" for each in (given.edition, given.elsewhere))
+    orders = [f'ORDERS = "{given.orders}"'] if given.orders != "acknowledged" else []
     if here == there:
-        return [f"NATIVE = {given.edition.name}.CLIENT", f"arm: {here}"]
+        return [f"NATIVE = {given.edition.name}.CLIENT", *orders, f"arm: {here}"]
     ports = ", ".join(f'"{port}"' for port in given.ports)
     return [
         f"NATIVE = {given.edition.name}.CLIENT",
         f"ELSEWHERE = {given.elsewhere.name}.CLIENT",
         f"PORTS = ({ports})",
+        *orders,
         f"arm: {there} | {here}",
     ]
 
@@ -215,7 +246,13 @@ def our_call(method: Method) -> str:
     """Return how our client is called; empty if it is called in the same way."""
     if tuple(each.name for each in method.parameters) == method.command.argument_names:
         return ""
-    return f"Calls ``{method.command.name}({', '.join(method.command.argument_names)})``."
+    return f"Calls ``{native_call(method)}``."
+
+
+def native_call(method: Method) -> str:
+    """Return the call of our client."""
+    device = f"at({method.address})." if method.address else ""
+    return f"{device}{method.command.name}({', '.join(method.command.argument_names)})"
 
 
 def names(library: Library) -> list[str]:
@@ -255,9 +292,10 @@ def imports(library: Library, classes: list[LibraryClass]) -> list[str]:
         found.append(f"from {layer} import results")
     shared = ["CompatibleClient"] * any(bases(each) == "CompatibleClient" for each in classes)
     found.append(f"from {layer}.client import {', '.join([*shared, 'OnFailure'])}")
-    helpers = sorted({helper for each in classes for helper in each.helpers})
-    if helpers:
-        found.append(f"from {layer}.helpers import {', '.join(helpers)}")
+    helpers = {helper for each in classes for helper in each.helpers}
+    for module in sorted({_HELPERS.get(each, "helpers") for each in helpers}):
+        listed = sorted(each for each in helpers if _HELPERS.get(each, "helpers") == module)
+        found.append(f"from {layer}.{module} import {', '.join(listed)}")
     if any(map(naming, methods)):
         found.append(f"from {layer}.naming import naming")
     here = {each.name for each in classes}

@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from functools import partial
-from typing import Any, ClassVar, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
 from cobotwire.client import Client
 from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
+from cobotwire.pymycobot.layer.absent import why_absent
 from cobotwire.pymycobot.layer.policy import policy
 from cobotwire.pymycobot.layer.results import plain
 
@@ -35,6 +36,17 @@ class CompatibleClient:
     """
 
     NATIVE: ClassVar[type[Client]]
+    # What an order returns, and when. Older classes serve arms of every age, and older firmware
+    # acknowledges nothing: then an order returns 1, or a list with 1, once it is sent.
+    ORDERS: ClassVar[str] = "acknowledged"
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Say why a name of the maker's class has no counterpart."""
+            message = f"{type(self).__name__!r} object has no attribute {name!r}"
+            why = why_absent(type(self), name)
+            raise AttributeError(f"{message}: {why}" if why else message, name=name, obj=self)
 
     def _open_serial(
         self, port: str, baudrate: str | int, debug: bool, errors: OnFailure | None
@@ -57,10 +69,12 @@ class CompatibleClient:
     def open(self) -> None:
         """Open the port again after ``close``; the constructor has opened it."""
         self.arm: Any = self._open_arm()
+        self._is_open = True
         policy.opened(self.arm)
 
     def close(self) -> None:
         """Close the port. The arm is sent nothing."""
+        self._is_open = False
         self.arm.close()
 
     def _order(
@@ -74,6 +88,9 @@ class CompatibleClient:
 
         ``gives`` says in which form it is returned.
         """
+        if self.ORDERS != "acknowledged":
+            call(*arguments)
+            return [DONE] if self.ORDERS == "listed" else DONE
         if quiet:
             call(*arguments)
             return None
@@ -100,6 +117,15 @@ class CompatibleClient:
             return convert(call(*arguments))
         except (ProtocolError, ReplyTimeout):
             return self._failed()
+
+    def _lacks(self, **given: object) -> None:
+        """Reject arguments that the edition cannot send."""
+        for name, value in given.items():
+            if value is not None:
+                edition = self.arm.table.edition
+                raise UsageError(
+                    name, value, f"None, as the edition {edition} has no such argument"
+                )
 
     def _failed(self) -> int:
         """Raise the error that is being handled, or return what the library returns."""

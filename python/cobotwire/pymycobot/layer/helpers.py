@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from cobotwire.protocol.errors import MotionTimeout, UsageError
 from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
@@ -16,6 +16,9 @@ HOME_SPEED = 10
 
 class Waiting(CompatibleClient):
     """Waits for a time, or for the end of a motion."""
+
+    # What is returned of a motion that did not end in time, if errors are returned.
+    LATE: ClassVar[int] = DONE
 
     def wait(self, t: float) -> Self:
         """Sleep for some seconds."""
@@ -28,7 +31,7 @@ class Waiting(CompatibleClient):
 
         Raises:
             MotionTimeout: the arm is not there in time; with ``errors="return"`` the result is 1,
-                as it is in the library.
+                as it is in the library, and 0 in its older classes.
         """
         return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
 
@@ -38,6 +41,7 @@ class Waiting(CompatibleClient):
         except MotionTimeout:
             if self._raises:
                 raise
+            return self.LATE
         return DONE
 
 
@@ -55,6 +59,25 @@ class WaitingWithMode(Waiting):
         return self._reached(self.arm.move_coords, coords, speed, mode, timeout=timeout)
 
 
+class WaitingForResult(WaitingWithMode):
+    """Waits for the end of a motion, and tells whether it ended in time."""
+
+    LATE = 0
+
+
+class WaitingLonger(WaitingForResult):
+    """Waits for the joints twice as long."""
+
+    @naming(angles="degrees")
+    def sync_send_angles(self, degrees: Sequence[float], speed: int, timeout: float = 30) -> int:
+        """Move all joints to angles, and wait until they are there: ``move_angles``.
+
+        Raises:
+            MotionTimeout: the arm is not there in time; with ``errors="return"`` the result is 0.
+        """
+        return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
+
+
 class WaitingWithoutMode(Waiting):
     """Waits for the end of a motion of the end."""
 
@@ -65,6 +88,35 @@ class WaitingWithoutMode(Waiting):
             MotionTimeout: as ``sync_send_angles``.
         """
         return self._reached(self.arm.move_coords, coords, speed, timeout=timeout)
+
+
+class WaitingInChain(Waiting):
+    """Waits for the end of a motion, and returns the arm."""
+
+    @naming(angles="degrees")
+    def sync_send_angles(  # type: ignore[override]
+        self, degrees: Sequence[float], speed: int, timeout: float = 15
+    ) -> Self:
+        """Move all joints to angles, and wait until they are there: ``move_angles``.
+
+        Raises:
+            MotionTimeout: the arm is not there in time; not with ``errors="return"``.
+        """
+        self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
+        return self
+
+    def sync_send_coords(
+        self, coords: Sequence[float], speed: int, mode: int | None, timeout: float = 15
+    ) -> Self:
+        """Move the end to coordinates, and wait until it is there: ``move_coords``.
+
+        Raises:
+            UsageError: there is a mode, which the edition cannot send.
+            MotionTimeout: as ``sync_send_angles``.
+        """
+        self._lacks(mode=mode)
+        self._reached(self.arm.move_coords, coords, speed, timeout=timeout)
+        return self
 
 
 class Homing(CompatibleClient):
@@ -83,6 +135,22 @@ class HomingQuietly(Homing):
         """Send all joints to 0 degrees, at a tenth of the fastest speed."""
         joints = self.arm.table.joints
         return self._order(self.arm.send_angles, [0] * joints, HOME_SPEED, quiet=_async)
+
+
+class HomingWithoutResult(CompatibleClient):
+    """Sends all joints to 0, and returns nothing."""
+
+    def go_home(self) -> None:
+        """Send all joints to 0 degrees, at a fifth of the fastest speed."""
+        self._order(self.arm.send_angles, [0] * self.arm.table.joints, 20)
+
+
+class HomingAndWaiting(Waiting):
+    """Sends all joints to 0, and waits until they are there."""
+
+    def go_home(self) -> None:
+        """Move all joints to 0 degrees, at 30 percent of the fastest speed, and wait."""
+        self.sync_send_angles([0] * self.arm.table.joints, 30)
 
 
 class TorqueGripper(CompatibleClient):

@@ -8,6 +8,8 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
+from cobotwire.pymycobot.layer.absent import absent
+
 
 @dataclass(frozen=True, slots=True)
 class Call:
@@ -20,6 +22,7 @@ class Call:
         result: how the library gives the result.
         row: whether our result is a named tuple where the library's is a list.
         keywords: our arguments that have no position.
+        address: the library's parameter that selects the device; empty if there is none.
     """
 
     calls: str
@@ -28,39 +31,63 @@ class Call:
     result: str = "plain"
     row: bool = False
     keywords: tuple[str, ...] = ()
+    address: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryClass:
-    """A class of the library: what it opens, our class, its joints, and its methods."""
+    """A class of the library.
+
+    Attributes:
+        opens: what its constructor opens.
+        constructor: the parameters of its constructor.
+        native: our class.
+        joints: the joints of the robot.
+        devices: our attribute for each address of the robot, by the number of the address.
+        home: the call of ours that does what ``go_home`` does.
+        methods: its methods.
+        absent: why names have no counterpart.
+    """
 
     opens: str
     constructor: tuple[str, ...]
     native: str
     joints: int
+    devices: dict[str, str]
+    home: str
     methods: dict[str, Call]
+    absent: dict[str, str]
 
 
-def _waited(kind: str, parameters: dict[str, str], *names: str) -> Call:
-    arguments = {name: (given, "") for name, given in zip(names, parameters)}
+def _waited(kind: str, parameters: dict[str, str], *names: str, address: str = "") -> Call:
+    given = [each for each in parameters if each != address]
+    arguments = {name: (each, "") for name, each in zip(names, given)}
     arguments["timeout"] = ("timeout", "")
-    return Call(f"move_{kind}", parameters, arguments, keywords=("timeout",))
+    return Call(f"move_{kind}", parameters, arguments, keywords=("timeout",), address=address)
 
 
-# Methods of several requests that our clients have too.
-_SEVERAL = {
-    "sync_send_angles": _waited(
-        "angles", {"degrees": "", "speed": "", "timeout": "15"}, "angles", "speed"
-    ),
-    "sync_send_coords": _waited(
-        "coords",
-        {"coords": "", "speed": "", "mode": "0", "timeout": "15"},
-        "coords",
-        "speed",
-        "mode",
-    ),
-    "close": Call("close", {}, {}),
+def _waits(timeout: str = "15", address: str = "") -> dict[str, Call]:
+    """Return the methods that wait for the end of a motion."""
+    before = {address: ""} if address else {}
+    angles = {**before, "degrees": "", "speed": "", "timeout": timeout}
+    coords = {**before, "coords": "", "speed": "", "mode": "0", "timeout": "15"}
+    return {
+        "sync_send_angles": _waited("angles", angles, "angles", "speed", address=address),
+        "sync_send_coords": _waited("coords", coords, "coords", "speed", "mode", address=address),
+    }
+
+
+# Methods of several requests that our clients have too, and those of helpers of the layer.
+_SEVERAL = {**_waits(), "close": Call("close", {}, {})}
+_OF_HELPERS = {
+    "Limbs": {**_waits(address="id"), "get_base_coords": Call("get_base_coords", {}, {})},
+    "WaitingLonger": _waits("30"),
 }
+_HOMES = {
+    "HomingAndWaiting": "move_angles([0] * {joints}, 30)",
+    "HomingWithoutResult": "send_angles([0] * {joints}, 20)",
+}
+_HOME = "send_angles([0] * {joints}, 10)"
 
 
 @lru_cache
@@ -69,17 +96,28 @@ def library() -> dict[str, LibraryClass]:
     data = json.loads(files("cobotwire.pymycobot").joinpath("calls.json").read_text("utf-8"))
     made: dict[str, LibraryClass] = {}
     for name, given in data.items():
-        methods = {key: _call(each) for key, each in given["methods"].items()}
-        shared = made[given["like"]].methods if given["like"] else _SEVERAL
-        constructor = tuple(given["constructor"])
-        made[name] = LibraryClass(
-            given["opens"],
-            constructor,
-            given["native"],
-            given["joints"],
-            {**shared, **methods},
-        )
+        made[name] = _class(name, given, made.get(given["like"]))
     return made
+
+
+def _class(name: str, given: dict[str, Any], like: LibraryClass | None) -> LibraryClass:
+    helpers: list[str] = given["helpers"]
+    methods = dict(like.methods if like else _SEVERAL)
+    for helper in helpers:
+        methods |= _OF_HELPERS.get(helper, {})
+    methods |= {key: _call(each) for key, each in given["methods"].items()}
+    homes = (_HOMES.get(each, _HOME) for each in helpers if each.startswith("Homing"))
+    home = next(homes, _HOME).format(joints=given["joints"])
+    return LibraryClass(
+        given["opens"],
+        tuple(given["constructor"]),
+        given["native"],
+        given["joints"],
+        given["devices"],
+        home,
+        methods,
+        {**(like.absent if like else absent("*")), **absent(name)},
+    )
 
 
 def _call(given: dict[str, Any]) -> Call:

@@ -17,9 +17,17 @@ class Decision(NamedTuple):
 
 
 # By the library's method: what the program must do otherwise.
+_PINS = "our clients drive no pins of this computer; use RPi.GPIO or gpiozero"
 NO_COUNTERPART = {
-    "gpio_init": "our clients drive no pins of this computer; use RPi.GPIO or gpiozero",
-    "gpio_output": "our clients drive no pins of this computer; use RPi.GPIO or gpiozero",
+    **dict.fromkeys(["gpio_init", "gpio_output", "get_gpio_input", "base_io_to_gpio"], _PINS),
+    **dict.fromkeys(["set_gpio_init_mode", "set_gpio_setup", "set_gpio_output"], _PINS),
+    **dict.fromkeys(["set_gpio_pwm_start", "set_gpio_pwm_change_freq"], _PINS),
+    **dict.fromkeys(["set_gpio_pwm_change_dc", "set_gpio_pwm_stop", "set_gpio_clearup"], _PINS),
+    "set_iic_init": "our clients open no bus of this computer; use smbus2",
+    "get_coord": "our get_coord gives tenths of a millimetre, or hundredths of a degree",
+    "is_in_position": (
+        "use is_in_position for an arm, is_waist_in_position or is_robot_in_position for the others"
+    ),
     "open": "our clients open the port when they are created; create a new one",
 }
 RESULTS = {

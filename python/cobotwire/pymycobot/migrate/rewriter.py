@@ -122,19 +122,24 @@ class Rewriter(cst.CSTTransformer):
             return _WRITTEN[method](self, original_node, updated_node, kind)
         call = kind.methods.get(method)
         if call is None:
-            why = NO_COUNTERPART.get(method, f"{kind.native} has no counterpart of {method}")
-            self.decide(original_node, why)
+            self.decide(original_node, _why_left(kind, method))
             return updated_node
-        return self._method(original_node, updated_node, call)
+        return self._method(original_node, updated_node, call, kind)
 
-    def _method(self, original: cst.Call, updated: cst.Call, call: Call) -> cst.BaseExpression:
+    def _method(
+        self, original: cst.Call, updated: cst.Call, call: Call, kind: LibraryClass
+    ) -> cst.BaseExpression:
         arguments = ours(call, updated.args)
         if arguments is None:
             self.decide(original, "the arguments are not known here; compare them by hand")
             return updated
         if call.result in RESULTS:
             self.decide(original, RESULTS[call.result])
-        return _renamed(updated, call.calls).with_changes(args=arguments)
+        made = _renamed(updated, call.calls).with_changes(args=arguments)
+        known = given(updated.args, list(call.parameters)) or {}
+        if call.address not in known:
+            return made
+        return _of_device(made, kind, known[call.address])
 
     def _constructed(self, original: cst.Call, updated: cst.Call, name: str) -> cst.BaseExpression:
         kind = library()[name]
@@ -163,8 +168,8 @@ class Rewriter(cst.CSTTransformer):
         return cst.Call(cst.parse_expression("time.sleep"), [seconds])
 
     def home(self, original: cst.Call, updated: cst.Call, kind: LibraryClass) -> cst.BaseExpression:
-        """Return the order that ``go_home`` sends."""
-        return _in_place_of(updated, f"send_angles([0] * {kind.joints}, 10)")
+        """Return the call that does what ``go_home`` does."""
+        return _in_place_of(updated, kind.home)
 
     def gripper_kind(
         self, original: cst.Call, updated: cst.Call, kind: LibraryClass
@@ -201,6 +206,28 @@ def _in_place_of(called: cst.Call, text: str) -> cst.BaseExpression:
     made = cst.parse_expression(f"arm.{text}")
     assert isinstance(made, cst.Call), "it is written here"
     return _renamed(made, cst.ensure_type(made.func, cst.Attribute).attr.value, called)
+
+
+def _why_left(kind: LibraryClass, method: str) -> str:
+    """Return why a call is left as it is."""
+    # A class that opens a socket would drive the pins of the robot's computer.
+    local = method not in kind.absent or kind.opens == "serial"
+    if local and method in NO_COUNTERPART:
+        return NO_COUNTERPART[method]
+    why = kind.absent.get(method)
+    return f"{kind.native} has no counterpart of {method}" + (f": {why}" if why else "")
+
+
+def _of_device(made: cst.Call, kind: LibraryClass, address: cst.BaseExpression) -> cst.Call:
+    """Return a call of the device that an address selects: ``arm.left``, or ``arm.at(number)``."""
+    func = cst.ensure_type(made.func, cst.Attribute)
+    name = kind.devices.get(code(address))
+    device = (
+        cst.Attribute(func.value, cst.Name(name))
+        if name
+        else cst.Call(cst.Attribute(func.value, cst.Name("at")), [cst.Arg(address)])
+    )
+    return made.with_changes(func=func.with_changes(value=device))
 
 
 def _renamed(made: cst.Call, method: str, arm_of: cst.Call | None = None) -> cst.Call:

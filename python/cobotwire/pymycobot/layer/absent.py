@@ -1,0 +1,34 @@
+"""Says why a name of the maker's class has no counterpart."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from importlib.resources import files
+
+# The names that no class of ours has.
+_ALL = "*"
+
+
+def why_absent(kind: type, name: str) -> str:
+    """Return why a class has no counterpart of a name; empty if the maker has no such name."""
+    if name.startswith("_"):
+        return ""
+    reasons = (absent(each).get(name, "") for each in [*_names(kind), _ALL])
+    return next(filter(None, reasons), "")
+
+
+def absent(kind: str) -> dict[str, str]:
+    """Return the names that a class lacks, with why; given ``*``, those that all classes lack."""
+    return _reasons().get(kind, {})
+
+
+def _names(kind: type) -> list[str]:
+    return [base.__name__ for base in kind.__mro__]
+
+
+@lru_cache
+def _reasons() -> dict[str, dict[str, str]]:
+    text = files("cobotwire.pymycobot").joinpath("absent.json").read_text("utf-8")
+    found: dict[str, dict[str, str]] = json.loads(text)
+    return found

@@ -1,0 +1,67 @@
+"""The classes that the layer is compared with: those of ``robots``, and others of these robots."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from dataclasses import replace
+from typing import Any
+
+from pymycobot_classes import CLASSES
+from robots.classes import ROBOTS
+from robots.robot import Robot
+
+
+class ArmSocket:
+    """The part of ``socket.socket`` that the maker's classes use, on a port in this process."""
+
+    def __init__(self, port: Any) -> None:
+        self._port = port
+
+    def fileno(self) -> int:
+        return 3
+
+    def settimeout(self, seconds: float) -> None:
+        """Do nothing: the port knows how long it waits."""
+
+    def sendall(self, data: bytes) -> None:
+        self._port.write(data)
+
+    def recv(self, size: int) -> bytes:
+        data: bytes = self._port.read(size)
+        if not data:
+            raise TimeoutError
+        return data
+
+
+def on_socket(peer_class: str, port: Any) -> Any:
+    """Return an object of a class that opens a TCP connection, on a port in this process."""
+    from pymycobot.generate import CommandGenerator
+
+    kind = CLASSES[peer_class]
+    peer = object.__new__(kind)
+    CommandGenerator.__init__(peer)
+    peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
+    peer.lock, peer.sock = threading.Lock(), ArmSocket(port)
+    return peer
+
+
+def _another(peer: str, of: str, **changes: Any) -> Robot:
+    """Return the description of another class of a robot."""
+    given = ROBOTS[of]
+    calls = [each for each in given.calls if hasattr(CLASSES[peer], each.method)]
+    return replace(given, peer=peer, further=(), calls=calls, **changes)
+
+
+# Classes of a robot that another class of the library drives, too. The older ones are compared on
+# the editions that the layer has for them.
+SAME_ROBOT: dict[str, Robot] = {
+    "MechArm": _another("MechArm", "MechArm270"),
+    "MyBuddySocket": _another("MyBuddySocket", "MyBuddy", opened=on_socket),
+    "MyCobot": _another("MyCobot", "MyCobot280"),
+    "MyCobotSocket": _another("MyCobotSocket", "MyCobot280", opened=on_socket),
+    "MyPalletizerSocket": _another("MyPalletizerSocket", "MyPalletizer260", opened=on_socket),
+}
+LAYER_ROBOTS: dict[str, Robot] = {**ROBOTS, **SAME_ROBOT}
+# It cannot be compared: each call of the maker's class fails.
+PALLETIZER = _another("MyPalletizer", "MyPalletizer260")
