@@ -14,6 +14,7 @@ from cobotwire.protocol.errors import (
     EditionUnknown,
     LinkError,
     MotionTimeout,
+    OutputError,
     ProtocolError,
     ReplyTimeout,
     ScenarioError,
@@ -29,6 +30,7 @@ ERRORS = [
     EditionUnknown("/dev/ttyACM0", ("is_power_on: no reply",)),
     ArmNotReady("send_angles", False, ("the arm has no power",)),
     CaptureError("a.pcapng", 12, "it is cut off"),
+    OutputError("out/a.parquet", "the disk is full"),
     ScenarioError(["a.yaml:1:2: there is no fault losst", "a.yaml:2:1: nothing"]),
 ]
 

@@ -23,6 +23,7 @@ VERBS = (
     "run",
     "migrate",
     "decode",
+    "export",
     "sim",
     "replay",
     "plot",

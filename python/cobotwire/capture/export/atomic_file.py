@@ -5,12 +5,16 @@ So a file with a final name is never half written, whatever ends the process.
 
 from __future__ import annotations
 
+import io
 import os
 from contextlib import suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from cobotwire.protocol.errors import OutputError, UsageError
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer
 
 try:
     import fcntl
@@ -29,7 +33,7 @@ class AtomicFile:
 
     Attributes:
         path: the final name.
-        file: the open temporary file.
+        file: what the content is written to.
     """
 
     def __init__(self, path: Path, overwrite: bool) -> None:
@@ -45,10 +49,10 @@ class AtomicFile:
         self._refuse_existing()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self.file: BinaryIO = self._open_locked()
-            self.file.truncate()
+            self._stored = self._open_locked()
         except OSError as error:
             raise output_error(path, error) from error
+        self.file = WritableFile(self._stored)
 
     def _refuse_existing(self) -> None:
         if not self._overwrite and os.path.lexists(self.path):
@@ -56,20 +60,31 @@ class AtomicFile:
 
     def _open_locked(self) -> BinaryIO:
         while True:
-            file = open(self._temporary, "ab")  # noqa: SIM115  (closed by publish)
-            if fcntl is None:
-                return file
+            file = open(self._temporary, "ab")  # noqa: SIM115  (closed by publish and discard)
             try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                file.close()
-                message = f"{self.path}: another export is writing this file"
-                raise UsageError("output", str(self.path), message=message) from None
-            with suppress(FileNotFoundError):
-                if os.path.samestat(os.fstat(file.fileno()), os.stat(self._temporary)):
+                if self._lock(file):
+                    # Devices cannot be truncated.
+                    if os.fstat(file.fileno()).st_size:
+                        file.truncate(0)
                     return file
-            # Another export has published or removed the file between open and lock.
+            except BaseException:
+                file.close()
+                raise
             file.close()
+
+    def _lock(self, file: BinaryIO) -> bool:
+        """Lock the temporary file; return False if it has got another name in the meantime."""
+        if fcntl is None:
+            return True
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            message = f"{self.path}: another export is writing this file"
+            raise UsageError("output", str(self.path), message=message) from None
+        try:
+            return os.path.samestat(os.fstat(file.fileno()), os.stat(self._temporary))
+        except FileNotFoundError:
+            return False
 
     def finish(self) -> int:
         """Write the file to the disk; return its size in bytes.
@@ -78,9 +93,9 @@ class AtomicFile:
             OutputError: the system cannot write it.
         """
         try:
-            self.file.flush()
-            os.fsync(self.file.fileno())
-            return os.fstat(self.file.fileno()).st_size
+            self._stored.flush()
+            os.fsync(self._stored.fileno())
+            return os.fstat(self._stored.fileno()).st_size
         except OSError as error:
             raise output_error(self.path, error) from error
 
@@ -95,18 +110,48 @@ class AtomicFile:
         try:
             os.replace(self._temporary, self.path)
             self._published = True
-            self.file.close()
+            self._stored.close()
             _sync_folder(self.path.parent)
         except OSError as error:
             raise output_error(self.path, error) from error
 
     def discard(self) -> None:
         """Remove the temporary file; do nothing after :meth:`publish`."""
+        self.file.discarded = True
         if not self._published:
             with suppress(OSError):
                 self._temporary.unlink()
             with suppress(OSError):
-                self.file.close()
+                self._stored.close()
+
+
+class WritableFile(io.BufferedIOBase):
+    """A file that can only be written; closing it leaves the file below it open.
+
+    Attributes:
+        discarded: whether further bytes are ignored. Writers of formats write an end when they are
+            closed, also if their file has failed.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        super().__init__()
+        self._file = file
+        self._size = 0
+        self.discarded = False
+
+    def writable(self) -> bool:
+        """Return True."""
+        return True
+
+    def tell(self) -> int:
+        """Return the number of bytes that were written."""
+        return self._size
+
+    def write(self, data: Buffer, /) -> int:
+        """Write all bytes."""
+        size = memoryview(data).nbytes
+        self._size += size
+        return size if self.discarded else self._file.write(data)
 
 
 def existing(path: Path) -> UsageError:

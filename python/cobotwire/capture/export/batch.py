@@ -21,3 +21,10 @@ class Batch(NamedTuple):
     edition: str
     robot: str
     table: Any
+
+
+def joined(batches: list[Batch]) -> Any:
+    """Return the rows of batches of one message as one table."""
+    import pyarrow as pa
+
+    return pa.concat_tables([batch.table for batch in batches])

@@ -15,6 +15,8 @@ from cobotwire.protocol.errors import LinkError, UsageError
 STDIN = "-"
 COMPRESSED = {".gz": "gzip", ".zst": "zstd"}
 _ENDINGS = (".pcapng", ".bin", ".raw", ".cap")
+# Folders often hold the files of earlier exports too.
+_EXPORTED = (".parquet", ".csv", ".arrow", ".feather", ".mcap")
 _HIVE_ROBOT = re.compile(r"(?:^|/)robot=([^/]+)/")
 
 
@@ -63,8 +65,8 @@ class Inputs:
         """Return the files that arguments name.
 
         A folder means all files in it and below it, a pattern those that match; both are sorted by
-        name, and leave out hidden files. An argument with ``://`` is an fsspec URL, which may also
-        name a folder or be a pattern.
+        name. A folder leaves out hidden files, and those that exports write. An argument with
+        ``://`` is an fsspec URL, which may also name a folder or be a pattern.
 
         Raises:
             UsageError: an argument names nothing, or fsspec is missing.
@@ -105,7 +107,12 @@ def _paths(argument: str) -> list[str]:
 def _below(folder: str) -> Iterator[str]:
     for parent, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        yield from (os.path.join(parent, name) for name in files if not name.startswith("."))
+        yield from (os.path.join(parent, name) for name in files if _is_capture(name))
+
+
+def _is_capture(name: str) -> bool:
+    """Return whether a file that was not named itself may be a capture."""
+    return not name.startswith(".") and not name.endswith(_EXPORTED)
 
 
 def _none(argument: str, why: str) -> list[str]:
@@ -142,7 +149,7 @@ def _listed(store: Any, path: str) -> dict[str, dict[str, Any]]:
     kept = {
         name: details
         for name, details in found.items()
-        if details["type"] == "file" and not name.rpartition("/")[2].startswith(".")
+        if details["type"] == "file" and _is_capture(name.rpartition("/")[2])
     }
     if not kept:
         raise FileNotFoundError(path)

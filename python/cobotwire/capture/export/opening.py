@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Callable
+import zlib
+from collections.abc import Callable, Iterator
 from typing import Any, BinaryIO
-
-import pyarrow as pa
 
 from cobotwire.capture.export.extras import needed
 from cobotwire.capture.export.inputs import COMPRESSED, STDIN, Input, is_url
@@ -14,6 +12,10 @@ from cobotwire.capture.file_errors import unusable_file
 from cobotwire.protocol.errors import LinkError
 
 Progress = Callable[[int], None]
+# Stored bytes to read at a time.
+BLOCK = 1 << 18
+# Compressed bytes to decompress at a time: hostile data may become 30,000 times as large.
+SLICE = 1 << 12
 # What standard input begins with if it is compressed: it has no name with an ending.
 _MAGIC = {b"\x1f\x8b\x08": "gzip", b"\x28\xb5\x2f\xfd": "zstd"}
 
@@ -23,7 +25,7 @@ class InputStream:
 
     Attributes:
         name: the name of the input, for messages.
-        truncated: why the input ends too early; empty if it does not.
+        truncated: why the input ends too early; empty if it does not, or has not ended yet.
     """
 
     def __init__(self, input: Input, progress: Progress) -> None:
@@ -34,66 +36,69 @@ class InputStream:
         """
         self.name = input.url
         self.truncated = ""
-        self._stored = _Stored(_open(input), progress)
-        self._reader: Any = self._stored
-        if compression := _compression(input, self._stored):
-            self._reader = pa.CompressedInputStream(self._stored, compression)
+        self._progress = progress
+        self._file = _open(input)
+        self._blocks = self._decompressed(input)
+        self._rest = b""
 
     def read(self, size: int) -> bytes:
-        """Return up to ``size`` bytes, fewer only at the end.
+        """Return ``size`` bytes, fewer only at the end.
 
         Raises:
             LinkError: reading failed, or the compressed data is damaged.
         """
-        pieces = []
-        while size > 0 and not self.truncated:
-            piece = self._read(size)
-            if not piece:
-                break
-            pieces.append(piece)
-            size -= len(piece)
-        return pieces[0] if len(pieces) == 1 else b"".join(pieces)
-
-    def _read(self, size: int) -> bytes:
-        try:
-            return bytes(self._reader.read(size))
-        except OSError as error:
-            # The error of pyarrow has no number. All bytes before the end have been returned.
-            if error.errno is None and "Truncated compressed stream" in str(error):
-                self.truncated = "its compressed data is cut off"
-                return b""
-            raise LinkError(self.name, f"reading failed: {error.strerror or error}") from error
+        pieces = [self._rest]
+        missing = size - len(self._rest)
+        while missing > 0 and (block := next(self._blocks, b"")):
+            pieces.append(block)
+            missing -= len(block)
+        joined = b"".join(pieces)
+        self._rest = joined[size:]
+        return joined[:size]
 
     def close(self) -> None:
         """Close the input."""
-        self._stored.close()
-
-
-class _Stored(io.RawIOBase):
-    """Reads stored bytes, and reports how many; ``peek`` looks at the first of them."""
-
-    def __init__(self, file: BinaryIO, progress: Progress) -> None:
-        super().__init__()
-        self._file, self._progress = file, progress
-        self._start = b""
-
-    def readable(self) -> bool:
-        return True
-
-    def peek(self, size: int) -> bytes:
-        while len(self._start) < size and (block := self._file.read(size - len(self._start))):
-            self._start += block
-        return self._start
-
-    def read(self, size: int = -1, /) -> bytes:
-        start, self._start = self._start, b""
-        data = start or self._file.read(size) or b""
-        self._progress(len(data))
-        return data
-
-    def close(self) -> None:
         self._file.close()
-        super().close()
+
+    def _stored(self) -> Iterator[bytes]:
+        """Yield the stored bytes."""
+        try:
+            while block := self._file.read(BLOCK):
+                self._progress(len(block))
+                yield block
+        except OSError as error:
+            raise LinkError(self.name, f"reading failed: {error.strerror or error}") from error
+
+    def _decompressed(self, input: Input) -> Iterator[bytes]:
+        """Yield the bytes of the capture, in blocks that are not empty."""
+        stored = self._stored()
+        first = next(stored, b"")
+        start = _decompressor(input, first)
+        if start is None:
+            if first:
+                yield first
+            yield from stored
+            return
+        current = start()
+        while first:
+            for at in range(0, len(first), SLICE):
+                rest = first[at : at + SLICE]
+                while rest:
+                    # Programs that append write one compressed part after another.
+                    current = start() if current.eof else current
+                    if data := self._expand(current, rest):
+                        yield data
+                    rest = current.unused_data
+            first = next(stored, b"")
+        if not current.eof:
+            self.truncated = "its compressed data is cut off"
+
+    def _expand(self, decompressor: Any, data: bytes) -> bytes:
+        try:
+            return bytes(decompressor.decompress(data))
+        # Each library has errors of its own.
+        except Exception as error:
+            raise LinkError(self.name, f"decompressing failed: {error}") from error
 
 
 def _open(input: Input) -> BinaryIO:
@@ -109,8 +114,16 @@ def _open(input: Input) -> BinaryIO:
         raise unusable_file("INPUT", input.url, error) from None
 
 
-def _compression(input: Input, stored: _Stored) -> str | None:
-    if input.url != STDIN:
-        return next((kind for end, kind in COMPRESSED.items() if input.url.endswith(end)), None)
-    start = stored.peek(4)
-    return next((kind for magic, kind in _MAGIC.items() if start.startswith(magic)), None)
+def _decompressor(input: Input, first: bytes) -> Callable[[], Any] | None:
+    """Return what makes a decompressor for one part of an input; None if it is not compressed."""
+    if input.url == STDIN:
+        kinds = (kind for magic, kind in _MAGIC.items() if first.startswith(magic))
+    else:
+        kinds = (kind for end, kind in COMPRESSED.items() if input.url.endswith(end))
+    kind = next(kinds, None)
+    if kind == "gzip":
+        return lambda: zlib.decompressobj(wbits=31)
+    if kind == "zstd":
+        zstandard = needed("zstandard", "zstd", f"reading {input.url}")
+        return lambda: zstandard.ZstdDecompressor().decompressobj()
+    return None

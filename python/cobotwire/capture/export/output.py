@@ -6,8 +6,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-import pyarrow as pa
-
 from cobotwire.capture.export.atomic_file import AtomicFile, output_error
 from cobotwire.capture.export.batch import Batch
 from cobotwire.capture.export.formats import FORMATS, Format, Sink
@@ -31,13 +29,7 @@ class Target:
         self.atomic, self.schema = atomic, schema
         self.rows = self.waiting_rows = self.waiting_bytes = self.size = 0
         self._waiting: list[Batch] = []
-        self._joined = format.per_message
         self._sink: Sink | None = self._guarded(format.open_sink, atomic.file, schema, plan)
-
-    @property
-    def open(self) -> bool:
-        """Whether rows can be added."""
-        return self._sink is not None
 
     def add(self, batch: Batch) -> None:
         """Add rows; they wait for further ones."""
@@ -50,12 +42,9 @@ class Target:
         """Write the waiting rows as one block."""
         waiting, self._waiting = self._waiting, []
         self.waiting_rows = self.waiting_bytes = 0
-        if self._joined and len(waiting) > 1:
-            joined = pa.concat_tables([batch.table for batch in waiting])
-            waiting = [waiting[0]._replace(table=joined)]
-        for batch in waiting:
+        if waiting:
             assert self._sink is not None, "rows are added to open files only"
-            self._guarded(self._sink.write, batch)
+            self._guarded(self._sink.write, waiting)
 
     def complete(self) -> None:
         """Write everything to the disk."""
@@ -64,6 +53,13 @@ class Target:
             sink, self._sink = self._sink, None
             self._guarded(sink.close)
             self.size = self.atomic.finish()
+
+    def discard(self) -> None:
+        """Remove the file, unless it is published."""
+        self.atomic.discard()
+        if self._sink is not None:
+            sink, self._sink = self._sink, None
+            sink.close()
 
     def _guarded(self, action: Any, *arguments: Any) -> Any:
         try:
@@ -98,7 +94,7 @@ class Output:
         traceback: TracebackType | None,
     ) -> None:
         for target in [*self._completed, *self._targets.values()]:
-            target.atomic.discard()
+            target.discard()
 
     def write(self, batch: Batch) -> None:
         """Add the rows of a batch to their files.

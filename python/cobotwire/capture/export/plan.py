@@ -58,6 +58,7 @@ class ExportPlan:
         begin_ns: the first time to write, in nanoseconds since 1970 (UTC); None for all.
         end_ns: the first time not to write; None for all.
         wide: whether a field of several numbers becomes several columns.
+        gap_ns: a longer pause between two messages of a recording counts as a gap.
         partition: hive-style folders by these keys, from the outermost on.
         compression: how Parquet and Arrow files are compressed.
         overwrite: whether existing files are replaced.
@@ -72,6 +73,7 @@ class ExportPlan:
     begin_ns: int | None = None
     end_ns: int | None = None
     wide: bool = False
+    gap_ns: int = 1_000_000_000
     partition: tuple[Key, ...] = ()
     compression: Compression = "zstd"
     overwrite: bool = False
@@ -87,11 +89,19 @@ class ExportPlan:
             if value not in allowed:
                 hint = did_you_mean(value, allowed)
                 raise UsageError(argument, value, f"{', '.join(allowed)}{hint}")
+        if self.wide and self.format == "mcap":
+            message = "an MCAP message has a field for each of its rows of numbers: not wide"
+            raise UsageError("wide", self.wide, message=message)
         begin, end = self.begin_ns, self.end_ns
         if begin is not None and end is not None and begin >= end:
             message = "the time range is empty: it ends before it begins"
             raise UsageError("end", end, message=message)
         self._check_commands()
+
+    @property
+    def needs_times(self) -> bool:
+        """Whether every row must have a time."""
+        return self.format == "mcap" or (self.begin_ns, self.end_ns) != (None, None)
 
     def chooses(self, message: Message) -> bool:
         """Return whether the plan writes a message."""

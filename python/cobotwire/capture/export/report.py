@@ -31,8 +31,8 @@ class Report:
         rejected: legal frames with a value that the edition does not allow.
         not_chosen: messages of commands or directions that the plan leaves out.
         outside: messages outside of the plan's time range.
-        gaps: places where a recording lacks bytes, by reason.
-        truncated: inputs that end too early, each with what is missing.
+        gaps: pauses between the messages of a recording that are longer than the plan's, by robot.
+        truncated: inputs that end too early or are damaged, each with what is missing.
         files: the finished files.
     """
 
@@ -75,8 +75,8 @@ class Report:
 
     @property
     def clean(self) -> bool:
-        """Whether the inputs hold nothing but legal frames with allowed values, without gaps."""
-        damaged = self.noise.total() or self.rejected or self.gaps.total() or self.truncated
+        """Whether the inputs are complete, and hold nothing but legal frames."""
+        damaged = self.noise.total() or self.rejected or self.truncated
         return not damaged
 
     def as_dict(self) -> dict[str, Any]:

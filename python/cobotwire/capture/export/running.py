@@ -19,6 +19,6 @@ def run(plan: ExportPlan, inputs: Inputs, progress: Progress) -> Report:
             for batch in source.batches(input):
                 output.write(batch)
         if output.layout.single and not report.rows:
-            output.create_empty(source.empty_schema(output.layout.chosen()))
+            output.create_empty(source.empty_schema(output.layout.chosen()[0]))
         report.files = output.publish()
     return report

@@ -5,14 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from cobotwire.capture.captured_columns import CapturedColumns
+from cobotwire.capture.columns import capture_reader
 from cobotwire.capture.export.batch import Batch
+from cobotwire.capture.export.gaps import Gaps
 from cobotwire.capture.export.inputs import Input
 from cobotwire.capture.export.opening import InputStream, Progress
 from cobotwire.capture.export.plan import ExportPlan, Message
 from cobotwire.capture.export.report import Report
-from cobotwire.capture.export.tables import MessageTables
+from cobotwire.capture.export.tables import MessageTables, Origin
+from cobotwire.capture.packet import Interface
+from cobotwire.capture.packet_parsing import OURS
 from cobotwire.capture.reader import is_capture
-from cobotwire.codec.interface import Columns, Counters
+from cobotwire.codec.interface import Codec, Columns, Counters
 from cobotwire.protocol.errors import UsageError
 
 # The bytes to decode at a time. The rows of a piece take some three times as much memory.
@@ -29,12 +37,11 @@ class Source:
         self._tables: dict[str, MessageTables] = {}
 
     def batches(self, input: Input) -> Iterator[Batch]:
-        """Yield the chosen rows of an input.
+        """Yield the chosen rows of an input. The end of a damaged recording is left out.
 
         Raises:
-            UsageError: the input cannot be opened, or a time range is given and it has no times.
+            UsageError: the input cannot be opened, or the plan needs times and it has none.
             LinkError: reading failed.
-            CaptureError: a recording is damaged.
         """
         stream = InputStream(input, self._progress)
         try:
@@ -47,44 +54,98 @@ class Source:
         if stream.truncated:
             self._report.truncated.append(f"{input.url}: {stream.truncated}")
 
-    def tables(self, edition: str) -> MessageTables:
-        """Return the tables of an edition."""
-        if edition not in self._tables:
-            codec = self._plan.editions.codec(edition)
-            self._tables[edition] = MessageTables(codec, self._plan.wide)
-        return self._tables[edition]
+    def empty_schema(self, message: Message) -> Any:
+        """Return the schema of a file without rows."""
+        return self._tables_of(self._plan.editions.codec("")).schema(message)
 
     def _raw(self, input: Input, stream: InputStream, start: bytes) -> Iterator[Batch]:
-        if self._plan.begin_ns is not None or self._plan.end_ns is not None:
-            message = f"{input.url} holds raw bytes without times: leave out the time range"
+        if self._plan.needs_times:
+            what = "an MCAP file" if self._plan.format == "mcap" else "a time range"
+            message = f"{input.url} holds raw bytes without times, which {what} needs"
             raise UsageError("INPUT", input.url, message=message)
-        reader = self._plan.editions.codec("").column_reader(self._plan.direction)
+        codec = self._plan.editions.codec("")
+        reader = codec.column_reader(self._plan.direction)
+        origin = Origin(input.robot, input.url)
         piece = start
         while piece:
-            yield from self._chosen(reader.feed(piece), input, "")
+            yield from self._chosen(reader.feed(piece), origin)
             piece = stream.read(PIECE)
         columns = reader.flush()
-        yield from self._chosen(columns, input, "")
+        yield from self._chosen(columns, origin)
         self._count(columns.counters)
 
     def _recording(self, input: Input, stream: InputStream, start: bytes) -> Iterator[Batch]:
-        message = f"{input.url} is a recording; exporting recordings is not implemented yet"
-        raise UsageError("INPUT", input.url, message=message)
+        reader = capture_reader(self._codec_of, self._plan.direction, name=input.url)
+        gaps: dict[int, Gaps] = {}
+        piece = start
+        while piece:
+            yield from self._captured(reader.feed(piece), input, gaps)
+            piece = stream.read(PIECE)
+        last = reader.finish()
+        yield from self._captured(last, input, gaps)
+        for part in last.streams:
+            self._count(part.counters)
+        if incomplete := _incomplete(last):
+            self._report.truncated.append(f"{input.url}: {incomplete}")
 
-    def empty_schema(self, messages: list[Message]) -> Any:
-        """Return the schema of the single message of a file without rows."""
-        return self.tables("").schema(messages[0])
+    def _codec_of(self, interface: Interface) -> Codec:
+        return self._plan.editions.codec(interface.edition)
 
-    def _chosen(self, columns: Columns, input: Input, edition: str) -> Iterator[Batch]:
+    def _captured(
+        self, batch: CapturedColumns, input: Input, gaps: dict[int, Gaps]
+    ) -> Iterator[Batch]:
+        for interface in dict.fromkeys(stream.interface for stream in batch.streams):
+            streams = [stream for stream in batch.streams if stream.interface == interface]
+            robot = f"{input.robot}-{interface}" if interface else input.robot
+            found = gaps.setdefault(interface, Gaps(self._plan.gap_ns))
+            if count := found.take([time for stream in streams for time in stream.times]):
+                self._report.gaps[robot] += count
+            for stream in streams:
+                origin = Origin(robot, input.url, stream)
+                yield from self._chosen(stream.columns, origin)
+
+    def _chosen(self, columns: Columns, origin: Origin) -> Iterator[Batch]:
         self._report.rejected += len(columns.rejected)
-        tables = self.tables(edition).tables(columns, input.robot, input.url)
-        for message, table in tables:
-            if self._plan.chooses(message):
-                self._report.rows[message.label] += table.num_rows
-                yield Batch(message, edition, input.robot, table)
-            else:
+        edition = columns.table.edition
+        for message, table in self._tables_of(columns).tables(columns, origin):
+            if not self._plan.chooses(message):
                 self._report.not_chosen += table.num_rows
+                continue
+            inside = self._inside(table)
+            self._report.outside += table.num_rows - inside.num_rows
+            if inside.num_rows:
+                self._report.rows[message.label] += inside.num_rows
+                yield Batch(message, edition, origin.robot, inside)
+
+    def _inside(self, table: Any) -> Any:
+        """Return the rows in the plan's time range."""
+        for end, compare in (
+            (self._plan.begin_ns, pc.greater_equal),
+            (self._plan.end_ns, pc.less),
+        ):
+            if end is not None:
+                time = table.column("time")
+                table = table.filter(compare(time, pa.scalar(end, pa.int64()).cast(time.type)))
+        return table
+
+    def _tables_of(self, decoded: Columns | Codec) -> MessageTables:
+        edition = decoded.table.edition
+        if edition not in self._tables:
+            wide = self._plan.wide or self._plan.format == "csv"
+            self._tables[edition] = MessageTables(decoded.table, wide)
+        return self._tables[edition]
 
     def _count(self, counters: Counters) -> None:
         self._report.bytes += counters.bytes
         self._report.noise.update(counters.noise)
+
+
+def _incomplete(capture: CapturedColumns) -> str:
+    """Return what is missing at the end of a recording; empty if nothing is."""
+    if capture.error is not None:
+        return f"{capture.error}; everything before that is exported"
+    if capture.truncated_at is not None:
+        return f"it ends in the middle of a packet, after byte {capture.truncated_at}"
+    # Other programs need not write what tells that a recording is finished.
+    unfinished = capture.application.startswith(OURS) and not capture.finished
+    return "the recording was not finished" if unfinished else ""

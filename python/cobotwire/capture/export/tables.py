@@ -2,71 +2,68 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import pyarrow as pa
 
+from cobotwire.capture.captured_columns import StreamColumns
 from cobotwire.capture.export.plan import Message
-from cobotwire.codec.interface import Codec, Columns, Rows
+from cobotwire.codec.arrow import times
+from cobotwire.codec.interface import Columns, Counters, Rows
 from cobotwire.protocol.table import Table
 
 # The columns before the fields: which robot, which input, where in the stream, when.
 OWN = ("robot", "source", "offset", "time")
 TIME = pa.timestamp("ns", tz="UTC")
-_NAME = pa.dictionary(pa.int32(), pa.utf8())
+
+
+class Origin(NamedTuple):
+    """Where rows come from.
+
+    Attributes:
+        robot: the name of the robot.
+        source: the name of the input.
+        stream: the stream of a recording; None for raw bytes, which have no times.
+    """
+
+    robot: str
+    source: str
+    stream: StreamColumns | None = None
 
 
 class MessageTables:
     """Makes the tables of one edition's messages; all tables of a message have one schema."""
 
-    def __init__(self, codec: Codec, wide: bool) -> None:
-        self._codec, self._wide = codec, wide
-        self._empty = codec.decode_columns(b"")
-        self._schemas: dict[Message, Any] = {}
-
-    @property
-    def messages(self) -> list[Message]:
-        """All messages of the edition that have variants."""
-        return messages_of(self._codec.table)
+    def __init__(self, table: Table, wide: bool) -> None:
+        self._table, self._wide = table, wide
 
     def schema(self, message: Message) -> Any:
         """Return the schema of a message, whichever of its variants occur."""
-        if message not in self._schemas:
-            count = len(self._codec.table.command(message.command).variants(message.direction))
-            variants = [
-                _fields(self._empty.rows(message.command, message.direction, index), self._wide)
-                for index in range(count)
-            ]
-            self._schemas[message] = _with_own(_unified([table.schema for table in variants]))
-        return self._schemas[message]
+        nothing = memoryview(b"").cast("Q")
+        counters = Counters(0, {}, {}, 0)
+        columns = Columns(self._table, [], nothing, (nothing, nothing), counters)
+        return self._arrow(columns, message, Origin("", "")).schema
 
-    def tables(
-        self, columns: Columns, robot: str, source: str, times: Any = None
-    ) -> list[tuple[Message, Any]]:
-        """Return a table of each message that occurs, with its rows in the order of the stream.
+    def tables(self, columns: Columns, origin: Origin) -> list[tuple[Message, Any]]:
+        """Return a table of each message that occurs, with its rows in the order of the stream."""
+        found = dict.fromkeys(
+            Message(rows.command.name, rows.direction) for rows in columns if len(rows)
+        )
+        return [(message, self._arrow(columns, message, origin)) for message in found]
 
-        ``times`` returns the times of an array of offsets; None if the stream has no times.
-        """
-        found: dict[Message, list[Rows]] = {}
-        for rows in columns:
-            if len(rows):
-                found.setdefault(Message(rows.command.name, rows.direction), []).append(rows)
-        return [
-            (message, self._table(message, variants, robot, source, times))
-            for message, variants in found.items()
-        ]
-
-    def _table(
-        self, message: Message, variants: list[Rows], robot: str, source: str, times: Any
-    ) -> Any:
-        schema = self.schema(message)
-        parts = [_conform(_fields(rows, self._wide), schema) for rows in variants]
-        fields = parts[0] if len(parts) == 1 else pa.concat_tables(parts).sort_by("offset")
-        size = fields.num_rows
-        time = pa.nulls(size, TIME) if times is None else times(fields.column("offset"))
-        own = [_constant(robot, size), _constant(source, size), fields.column("offset"), time]
-        return pa.Table.from_arrays([*own, *fields.columns[1:]], schema=schema)
+    def _arrow(self, columns: Columns, message: Message, origin: Origin) -> Any:
+        table = columns.to_arrow(
+            message.command,
+            message.direction,
+            wide=self._wide,
+            leading=lambda rows: _leading(rows, columns, origin),
+        )
+        # Rows of raw bytes have no time.
+        place = OWN.index("time")
+        schema = table.schema.set(place, pa.field("time", TIME))
+        return pa.Table.from_arrays(table.columns, schema=schema)
 
 
 @lru_cache
@@ -80,44 +77,18 @@ def messages_of(table: Table) -> list[Message]:
     ]
 
 
-def _fields(rows: Rows, wide: bool) -> Any:
-    """Return the offset and the fields of some rows; fields never have the name of our columns."""
-    table = pa.table(rows)
-    names = [f"field_{name}" if name in OWN else name for name in table.column_names[1:]]
-    return table.rename_columns(["offset", *names])
-
-
-def _unified(schemas: list[Any]) -> Any:
-    """Return a schema with the columns of all variants; what some variants lack may be null."""
-    unified = pa.unify_schemas(schemas)
-    everywhere = set.intersection(*(set(schema.names) for schema in schemas))
-    fields = [field.with_nullable(field.name not in everywhere) for field in unified]
-    return pa.schema(fields)
-
-
-def _with_own(fields: Any) -> Any:
-    own = [
-        pa.field("robot", _NAME, nullable=False),
-        pa.field("source", _NAME, nullable=False),
-        fields.field("offset"),
-        pa.field("time", TIME),
-    ]
-    return pa.schema([*own, *list(fields)[1:]])
-
-
-def _conform(table: Any, schema: Any) -> Any:
-    """Return the offset and the fields with the types of a schema; null where there is no field."""
-    fields = [schema.field("offset"), *list(schema)[len(OWN) :]]
-    names = table.column_names
-    columns = [
-        table.column(field.name).cast(field.type)
-        if field.name in names
-        else pa.nulls(table.num_rows, field.type)
-        for field in fields
-    ]
-    return pa.Table.from_arrays(columns, schema=pa.schema(fields))
+def _leading(rows: Rows, columns: Columns, origin: Origin) -> Mapping[str, Any]:
+    """Return our columns for some rows."""
+    size = len(rows)
+    time = pa.nulls(size, TIME)
+    if origin.stream is not None:
+        time = next(
+            (times(its) for each, its in zip(columns, origin.stream.times) if each is rows), time
+        )
+    values = (_constant(origin.robot, size), _constant(origin.source, size), rows.offset, time)
+    return dict(zip(OWN, values))
 
 
 def _constant(text: str, size: int) -> Any:
-    indices = pa.array(memoryview(bytes(4 * size)).cast("i"), pa.int32())
-    return pa.DictionaryArray.from_arrays(indices, pa.array([text], pa.utf8()))
+    index = pa.repeat(pa.scalar(0, pa.int32()), size)
+    return pa.DictionaryArray.from_arrays(index, pa.array([text], pa.utf8()))

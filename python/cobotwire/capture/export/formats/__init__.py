@@ -14,8 +14,11 @@ from cobotwire.capture.export.plan import ExportPlan, FormatName
 class Sink(Protocol):
     """Writes tables into one open file."""
 
-    def write(self, batch: Batch) -> None:
-        """Append rows; those of one call become one block of the file, where it has blocks."""
+    def write(self, batches: list[Batch]) -> None:
+        """Append rows; those of one call become one block of the file, where it has blocks.
+
+        If the format has a file for each message, all batches have the same schema.
+        """
         ...
 
     def close(self) -> None:

@@ -6,7 +6,7 @@ from typing import Any, BinaryIO
 
 import pyarrow as pa
 
-from cobotwire.capture.export.batch import Batch
+from cobotwire.capture.export.batch import Batch, joined
 from cobotwire.capture.export.plan import ExportPlan
 
 # The format has no other codecs.
@@ -19,9 +19,9 @@ class ArrowSink:
     def __init__(self, writer: Any, schema: Any) -> None:
         self._writer, self._schema = writer, schema
 
-    def write(self, batch: Batch) -> None:
+    def write(self, batches: list[Batch]) -> None:
         """Append record batches."""
-        self._writer.write_table(batch.table.cast(self._schema))
+        self._writer.write_table(joined(batches).cast(self._schema))
 
     def close(self) -> None:
         """Write the footer."""

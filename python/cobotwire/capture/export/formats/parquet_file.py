@@ -6,7 +6,7 @@ from typing import Any, BinaryIO
 
 import pyarrow.parquet as pq
 
-from cobotwire.capture.export.batch import Batch
+from cobotwire.capture.export.batch import Batch, joined
 from cobotwire.capture.export.plan import ExportPlan
 
 # Dictionaries of measured values are tried and given up again: only names get them.
@@ -19,9 +19,10 @@ class ParquetSink:
     def __init__(self, writer: Any) -> None:
         self._writer = writer
 
-    def write(self, batch: Batch) -> None:
+    def write(self, batches: list[Batch]) -> None:
         """Append a row group."""
-        self._writer.write_table(batch.table, row_group_size=max(batch.table.num_rows, 1))
+        table = joined(batches)
+        self._writer.write_table(table, row_group_size=table.num_rows)
 
     def close(self) -> None:
         """Write the footer."""

@@ -1,0 +1,97 @@
+"""Write messages to an MCAP file, which Foxglove, PlotJuggler and other robotics tools open.
+
+Each message of each robot is a channel with JSON objects. The angles of the joints are also
+``foxglove.JointStates``, and the pose of the arm's end is a ``foxglove.PoseInFrame``.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from heapq import merge
+from typing import Any, BinaryIO, NamedTuple
+
+from mcap.writer import Writer
+
+from cobotwire.capture.export.batch import Batch
+from cobotwire.capture.export.formats import mcap_schemas as schemas
+from cobotwire.capture.export.formats.mcap_motion import TOPICS, Motion
+from cobotwire.capture.export.plan import ExportPlan
+from cobotwire.capture.export.tables import OWN
+
+# Rows that become Python objects at a time.
+ROWS = 4096
+
+
+class Record(NamedTuple):
+    """A message of a channel: when, where, and its content as JSON."""
+
+    time_ns: int
+    channel: int
+    data: bytes
+
+
+class McapSink:
+    """Writes the messages of a block in the order of their times."""
+
+    def __init__(self, writer: Writer, plan: ExportPlan) -> None:
+        self._writer, self._plan = writer, plan
+        self._channels: dict[str, int] = {}
+        self._schemas: dict[str, int] = {}
+        self._motions: dict[str, Motion] = {}
+
+    def write(self, batches: list[Batch]) -> None:
+        """Append messages."""
+        for record in merge(*map(self._records, batches)):
+            self._writer.add_message(
+                record.channel, record.time_ns, record.data, publish_time=record.time_ns
+            )
+
+    def close(self) -> None:
+        """Write the index."""
+        self._writer.finish()  # type: ignore[no-untyped-call]
+
+    def _records(self, batch: Batch) -> Iterator[Record]:
+        """Yield the records of a batch, in the order of its rows."""
+        motion = self._motion(batch.edition)
+        schema = schemas.of_table(f"cobotwire.{batch.message.label}", batch.table.schema)
+        topic = f"/{batch.robot}/{batch.message.command}/{batch.message.direction}"
+        channel = self._channel(topic, schema, batch.edition)
+        for block in batch.table.to_batches(max_chunksize=ROWS):
+            times = block.column("time").cast("int64").to_pylist()
+            dropped = [name for name in block.schema.names if name in OWN]
+            for time_ns, fields in zip(times, block.drop_columns(dropped).to_pylist()):
+                yield Record(time_ns, channel, _json(fields))
+                for derived, value in motion.derived(batch.message, fields, time_ns):
+                    topic = f"/{batch.robot}/{TOPICS[derived['title']]}"
+                    yield Record(
+                        time_ns, self._channel(topic, derived, batch.edition), _json(value)
+                    )
+
+    def _motion(self, edition: str) -> Motion:
+        if edition not in self._motions:
+            self._motions[edition] = Motion(self._plan.editions, edition)
+        return self._motions[edition]
+
+    def _channel(self, topic: str, schema: schemas.Schema, edition: str) -> int:
+        if topic not in self._channels:
+            title = schema["title"]
+            if title not in self._schemas:
+                content = json.dumps(schema).encode()
+                self._schemas[title] = self._writer.register_schema(title, "jsonschema", content)
+            table = self._plan.editions.codec(edition).table
+            self._channels[topic] = self._writer.register_channel(
+                topic, "json", self._schemas[title], {"edition": table.edition}
+            )
+        return self._channels[topic]
+
+
+def open_sink(file: BinaryIO, schema: Any, plan: ExportPlan) -> McapSink:
+    """Return a sink for a file."""
+    writer = Writer(file)
+    writer.start(library="cobotwire")
+    return McapSink(writer, plan)
+
+
+def _json(value: Any) -> bytes:
+    return json.dumps(value, default=bytes.hex).encode()

@@ -1,0 +1,165 @@
+"""``cobotwire export``: write captures to Parquet, CSV, Arrow and MCAP files."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import get_args
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn
+
+from cobotwire.capture.export import ExportPlan, FormatName, Inputs, write
+from cobotwire.capture.export.formats import format_of
+from cobotwire.capture.export.plan import Compression, Key
+from cobotwire.capture.export.times import time_ns
+from cobotwire.cli.shared.completers import complete_commands
+from cobotwire.cli.shared.export_report import report_lines
+from cobotwire.cli.shared.output import print_line
+from cobotwire.codec.interface import Listening
+from cobotwire.inspect.exporting import InstalledEditions
+
+
+def _time(context: click.Context, option: click.Parameter, value: str | None) -> int | None:
+    return None if value is None else time_ns(value, option.opts[0])
+
+
+def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[str, ...]:
+    return tuple(value.split(",")) if value else ()
+
+
+@click.command(short_help="Write captures to Parquet, CSV, Arrow and MCAP.")
+@click.argument("input", nargs=-1, required=True, type=click.Path(), metavar="INPUT...")
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(),
+    metavar="OUT",
+    help="A folder, or a single file, such as all.mcap or angles.parquet.",
+)
+@click.option(
+    "--format",
+    type=click.Choice(get_args(FormatName)),
+    help="The format; by default that of OUT's ending, or Parquet.",
+)
+@click.option(
+    "--command",
+    "commands",
+    multiple=True,
+    metavar="NAME",
+    shell_complete=complete_commands,
+    help="Write only this command. May be repeated.",
+)
+@click.option(
+    "--direction",
+    type=click.Choice(["request", "reply", "both"]),
+    default="both",
+    show_default=True,
+    help="Which messages to write; also which messages raw bytes hold.",
+)
+@click.option("--from", "begin_ns", callback=_time, metavar="TIME", help="The first time (UTC).")
+@click.option("--to", "end_ns", callback=_time, metavar="TIME", help="The time of the end (UTC).")
+@click.option("--wide", is_flag=True, help="Give each number of a field a column of its own.")
+@click.option(
+    "--gap",
+    type=click.FloatRange(min=0),
+    default=1.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Count pauses in a recording that are longer.",
+)
+@click.option(
+    "--partition",
+    default="",
+    callback=_keys,
+    metavar="KEYS",
+    help="Write folders by robot, command and day: any of these, with commas between them.",
+)
+@click.option(
+    "--compression",
+    type=click.Choice(get_args(Compression)),
+    default="zstd",
+    show_default=True,
+    help="How Parquet and Arrow files are compressed.",
+)
+@click.option("--overwrite", is_flag=True, help="Replace files that exist.")
+@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
+@click.option("--quiet", is_flag=True, help="Print no report and no progress.")
+@click.pass_obj
+def export(
+    edition: str,
+    input: tuple[str, ...],
+    output: str,
+    format: FormatName | None,
+    commands: tuple[str, ...],
+    direction: Listening,
+    begin_ns: int | None,
+    end_ns: int | None,
+    wide: bool,
+    gap: float,
+    partition: tuple[Key, ...],
+    compression: Compression,
+    overwrite: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Write the messages of captures to files that data tools read.
+
+    INPUT is a recording (pcapng) or raw bytes: a file, a folder, a pattern such as 'mon*.pcapng',
+    an fsspec URL such as s3://bucket/day/, or - for standard input. Files that end in .gz or .zst
+    are decompressed.
+
+    By default, each message has a file in the folder OUT: get_angles.reply.parquet. An MCAP file
+    holds all messages, and what Foxglove draws: the states of the joints, and the pose of the end.
+
+    \b
+      cobotwire export arm.pcapng -o out/
+      cobotwire export captures/ -o angles.parquet --command get_angles --direction reply
+      cobotwire export 'captures/*.pcapng.zst' -o lake/ --partition robot,command,day
+      cobotwire export arm.pcapng -o arm.mcap --from 2026-11-23T14:00 --to 2026-11-23T15:00
+
+    The report counts rows, noise, rejected frames, gaps, and inputs that end too early. An export
+    that is interrupted leaves no file under its final name.
+
+    Exit codes: 0 everything is written, and the inputs hold only legal frames; 1 everything is
+    written, but they also hold noise or rejected frames, or end too early; 8 a file cannot
+    be written.
+    """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
+    plan = ExportPlan(
+        output,
+        InstalledEditions(edition),
+        format or format_of(output) or "parquet",
+        commands,
+        direction,
+        begin_ns,
+        end_ns,
+        wide,
+        round(gap * 1e9),
+        partition,
+        compression,
+        overwrite,
+    )
+    inputs = Inputs.find(input)
+    with _progress(inputs, quiet) as advance:
+        report = write(plan, inputs, advance)
+    if as_json:
+        print_line(json.dumps(report.as_dict()))
+    elif not quiet:
+        click.echo("\n".join(report_lines(report)), err=True)
+    sys.exit(0 if report.clean else 1)
+
+
+@contextmanager
+def _progress(inputs: Inputs, quiet: bool) -> Iterator[Callable[[int], None]]:
+    """Yield a function that takes the sizes of reads, and shows them if there is a terminal."""
+    console = Console(stderr=True)
+    columns = TextColumn("exporting"), BarColumn(), DownloadColumn(), TimeRemainingColumn()
+    hidden = quiet or not console.is_terminal
+    # The bar goes when the export is complete: the report takes its place.
+    with Progress(*columns, console=console, disable=hidden, transient=True) as bar:
+        task = bar.add_task("exporting", total=inputs.size)
+        yield lambda size: bar.advance(task, size)

@@ -1,0 +1,152 @@
+"""Whatever ends an export, no file with a final name is incomplete, and the next run succeeds."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from capture.export.exporting import export, reply
+from cobotwire.capture.export.atomic_file import AtomicFile
+from cobotwire.protocol.errors import OutputError, UsageError
+from command_line import PROGRAM
+
+ANGLES = reply("get_angles", [1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+POWERED = reply("is_power_on", 1)
+
+
+def files(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.rglob("*") if path.is_file())
+
+
+def finals(folder: Path) -> list[str]:
+    return [name for name in files(folder) if not name.startswith(".")]
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
+def test_interrupted_export_leaves_no_final_file_and_can_be_repeated(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    out = tmp_path / "out"
+    # An export of standard input waits for more, so it is in the middle until the signal comes.
+    process = subprocess.Popen([*PROGRAM, "export", "-", "-o", str(out)], stdin=subprocess.PIPE)
+    assert process.stdin is not None
+    process.stdin.write((ANGLES * 99 + POWERED) * 11_000)
+    process.stdin.flush()
+    deadline = time.monotonic() + 60
+    while not any(name.endswith("tmp") for name in files(out)):
+        assert time.monotonic() < deadline, "the export did not begin"
+        time.sleep(0.05)
+    process.send_signal(number)
+    code = process.wait(60)
+    with suppress(BrokenPipeError):
+        process.stdin.close()
+    assert finals(out) == []
+    if number == signal.SIGINT:
+        assert (code, files(out)) == (130, [])
+    (tmp_path / "arm.bin").write_bytes(ANGLES * 10 + POWERED)
+    export(out, tmp_path / "arm.bin")
+    assert files(out) == ["get_angles.reply.parquet", "is_power_on.reply.parquet"]
+    assert pq.read_table(out / "get_angles.reply.parquet").num_rows == 10
+
+
+def limited(*words: str | Path, limit: int) -> subprocess.CompletedProcess[str]:
+    """Run the command line in a process whose files may have ``limit`` bytes: a full disk."""
+    script = (
+        "import resource, sys\n"
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))\n"
+        "from cobotwire.cli import main\n"
+        "main()"
+    )
+    command = [sys.executable, "-c", script, *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+@pytest.mark.parametrize("ending", ["parquet", "csv", "arrow"])
+def test_full_disk_is_an_error_that_names_the_file(tmp_path: Path, ending: str) -> None:
+    varied = (
+        reply("get_angles", [float(number % 160), 2.0, 3.0, 4.0, 5.0, 6.0])
+        for number in range(2000)
+    )
+    (tmp_path / "arm.bin").write_bytes(b"".join(varied))
+    out = tmp_path / f"angles.{ending}"
+    options = ("--command", "get_angles", "--direction", "reply")
+    done = limited("export", tmp_path / "arm.bin", "-o", out, *options, limit=2000)
+    assert done.returncode == 8, done.stderr
+    assert done.stderr.startswith(f"cobotwire: {out}: writing failed: ")
+    assert "Traceback" not in done.stderr
+    assert files(tmp_path) == ["arm.bin"]
+
+
+def test_existing_file_is_replaced_only_on_request(tmp_path: Path) -> None:
+    (tmp_path / "arm.bin").write_bytes(POWERED)
+    out = tmp_path / "out"
+    export(out, tmp_path / "arm.bin")
+    (tmp_path / "arm.bin").write_bytes(POWERED * 2)
+    with pytest.raises(UsageError, match="exists already; --overwrite replaces it"):
+        export(out, tmp_path / "arm.bin")
+    assert pq.read_table(out / "is_power_on.reply.parquet").num_rows == 1
+    export(out, tmp_path / "arm.bin", overwrite=True)
+    assert pq.read_table(out / "is_power_on.reply.parquet").num_rows == 2
+    assert files(out) == ["is_power_on.reply.parquet"]
+
+
+def test_failing_export_with_overwrite_leaves_the_old_file(tmp_path: Path) -> None:
+    (tmp_path / "arm.bin").write_bytes(POWERED)
+    out = tmp_path / "out"
+    export(out, tmp_path / "arm.bin")
+    (tmp_path / "bad.bin.gz").write_bytes(b"not gzip")
+    with pytest.raises(OSError, match="decompressing failed"):
+        export(out, tmp_path / "arm.bin", tmp_path / "bad.bin.gz", overwrite=True)
+    assert pq.read_table(out / "is_power_on.reply.parquet").num_rows == 1
+    assert files(out) == ["is_power_on.reply.parquet"]
+
+
+def test_two_exports_cannot_write_one_file_at_the_same_time(tmp_path: Path) -> None:
+    first = AtomicFile(tmp_path / "a.parquet", overwrite=True)
+    with pytest.raises(UsageError, match="another export is writing this file"):
+        AtomicFile(tmp_path / "a.parquet", overwrite=True)
+    first.file.write(b"whole")
+    first.finish()
+    first.publish()
+    second = AtomicFile(tmp_path / "a.parquet", overwrite=True)
+    second.discard()
+    assert (tmp_path / "a.parquet").read_bytes() == b"whole"
+    assert files(tmp_path) == ["a.parquet"]
+
+
+def test_file_that_appears_during_the_export_is_not_replaced(tmp_path: Path) -> None:
+    atomic = AtomicFile(tmp_path / "a.parquet", overwrite=False)
+    (tmp_path / "a.parquet").write_bytes(b"other")
+    with pytest.raises(UsageError, match="exists already"):
+        atomic.publish()
+    atomic.discard()
+    assert (tmp_path / "a.parquet").read_bytes() == b"other"
+
+
+def test_folder_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(OutputError, match="writing failed"):
+        AtomicFile(tmp_path / "file" / "a.parquet", overwrite=False)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="the system has no /dev/full")
+def test_device_without_space_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "arm.bin").write_bytes(POWERED)
+    # The temporary name is beside the final one, so the link is that of the temporary file.
+    os.symlink("/dev/full", tmp_path / ".a.parquet.cobotwire-tmp")
+    with pytest.raises(OutputError, match="No space left on device"):
+        export(
+            tmp_path / "a.parquet",
+            tmp_path / "arm.bin",
+            commands=("is_power_on",),
+            direction="reply",
+        )
+    assert files(tmp_path) == ["arm.bin"]
