@@ -4,7 +4,7 @@ It reads a table's objects once, when a codec is made. ``rust/core`` decides wha
 ``cobotwire.protocol.rejection`` makes the sentences of the errors.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, final
 
 from typing_extensions import Buffer
@@ -13,7 +13,14 @@ from cobotwire.codec.columns import Columns, Scan
 from cobotwire.codec.interface import Counters, Data, DecodedMessage, Event, Listening
 from cobotwire.protocol.table import Direction, Table
 
-__all__ = ["Memory", "NativeCodec", "NativeColumnReader", "NativeFrame", "NativeFramer"]
+__all__ = [
+    "Memory",
+    "NativeCaptureReader",
+    "NativeCodec",
+    "NativeColumnReader",
+    "NativeFrame",
+    "NativeFramer",
+]
 
 @final
 class NativeCodec:
@@ -199,6 +206,50 @@ class NativeColumnReader:
     @property
     def pending(self) -> int:
         """How many fed bytes are not accounted for yet; fewer than the longest frame has."""
+
+@final
+class NativeCaptureReader:
+    """Reads a pcapng recording, piece by piece, into columns with times.
+
+    ``codec_of`` is called with the name, the description and the speed of an interface when a
+    direction of it has its first packet; an exception of it ends reading. While a thread uses the
+    reader, every use by another one raises UsageError and changes nothing.
+    """
+
+    def __new__(
+        cls,
+        codec_of: Callable[[bytes, bytes, int], NativeCodec],
+        listening: Listening,
+        raw: bool,
+    ) -> NativeCaptureReader:
+        """Begin a file; packets of unknown direction hold messages of ``listening``."""
+
+    def add(self, data: Data) -> None:
+        """Take the next bytes of the file; after damage or the end they are ignored."""
+
+    def end(self) -> None:
+        """End the file, and stop waiting for more bytes."""
+
+    def streams(self) -> list[tuple[int, int, Columns, list[Memory], Memory, Memory]]:
+        """Return what was found in each stream since the last call.
+
+        For each stream: the index of its interface; its direction (0 unknown, 1 received, 2 sent);
+        its columns; the times of each of their rows, of the rejected frames and of the noise.
+        """
+
+    @property
+    def interfaces(self) -> tuple[tuple[bytes, bytes, int], ...]:
+        """The name, description and speed of each interface that the file describes so far."""
+
+    @property
+    def status(
+        self,
+    ) -> tuple[bytes, int, bool, int | None, tuple[int, str, list[int]] | None]:
+        """The name of the writing program, and where reading stands.
+
+        That is the number of bytes read; whether the recording was finished; the offset of the
+        incomplete block at the end; and the damage: its offset, its kind and its numbers.
+        """
 
 @final
 class Memory(Buffer):

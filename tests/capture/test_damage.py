@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from capture.lines import packets, reader, written
 from cobotwire.capture import CaptureReader, Packet, is_capture, read
-from cobotwire.capture.block_parsing import LARGEST_BLOCK
+from cobotwire.capture.damage import LARGEST_BLOCK
 from cobotwire.protocol.errors import CaptureError, UsageError
 
 SAMPLE = [Packet(1_000, "sent", b"request"), Packet(2_000, "received", b"reply!!", "noise", "x")]

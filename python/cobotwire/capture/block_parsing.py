@@ -7,13 +7,10 @@ from collections.abc import Generator, Iterator
 from typing import BinaryIO, NamedTuple
 
 from cobotwire.capture import block_encoding as blocks
-from cobotwire.protocol.errors import CaptureError
+from cobotwire.capture.damage import LARGEST_BLOCK, damaged
 
-# Wireshark's own limit; a longer block counts as damage.
-LARGEST_BLOCK = 16 * 1024 * 1024
 SMALLEST_BLOCK = 12
 SMALLEST_SECTION = 28
-NOT_PCAPNG = "the file is not a pcapng recording"
 
 
 class Block(NamedTuple):
@@ -74,14 +71,14 @@ def cut_blocks(name: str) -> Generator[int | Block, bytes, None]:
                 raise Truncated(offset)
             order = _order_of(magic, name, offset)
         elif not order:
-            raise CaptureError(name, offset, NOT_PCAPNG)
+            raise damaged(name, offset, "not-pcapng")
         kind, size = struct.unpack(order + "II", head)
         _check_size(size, kind, name, offset)
         rest = magic + (yield size - 8 - len(magic))
         if len(rest) < size - 8:
             raise Truncated(offset)
         if rest[-4:] != head[4:]:
-            raise CaptureError(name, offset, "damaged: the two lengths of a block differ")
+            raise damaged(name, offset, "lengths-differ")
         yield Block(offset, kind, rest[:-4], order)
         offset += size
 
@@ -101,14 +98,13 @@ def _order_of(magic: bytes, name: str, offset: int) -> str:
     for order in "<>":
         if struct.unpack(order + "I", magic)[0] == blocks.BYTE_ORDER_MAGIC:
             return order
-    raise CaptureError(name, offset, NOT_PCAPNG)
+    raise damaged(name, offset, "not-pcapng")
 
 
 def _check_size(size: int, kind: int, name: str, offset: int) -> None:
     smallest = SMALLEST_SECTION if kind == blocks.SECTION else SMALLEST_BLOCK
     if size % 4 or not smallest <= size <= LARGEST_BLOCK:
-        allowed = f"a multiple of 4 in {smallest}..{LARGEST_BLOCK}"
-        raise CaptureError(name, offset, f"damaged: a block has length {size}, not {allowed}")
+        raise damaged(name, offset, "bad-length", size, smallest)
 
 
 class Fields:
@@ -127,11 +123,7 @@ class Fields:
         """Return ``size`` bytes and skip the padding after them."""
         end = self._at + size
         if end > len(self._block.body):
-            raise CaptureError(
-                self._name,
-                self._block.offset,
-                "damaged: a block is too short for its content",
-            )
+            raise damaged(self._name, self._block.offset, "too-short")
         data = self._block.body[self._at : end]
         self._at = min(end + -size % 4, len(self._block.body))
         return data

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import BinaryIO, Literal, Protocol
 
+from cobotwire import codec as codecs
 from cobotwire.capture.captured_columns import CapturedColumns
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.capture.packet import Interface
@@ -65,8 +66,18 @@ def capture_reader(
         raw: whether columns hold raw values instead of physical ones.
         name: the name of the file, for messages.
     """
-    codec_of = codec if callable(codec) else lambda _: codec
-    return ReferenceCaptureReader(codec_of, listening, raw, name)
+    if not callable(codec):
+        reader = _reader_class(codec.name == "native" and codec.table.frame.reply_has_id)
+        return reader(lambda _: codec, listening, raw, name)
+    return _reader_class(codecs.chosen() == "native")(codec, listening, raw, name)
+
+
+def _reader_class(native: bool) -> Callable[..., ColumnsReader]:
+    if native:
+        from cobotwire.capture.native_columns import NativeColumnsReader
+
+        return NativeColumnsReader
+    return ReferenceCaptureReader
 
 
 def read_batches(

@@ -11,7 +11,7 @@ Direction = Literal["sent", "received", "unknown"]
 Kind = Literal["frame", "noise", "bytes"]
 
 # Both numbers have at most 19 digits: the time stamps of a capture have 64 bits.
-_PIECE = re.compile(r"(?<!\d)(\d{1,19}) bytes at \+(\d{1,19}) ns")
+_PIECE = re.compile(r"(?<![0-9])([0-9]{1,19}) bytes at \+([0-9]{1,19}) ns")
 _MARK = "in pieces: "
 
 

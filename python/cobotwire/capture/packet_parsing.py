@@ -6,8 +6,8 @@ from typing import Literal, NamedTuple, NoReturn
 
 from cobotwire.capture import block_encoding as blocks
 from cobotwire.capture.block_parsing import Block, Fields
+from cobotwire.capture.damage import MOST_INTERFACES, damaged
 from cobotwire.capture.packet import Direction, Interface, Packet, with_comment
-from cobotwire.protocol.errors import CaptureError
 
 DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent", "unknown")
 MICROSECONDS = 6
@@ -68,31 +68,32 @@ class PacketParser:
         elif block.kind == blocks.STATISTICS:
             self._finished.add(self._format(block, fields).number)
         elif block.kind in (blocks.SIMPLE_PACKET, blocks.OBSOLETE_PACKET):
-            self._reject(block, "its packets have neither a time nor a direction")
+            self._reject(block, "no-time")
         # Other blocks (names, secrets, private ones) are skipped.
         return None
 
     def _section(self, block: Block, fields: Fields) -> None:
         _, major, _, _ = fields.numbers("IHHq")
         if major != blocks.VERSION[0]:
-            self._reject(block, f"it has pcapng version {major}; supported: {blocks.VERSION[0]}")
+            self._reject(block, "version", major)
         # Interface indexes start from 0 in each section.
         self._formats = []
         self._endian = "little" if block.order == "<" else "big"
         options = dict(fields.options())
-        self.application = _text(options.get(blocks.SECTION_APPLICATION, b""))
+        self.application = decoded(options.get(blocks.SECTION_APPLICATION, b""))
 
     def _interface(self, block: Block, fields: Fields) -> None:
+        if len(self.interfaces) >= MOST_INTERFACES:
+            self._reject(block, "many-interfaces")
         link_type, _, _ = fields.numbers("HHI")
         options = dict(fields.options())
         for code in (blocks.INTERFACE_SPEED, blocks.INTERFACE_OFFSET):
             if len(options.get(code, b"")) > blocks.NUMBER_SIZE:
-                self._reject(block, "damaged: a number of an interface is too long")
-        description = _text(options.get(blocks.INTERFACE_DESCRIPTION, b""))
-        key, _, edition = description.partition(" ")
+                self._reject(block, "long-number")
+        name = options.get(blocks.INTERFACE_NAME, b"")
+        description = options.get(blocks.INTERFACE_DESCRIPTION, b"")
         speed = int.from_bytes(options.get(blocks.INTERFACE_SPEED, b""), self._endian)
-        name = _text(options.get(blocks.INTERFACE_NAME, b""))
-        self.interfaces.append(Interface(name, edition if key == "edition" else "", speed))
+        self.interfaces.append(interface_of(name, description, speed))
         resolution = options.get(blocks.INTERFACE_RESOLUTION) or bytes([MICROSECONDS])
         offset = options.get(blocks.INTERFACE_OFFSET, b"")
         seconds = int.from_bytes(offset, self._endian, signed=True)
@@ -101,7 +102,7 @@ class PacketParser:
     def _packet(self, block: Block, fields: Fields) -> Packet:
         format = self._format(block, fields)
         if format.link_type not in blocks.USER_LINK_TYPES:
-            self._reject(block, f"link type {format.link_type} is not that of a serial recording")
+            self._reject(block, "link-type", format.link_type)
         high, low, size, _ = fields.numbers("IIII")
         data = fields.data(size)
         options = dict(fields.options())
@@ -113,17 +114,28 @@ class PacketParser:
             "frame" if self.application.startswith(OURS) else "bytes",
             interface=format.number,
         )
-        return with_comment(packet, _text(options.get(blocks.COMMENT, b"")))
+        packet = with_comment(packet, decoded(options.get(blocks.COMMENT, b"")))
+        times = [packet.time_ns, *[piece.time_ns for piece in packet.pieces]]
+        if not -(2**63) <= min(times) <= max(times) < 2**63:
+            self._reject(block, "time-range")
+        return packet
 
     def _format(self, block: Block, fields: Fields) -> _Format:
         (index,) = fields.numbers("I")
         if index >= len(self._formats):
-            self._reject(block, f"damaged: the file does not describe interface {index}")
+            self._reject(block, "no-interface", index)
         return self._formats[index]
 
-    def _reject(self, block: Block, why: str) -> NoReturn:
-        raise CaptureError(self.name, block.offset, why)
+    def _reject(self, block: Block, kind: str, *numbers: int) -> NoReturn:
+        raise damaged(self.name, block.offset, kind, *numbers)
 
 
-def _text(value: bytes) -> str:
+def interface_of(name: bytes, description: bytes, speed: int) -> Interface:
+    """Return the interface that a block describes."""
+    key, _, edition = decoded(description).partition(" ")
+    return Interface(decoded(name), edition if key == "edition" else "", speed)
+
+
+def decoded(value: bytes) -> str:
+    """Return the text of an option."""
     return value.rstrip(b"\0").decode("utf-8", "replace")

@@ -6,6 +6,7 @@
 //! `python/cobotwire/codec/reference` is the specification; this crate returns the same results.
 
 mod bulk;
+mod capture;
 mod check;
 mod crc;
 mod decode;
@@ -29,6 +30,9 @@ mod write;
 
 pub use bulk::{
     Advise, Cells, ColumnReader, Columns, Numbers, OffsetReader, Offsets, Plans, Rows, Spans,
+};
+pub use capture::{
+    CaptureReader, Damage, Decoder, Decoders, Fault, Interface, PacketDirection, StreamBatch, Times,
 };
 pub use check::{Algorithm, Check, Computed};
 pub use crc::{Crc, CrcParameters};

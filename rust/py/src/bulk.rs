@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use cobotwire_core::{
-    Advise, ColumnReader, Columns, Listening, Numbers, OffsetReader, Offsets, Rows, Rules,
+    Advise, ColumnReader, Columns, Listening, Numbers, OffsetReader, Offsets, Rows, Rules, Tally,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyMemoryView, PySlice, PyTuple};
@@ -24,7 +24,7 @@ const LARGE: usize = 1 << 20;
 const PIECE: usize = 1 << 20;
 
 /// A reader of a stream.
-trait Reader: Send {
+pub trait Reader: Send {
     fn feed(&mut self, chunk: &[u8]);
     fn expect(&mut self, data: &[u8], advise: Advise);
 }
@@ -50,7 +50,7 @@ impl Reader for OffsetReader {
 }
 
 /// Feed a whole buffer.
-fn feed(reader: &mut impl Reader, data: &Bound<'_, PyAny>) -> PyResult<()> {
+pub fn feed(reader: &mut impl Reader, data: &Bound<'_, PyAny>) -> PyResult<()> {
     if let Ok(bytes) = data.cast::<PyBytes>() {
         feed_bytes(reader, bytes, true);
         return Ok(());
@@ -151,48 +151,69 @@ impl NativeColumnReader {
 
     /// Return what was found since the last call, as Python's `Columns`.
     fn given<'py>(&self, py: Python<'py>, core: &mut ColumnReader) -> PyResult<Bound<'py, PyAny>> {
-        let names = Names::get(py)?;
-        let Columns {
-            mut rows,
-            rejected,
-            noise,
-        } = core.take();
-        rows.retain(|rows| !rows.offsets.is_empty());
-        // Sort in the order of the table, as the reference does.
-        rows.sort_by_key(|rows| {
-            let variant = rows.variant;
-            (variant.command, variant.direction as u8, variant.variant)
-        });
-        let all = PyList::empty(py);
-        for rows in rows {
-            all.append(self.rows(py, names, rows)?)?;
-        }
-        let table = self.edition.table.bind(py);
-        let rejected = Bound::new(py, Memory::offsets(rejected))?;
-        let tally = counters(py, core.tally())?;
-        let raw = self.numbers == Numbers::Raw;
-        names
-            .columns
-            .bind(py)
-            .call1((table, all, rejected, spans(py, noise)?, tally, raw))
+        let mut found = core.take();
+        let rows = std::mem::take(&mut found.rows);
+        let rows = filled(rows.into_iter().map(|rows| (rows, ())));
+        let rows = rows.into_iter().map(|(rows, ())| rows);
+        found.rows = rows.collect();
+        columns(py, &self.edition, self.numbers, found, core.tally())
     }
+}
 
-    fn rows<'py>(&self, py: Python<'py>, names: &Names, rows: Rows) -> PyResult<Bound<'py, PyAny>> {
-        let command = self.edition.commands.get(rows.variant.command)?;
-        let variant = self.edition.core.variant(rows.variant);
-        let fields = variant.map_or(&[][..], |variant| variant.fields());
-        let mut columns = Vec::with_capacity(fields.len());
-        for (field, cells) in fields.iter().zip(rows.fields) {
-            columns.push(Bound::new(py, Memory::cells(cells, field))?);
-        }
-        names.rows.bind(py).call1((
-            command.object.bind(py),
-            names.direction(py, rows.variant.direction),
-            rows.variant.variant,
-            Memory::offsets(rows.offsets),
-            PyTuple::new(py, columns)?,
-        ))
+/// Return the rows that are not empty, each with what belongs to it, in the order of the table, as
+/// the reference does.
+pub fn filled<T>(rows: impl Iterator<Item = (Rows, T)>) -> Vec<(Rows, T)> {
+    let mut all: Vec<_> = rows.filter(|(rows, _)| !rows.offsets.is_empty()).collect();
+    all.sort_by_key(|(rows, _)| {
+        let variant = rows.variant;
+        (variant.command, variant.direction as u8, variant.variant)
+    });
+    all
+}
+
+/// Return columns as Python's `Columns`.
+pub fn columns<'py>(
+    py: Python<'py>,
+    edition: &Edition,
+    numbers: Numbers,
+    found: Columns,
+    tally: &Tally,
+) -> PyResult<Bound<'py, PyAny>> {
+    let names = Names::get(py)?;
+    let all = PyList::empty(py);
+    for found in found.rows {
+        all.append(rows(py, names, edition, found)?)?;
     }
+    let table = edition.table.bind(py);
+    let rejected = Bound::new(py, Memory::offsets(found.rejected))?;
+    let tally = counters(py, tally)?;
+    let raw = numbers == Numbers::Raw;
+    names
+        .columns
+        .bind(py)
+        .call1((table, all, rejected, spans(py, found.noise)?, tally, raw))
+}
+
+fn rows<'py>(
+    py: Python<'py>,
+    names: &Names,
+    edition: &Edition,
+    rows: Rows,
+) -> PyResult<Bound<'py, PyAny>> {
+    let command = edition.commands.get(rows.variant.command)?;
+    let variant = edition.core.variant(rows.variant);
+    let fields = variant.map_or(&[][..], |variant| variant.fields());
+    let mut columns = Vec::with_capacity(fields.len());
+    for (field, cells) in fields.iter().zip(rows.fields) {
+        columns.push(Bound::new(py, Memory::cells(cells, field))?);
+    }
+    names.rows.bind(py).call1((
+        command.object.bind(py),
+        names.direction(py, rows.variant.direction),
+        rows.variant.variant,
+        Memory::offsets(rows.offsets),
+        PyTuple::new(py, columns)?,
+    ))
 }
 
 #[pymethods]

@@ -203,6 +203,11 @@ fn start(offset: &Bound<'_, PyAny>) -> PyResult<u64> {
 }
 
 impl NativeCodec {
+    /// Return the edition that it interprets.
+    pub fn edition(&self) -> &Arc<Edition> {
+        &self.edition
+    }
+
     fn rules(&self, listening: Option<&Bound<'_, PyAny>>, accept_unknown: bool) -> PyResult<Rules> {
         let rules = self.edition.core.rules(listen(listening)?).clone();
         Ok(if accept_unknown {
@@ -214,7 +219,7 @@ impl NativeCodec {
 }
 
 /// Return the directions to listen to; both by default.
-fn listen(given: Option<&Bound<'_, PyAny>>) -> PyResult<Listening> {
+pub fn listen(given: Option<&Bound<'_, PyAny>>) -> PyResult<Listening> {
     match given {
         None => Ok(Listening::Both),
         Some(given) if word(given) == Some("both") => Ok(Listening::Both),

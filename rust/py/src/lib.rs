@@ -6,6 +6,7 @@
 use pyo3::prelude::*;
 
 mod bulk;
+mod capture;
 mod codec;
 mod column;
 mod convert;
@@ -33,6 +34,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<memory::Memory>()?;
     module.add_class::<codec::NativeCodec>()?;
     module.add_class::<bulk::NativeColumnReader>()?;
+    module.add_class::<capture::NativeCaptureReader>()?;
     module.add_class::<frame::NativeFrame>()?;
     module.add_class::<framer::NativeFramer>()
 }

@@ -39,6 +39,11 @@ impl Memory {
         Self::new(Column::Offsets(all), 0)
     }
 
+    /// Return a column of times.
+    pub fn times(all: Vec<i64>) -> Self {
+        Self::new(Column::Cells(Cells::I64(all)), 0)
+    }
+
     /// Return a column of a field's numbers; it has two dimensions if the field has several
     /// numbers.
     pub fn cells(cells: Cells, field: &Field) -> Self {

@@ -6,14 +6,16 @@ use super::block::{Found, LANES};
 ///
 /// Adding to a bucket reads and writes its size, and the processor waits for that if the next frame
 /// goes to the same bucket. Therefore the lanes alternate, and each has its own buckets.
+#[derive(Default)]
 pub(crate) struct Buckets {
     parts: [Vec<Vec<u16>>; LANES],
 }
 
 impl Buckets {
-    pub(crate) fn new(groups: usize) -> Self {
-        Self {
-            parts: std::array::from_fn(|_| vec![Vec::new(); groups]),
+    /// Have buckets for that number of groups; they are empty.
+    pub(crate) fn fit(&mut self, groups: usize) {
+        for part in &mut self.parts {
+            part.resize(groups, Vec::new());
         }
     }
 

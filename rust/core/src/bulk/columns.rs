@@ -10,7 +10,7 @@ use super::plan::Plans;
 use super::rows::Rows;
 use super::sample::expected;
 use super::spans::Spans;
-use super::stream::{Collect, Stream};
+use super::stream::{Collect, Space, Stream};
 use crate::table::Table;
 use crate::tally::Tally;
 
@@ -24,6 +24,23 @@ pub struct Columns {
     pub rejected: Vec<u64>,
     /// The noise between the frames.
     pub noise: Spans,
+}
+
+/// What a reader found since the last [`ColumnReader::take`].
+pub(crate) struct Progress<'a> {
+    pub(crate) rows: &'a [Rows],
+    pub(crate) rejected: &'a [u64],
+    /// The positions of the spans of noise that a frame or a flush has ended.
+    pub(crate) noise: &'a [u64],
+    /// The position of the noise that may continue.
+    pub(crate) open_noise: Option<u64>,
+}
+
+/// Memory for reading, which readers that are used in turn share.
+#[derive(Default)]
+pub(crate) struct Workspace {
+    space: Space,
+    buckets: Buckets,
 }
 
 /// Decodes a stream into columns.
@@ -67,7 +84,7 @@ impl ColumnReader {
             stream: Stream::new(table.rules(plans.listening).clone()),
             sorter: Sorter {
                 table,
-                buckets: Buckets::new(plans.groups.len()),
+                buckets: Buckets::default(),
                 plans,
                 rows,
                 rejected,
@@ -108,6 +125,25 @@ impl ColumnReader {
         self.stream.flush(&mut self.sorter);
     }
 
+    /// Exchange the memory for reading; call it before and after feeding or flushing.
+    pub(crate) fn exchange(&mut self, work: &mut Workspace) {
+        self.stream.exchange(&mut work.space);
+        std::mem::swap(&mut self.sorter.buckets, &mut work.buckets);
+    }
+
+    /// Return what was found since the last [`ColumnReader::take`], in the order of the stream.
+    pub(crate) fn found(&mut self) -> Progress<'_> {
+        // Within a block they were found group by group.
+        self.sorter.rejected.sort_unstable();
+        let noise = self.stream.noise();
+        Progress {
+            rows: &self.sorter.rows,
+            rejected: &self.sorter.rejected,
+            noise: noise.closed(),
+            open_noise: noise.open(),
+        }
+    }
+
     /// Return everything found since the last call.
     pub fn take(&mut self) -> Columns {
         let mut rejected = std::mem::take(&mut self.sorter.rejected);
@@ -135,6 +171,7 @@ impl ColumnReader {
 
 impl Collect for Sorter {
     fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally) {
+        self.buckets.fit(self.plans.groups.len());
         self.buckets.fill(found);
         self.buckets.drain(|group, frames| {
             let Some(plan) = self.plans.groups.get(group) else {

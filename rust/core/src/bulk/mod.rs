@@ -21,6 +21,7 @@ mod window;
 mod words;
 
 pub use cells::{Advise, Cells, Numbers};
+pub(crate) use columns::Workspace;
 pub use columns::{ColumnReader, Columns};
 pub use offsets::{OffsetReader, Offsets};
 pub use plan::Plans;

@@ -96,6 +96,16 @@ impl Noise {
         }
     }
 
+    /// Return the positions of the completed spans.
+    pub(crate) fn closed(&self) -> &[u64] {
+        &self.closed.offsets
+    }
+
+    /// Return the position of the span that may continue.
+    pub(crate) fn open(&self) -> Option<u64> {
+        self.open.map(|(from, _)| from)
+    }
+
     /// Return the completed spans.
     pub(crate) fn take(&mut self) -> Spans {
         std::mem::take(&mut self.closed)

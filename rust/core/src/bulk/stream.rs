@@ -25,8 +25,14 @@ pub(crate) struct Stream {
     seam: Seam,
     tally: Tally,
     noise: Noise,
+    space: Space,
+}
+
+/// Memory for scanning, which is made on first use. Between two calls nothing in it matters.
+#[derive(Clone, Default)]
+pub(crate) struct Space {
     lanes: Option<Lanes>,
-    scratch: Scratch,
+    scratch: Option<Scratch>,
 }
 
 /// Buffers for scanning less than a block.
@@ -37,6 +43,16 @@ struct Scratch {
     runs: Runs,
 }
 
+impl Scratch {
+    fn new() -> Self {
+        Self {
+            block: Box::new([0; BLOCK + MARGIN]),
+            found: Vec::new(),
+            runs: Runs::default(),
+        }
+    }
+}
+
 impl Stream {
     pub(crate) fn new(rules: Rules) -> Self {
         Self {
@@ -44,12 +60,7 @@ impl Stream {
             seam: Seam::default(),
             tally: Tally::default(),
             noise: Noise::default(),
-            lanes: None,
-            scratch: Scratch {
-                block: Box::new([0; BLOCK + MARGIN]),
-                found: Vec::new(),
-                runs: Runs::default(),
-            },
+            space: Space::default(),
         }
     }
 
@@ -68,6 +79,15 @@ impl Stream {
 
     pub(crate) fn rules(&self) -> &Rules {
         &self.rules
+    }
+
+    /// Exchange the memory for scanning: streams that are read in turn need it only once.
+    pub(crate) fn exchange(&mut self, space: &mut Space) {
+        std::mem::swap(&mut self.space, space);
+    }
+
+    pub(crate) fn noise(&self) -> &Noise {
+        &self.noise
     }
 
     /// Return the spans of noise that a frame has ended.
@@ -115,7 +135,7 @@ impl Stream {
         };
         let mut at = 0;
         while let Some(block) = data.get(at..).and_then(<[u8]>::first_chunk) {
-            let lanes = self.lanes.get_or_insert_with(Lanes::new);
+            let lanes = self.space.lanes.get_or_insert_with(Lanes::new);
             let (lanes, end) = lanes.run(quick, block);
             let start = offset + at as u64;
             let found = std::array::from_fn(|lane| lanes.get(lane).map_or(&[][..], Lane::found));
@@ -143,7 +163,8 @@ impl Stream {
         if stop == 0 {
             return 0;
         }
-        let Scratch { block, found, runs } = &mut self.scratch;
+        let scratch = self.space.scratch.get_or_insert_with(Scratch::new);
+        let Scratch { block, found, runs } = scratch;
         found.clear();
         runs.clear();
         let mut finds = Finds {

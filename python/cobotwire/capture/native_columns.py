@@ -1,0 +1,70 @@
+"""Read captures into columns with the native reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cobotwire.capture.captured_columns import DIRECTIONS, CapturedColumns, StreamColumns
+from cobotwire.capture.damage import damaged
+from cobotwire.capture.packet import Interface
+from cobotwire.capture.packet_parsing import decoded, interface_of
+from cobotwire.codec.interface import Codec, Data, Listening
+from cobotwire.codec.native import NativeCaptureReader, NativeCodec
+from cobotwire.protocol.errors import UsageError
+
+
+class NativeColumnsReader:
+    """Reads a capture piece by piece; see :class:`cobotwire.capture.columns.ColumnsReader`."""
+
+    def __init__(
+        self, codec_of: Callable[[Interface], Codec], listening: Listening, raw: bool, name: str
+    ) -> None:
+        self._codec_of = codec_of
+        self._name = name
+        self._reader = NativeCaptureReader(self._codec, listening, raw)
+
+    def add(self, data: Data) -> None:
+        """Take the next bytes of the file."""
+        self._reader.add(data)
+
+    def feed(self, data: Data) -> CapturedColumns:
+        """Take the next bytes of the file; return what became certain."""
+        self._reader.add(data)
+        return self._taken()
+
+    def finish(self) -> CapturedColumns:
+        """Take the end of the file; return the rest."""
+        self._reader.end()
+        return self._taken()
+
+    def _codec(self, name: bytes, description: bytes, speed: int) -> NativeCodec:
+        interface = interface_of(name, description, speed)
+        codec = self._codec_of(interface)
+        if not isinstance(codec, NativeCodec):
+            message = (
+                f"the codec of the edition {codec.table.name} has no native columns: "
+                "pass it as the codec of all interfaces"
+            )
+            raise UsageError("codec", codec.name, message=message)
+        return codec
+
+    def _taken(self) -> CapturedColumns:
+        streams = [
+            StreamColumns(interface, DIRECTIONS[direction], columns, times, rejected, noise)
+            for interface, direction, columns, times, rejected, noise in self._reader.streams()
+        ]
+        application, size, finished, truncated_at, damage = self._reader.status
+        error = None
+        if damage is not None:
+            offset, kind, numbers = damage
+            error = damaged(self._name, offset, kind, *numbers)
+        return CapturedColumns(
+            self._name,
+            decoded(application),
+            tuple(interface_of(*each) for each in self._reader.interfaces),
+            streams,
+            size,
+            finished,
+            truncated_at,
+            error,
+        )
