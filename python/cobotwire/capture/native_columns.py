@@ -42,7 +42,7 @@ class NativeColumnsReader:
         codec = self._codec_of(interface)
         if not isinstance(codec, NativeCodec):
             message = (
-                f"the codec of the edition {codec.table.name} has no native columns: "
+                f"the codec of the edition {codec.table.edition} has no native columns: "
                 "pass it as the codec of all interfaces"
             )
             raise UsageError("codec", codec.name, message=message)
