@@ -9,7 +9,7 @@ from cobotwire.capture.damage import damaged
 from cobotwire.capture.packet import Interface
 from cobotwire.capture.packet_parsing import decoded, interface_of
 from cobotwire.codec.interface import Codec, Data, Listening
-from cobotwire.codec.native import NativeCaptureReader, NativeCodec
+from cobotwire.codec.native import NativeCaptureReader, NativeCodec, native_codec
 from cobotwire.protocol.errors import UsageError
 
 
@@ -40,13 +40,17 @@ class NativeColumnsReader:
     def _codec(self, name: bytes, description: bytes, speed: int) -> NativeCodec:
         interface = interface_of(name, description, speed)
         codec = self._codec_of(interface)
-        if not isinstance(codec, NativeCodec):
-            message = (
-                f"the codec of the edition {codec.table.edition} has no native columns: "
-                "pass it as the codec of all interfaces"
-            )
-            raise UsageError("codec", codec.name, message=message)
-        return codec
+        if isinstance(codec, NativeCodec):
+            return codec
+        # Both codecs return the same values.
+        native = native_codec(codec.table)
+        if isinstance(native, NativeCodec):
+            return native
+        message = (
+            f"the replies of {codec.table.edition} carry no id, so their columns need the codec "
+            "of all interfaces: pass it instead of a function"
+        )
+        raise UsageError("codec", codec.table.edition, message=message)
 
     def _taken(self) -> CapturedColumns:
         streams = [
