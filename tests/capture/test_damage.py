@@ -136,4 +136,4 @@ class Drip(io.RawIOBase):
 
 
 def test_capture_is_read_from_a_slow_pipe() -> None:
-    assert list(CaptureReader(Drip(written(SAMPLE)))) == SAMPLE  # type: ignore[arg-type]
+    assert list(CaptureReader(Drip(written(SAMPLE)))) == SAMPLE

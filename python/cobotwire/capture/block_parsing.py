@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Generator, Iterator
-from typing import BinaryIO, NamedTuple
+from typing import NamedTuple
 
 from cobotwire.capture import block_encoding as blocks
+from cobotwire.capture.capture_file import Readable
 from cobotwire.capture.damage import LARGEST_BLOCK, damaged
 
 SMALLEST_BLOCK = 12
@@ -30,7 +31,7 @@ class Truncated(EOFError):
         super().__init__(offset)
 
 
-def blocks_of(file: BinaryIO, name: str) -> Iterator[Block]:
+def blocks_of(file: Readable, name: str) -> Iterator[Block]:
     """Yield the blocks of a file, in order.
 
     Raises:
@@ -83,7 +84,7 @@ def cut_blocks(name: str) -> Generator[int | Block, bytes, None]:
         offset += size
 
 
-def _read(file: BinaryIO, size: int) -> bytes:
+def _read(file: Readable, size: int) -> bytes:
     """Return exactly ``size`` bytes, or fewer if the file ends."""
     data = file.read(size)
     while data and len(data) < size:

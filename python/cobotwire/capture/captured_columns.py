@@ -161,14 +161,16 @@ class StreamColumns:
         times: for each of the rows in ``columns``, the times of the messages.
         rejected_time: the times of the rejected frames.
         noise_time: the times of the spans of noise.
+
+    Times are memoryviews of 64-bit integers.
     """
 
     interface: int
     direction: Direction
     columns: Columns
-    times: Sequence[Buffer]
-    rejected_time: Buffer
-    noise_time: Buffer
+    times: Sequence[memoryview]
+    rejected_time: memoryview
+    noise_time: memoryview
 
     @property
     def counters(self) -> Counters:
@@ -178,12 +180,12 @@ class StreamColumns:
     @property
     def noise(self) -> TimedSpans:
         """The spans of noise with their times."""
-        return TimedSpans(memoryview(self.noise_time), *self.columns.noise)
+        return TimedSpans(self.noise_time, *self.columns.noise)
 
     @property
     def rejected(self) -> TimedOffsets:
         """The legal frames with a value that the edition does not allow, with their times."""
-        return TimedOffsets(memoryview(self.rejected_time), self.columns.rejected)
+        return TimedOffsets(self.rejected_time, self.columns.rejected)
 
     def __iter__(self) -> Iterator[CapturedRows]:
         """Yield the rows of each variant that occurred, in the order of the table."""

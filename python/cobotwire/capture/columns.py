@@ -11,15 +11,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import BinaryIO, Literal, Protocol
+from contextlib import closing
+from dataclasses import replace
+from typing import Literal, Protocol
 
 from cobotwire import codec as codecs
+from cobotwire.capture.capture_file import open_capture
 from cobotwire.capture.captured_columns import CapturedColumns
-from cobotwire.capture.file_errors import unusable_file
 from cobotwire.capture.packet import Interface
 from cobotwire.capture.reference_columns import ReferenceCaptureReader
 from cobotwire.codec.interface import Codec, Data, Listening
+from cobotwire.protocol.errors import CaptureError
 
 # A file, or its contents.
 Source = str | os.PathLike[str] | Data
@@ -93,7 +95,8 @@ def read_batches(
     The last batch has the rest, ``finished`` and ``truncated_at``.
 
     Args:
-        source: the path of a file, or its contents: bytes, a bytearray, a memoryview or an mmap.
+        source: the path of a file, which may be compressed with gzip or zstd; or the contents of
+            a file: bytes, a bytearray, a memoryview or an mmap.
         codec: see :func:`capture_reader`.
         listening: see :func:`capture_reader`.
         raw: whether columns hold raw values instead of physical ones.
@@ -104,14 +107,14 @@ def read_batches(
         CaptureError: the file is not a capture, or it is damaged at ``offset``. It is raised after
             the batches with everything before that place.
     """
-    name = str(source) if isinstance(source, str | os.PathLike) else "capture"
-    reader = capture_reader(codec, listening, raw=raw, name=name)
-    for data in _pieces(source, piece):
+    pieces = _Pieces(source, piece)
+    reader = capture_reader(codec, listening, raw=raw, name=pieces.name)
+    for data in pieces:
         batch = reader.feed(data)
         yield batch
         if batch.error:
             break
-    batch = reader.finish()
+    batch = pieces.checked(reader.finish())
     yield batch
     if batch.error:
         raise batch.error
@@ -128,7 +131,8 @@ def read_columns(
     """Return the messages of a whole capture as columns, with times and directions.
 
     Args:
-        source: the path of a file, or its contents: bytes, a bytearray, a memoryview or an mmap.
+        source: the path of a file, which may be compressed with gzip or zstd; or the contents of
+            a file: bytes, a bytearray, a memoryview or an mmap.
         codec: see :func:`capture_reader`.
         listening: see :func:`capture_reader`.
         raw: whether columns hold raw values instead of physical ones.
@@ -139,29 +143,55 @@ def read_columns(
         UsageError: the file does not exist, or it cannot be read.
         CaptureError: the file is not a capture, or it is damaged at ``offset``.
     """
-    name = str(source) if isinstance(source, str | os.PathLike) else "capture"
-    reader = capture_reader(codec, listening, raw=raw, name=name)
-    for data in _pieces(source, PIECE):
+    pieces = _Pieces(source, PIECE)
+    reader = capture_reader(codec, listening, raw=raw, name=pieces.name)
+    for data in pieces:
         reader.add(data)
-    found = reader.finish()
+    found = pieces.checked(reader.finish())
     if found.error and damaged == "raise":
         raise found.error
     return found
 
 
-def _pieces(source: Source, size: int) -> Iterator[Data]:
-    if not isinstance(source, str | os.PathLike):
-        view = memoryview(source).cast("B")
-        for start in range(0, len(view), size):
-            yield view[start : start + size]
-        return
-    with _opened(source) as file:
-        while data := file.read(size):
-            yield data
+class _Pieces:
+    """The contents of a source, piece by piece.
 
+    Attributes:
+        name: the name of the file, for messages.
+        error: why the file cannot be decompressed to its end; None if nothing is wrong so far.
+    """
 
-def _opened(path: str | os.PathLike[str]) -> BinaryIO:
-    try:
-        return Path(path).open("rb")
-    except (OSError, ValueError) as error:
-        raise unusable_file("capture", path, error) from None
+    def __init__(self, source: Source, size: int) -> None:
+        self._source, self._size = source, size
+        is_path = isinstance(source, str | os.PathLike)
+        self.name = str(source) if is_path else "capture"
+        self.error: CaptureError | None = None
+
+    def __iter__(self) -> Iterator[Data]:
+        if isinstance(self._source, str | os.PathLike):
+            yield from self._read(self._source)
+            return
+        view = memoryview(self._source).cast("B")
+        for start in range(0, len(view), self._size):
+            yield view[start : start + self._size]
+
+    def _read(self, path: str | os.PathLike[str]) -> Iterator[bytes]:
+        with closing(open_capture(path)) as file:
+            data = [b""]
+            while data:
+                data = []
+                missing = self._size
+                try:
+                    while missing and (more := file.read(missing)):
+                        data.append(more)
+                        missing -= len(more)
+                except CaptureError as error:
+                    self.error = error
+                if data:
+                    yield b"".join(data)
+                if self.error:
+                    return
+
+    def checked(self, last: CapturedColumns) -> CapturedColumns:
+        """Return the last columns with the error of this file, if it has one."""
+        return replace(last, error=self.error) if self.error and not last.error else last

@@ -53,10 +53,11 @@ class NativeColumnsReader:
         raise UsageError("codec", codec.table.edition, message=message)
 
     def _taken(self) -> CapturedColumns:
-        streams = [
-            StreamColumns(interface, DIRECTIONS[direction], columns, times, rejected, noise)
-            for interface, direction, columns, times, rejected, noise in self._reader.streams()
-        ]
+        streams = []
+        for interface, direction, columns, times, rejected, noise in self._reader.streams():
+            views = [memoryview(each) for each in (*times, rejected, noise)]
+            where = interface, DIRECTIONS[direction]
+            streams.append(StreamColumns(*where, columns, views[:-2], *views[-2:]))
         application, size, finished, truncated_at, damage = self._reader.status
         error = None
         if damage is not None:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import struct
 from collections.abc import Generator, Iterator
-from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO, Self
+from typing import Self
 
 from cobotwire.capture import block_encoding as blocks
 from cobotwire.capture.block_parsing import Truncated, blocks_of
-from cobotwire.capture.file_errors import unusable_file
+from cobotwire.capture.capture_file import Readable, open_capture
 from cobotwire.capture.packet import Interface, Packet
 from cobotwire.capture.packet_parsing import PacketParser
 from cobotwire.protocol.printable import printable
@@ -27,15 +26,13 @@ def is_capture(first_bytes: bytes) -> bool:
 def read(path: str | os.PathLike[str]) -> CaptureReader:
     """Open a capture; iterate over the result to get its packets.
 
+    Files that are compressed with gzip or zstd are decompressed.
+
     Raises:
-        UsageError: the file does not exist, or it cannot be read.
+        UsageError: the file does not exist, or it cannot be read, or zstd is not installed.
         CaptureError: while iterating: the file is not a capture, or it is damaged at ``offset``.
     """
-    try:
-        file = Path(path).open("rb")  # noqa: SIM115  (closed by the reader)
-    except (OSError, ValueError) as error:
-        raise unusable_file("capture", path, error) from None
-    return CaptureReader(file, str(path))
+    return CaptureReader(open_capture(path), str(path))
 
 
 class CaptureReader:
@@ -47,7 +44,7 @@ class CaptureReader:
             block is complete, or the end has not been read yet.
     """
 
-    def __init__(self, file: BinaryIO, name: str = "capture") -> None:
+    def __init__(self, file: Readable, name: str = "capture") -> None:
         """Read from an open binary file; ``name`` is for messages."""
         self.truncated_at: int | None = None
         self.name = name

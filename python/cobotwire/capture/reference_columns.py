@@ -166,8 +166,9 @@ class _Stream:
         self._found.append(self._reader.feed(bytes(self._bytes)))
         self._bytes.clear()
 
-    def _times_of(self, offsets: Iterable[int]) -> array[int]:
-        return array("q", [self._times[bisect_right(self._starts, at) - 1] for at in offsets])
+    def _times_of(self, offsets: Iterable[int]) -> memoryview:
+        times = [self._times[bisect_right(self._starts, at) - 1] for at in offsets]
+        return memoryview(array("q", times))
 
 
 def _joined(found: Sequence[Columns]) -> Columns:

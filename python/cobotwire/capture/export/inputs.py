@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from glob import glob, has_magic
 from typing import Any
 
+from cobotwire.capture.compression import Compression
 from cobotwire.capture.export.extras import needed
 from cobotwire.protocol.errors import LinkError, UsageError
 
 STDIN = "-"
-COMPRESSED = {".gz": "gzip", ".zst": "zstd"}
+COMPRESSED: dict[str, Compression] = {".gz": "gzip", ".zst": "zstd"}
 _ENDINGS = (".pcapng", ".bin", ".raw", ".cap")
 # Folders often hold the files of earlier exports too.
 _EXPORTED = (".parquet", ".csv", ".arrow", ".feather", ".mcap")

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable, Iterator
-from typing import Any, BinaryIO
+from itertools import chain
+from typing import BinaryIO
 
+from cobotwire.capture.compression import (
+    Compression,
+    DamagedCompression,
+    Decompressed,
+    compression_of,
+)
 from cobotwire.capture.export.extras import needed
 from cobotwire.capture.export.inputs import COMPRESSED, STDIN, Input, is_url
 from cobotwire.capture.file_errors import unusable_file
@@ -14,10 +20,6 @@ from cobotwire.protocol.errors import LinkError
 Progress = Callable[[int], None]
 # Stored bytes to read at a time.
 BLOCK = 1 << 18
-# Compressed bytes to decompress at a time: hostile data may become 30,000 times as large.
-SLICE = 1 << 12
-# What standard input begins with if it is compressed: it has no name with an ending.
-_MAGIC = {b"\x1f\x8b\x08": "gzip", b"\x28\xb5\x2f\xfd": "zstd"}
 
 
 class InputStream:
@@ -73,32 +75,18 @@ class InputStream:
         """Yield the bytes of the capture, in blocks that are not empty."""
         stored = self._stored()
         first = next(stored, b"")
-        start = _decompressor(input, first)
-        if start is None:
-            if first:
-                yield first
-            yield from stored
+        compression = _compression(input, first)
+        blocks = chain([first] if first else [], stored)
+        if compression is None:
+            yield from blocks
             return
-        current = start()
-        while first:
-            for at in range(0, len(first), SLICE):
-                rest = first[at : at + SLICE]
-                while rest:
-                    # Programs that append write one compressed part after another.
-                    current = start() if current.eof else current
-                    if data := self._expand(current, rest):
-                        yield data
-                    rest = current.unused_data
-            first = next(stored, b"")
-        if not current.eof:
-            self.truncated = "its compressed data is cut off"
-
-    def _expand(self, decompressor: Any, data: bytes) -> bytes:
+        decompressed = Decompressed(blocks, compression, input.url)
         try:
-            return bytes(decompressor.decompress(data))
-        # Each library has errors of its own.
-        except Exception as error:
+            yield from decompressed
+        except DamagedCompression as error:
             raise LinkError(self.name, f"decompressing failed: {error}") from error
+        if not decompressed.complete:
+            self.truncated = "its compressed data is cut off"
 
 
 def _open(input: Input) -> BinaryIO:
@@ -114,16 +102,9 @@ def _open(input: Input) -> BinaryIO:
         raise unusable_file("INPUT", input.url, error) from None
 
 
-def _decompressor(input: Input, first: bytes) -> Callable[[], Any] | None:
-    """Return what makes a decompressor for one part of an input; None if it is not compressed."""
+def _compression(input: Input, first: bytes) -> Compression | None:
+    """Return how an input is compressed. Standard input has no name with an ending."""
     if input.url == STDIN:
-        kinds = (kind for magic, kind in _MAGIC.items() if first.startswith(magic))
-    else:
-        kinds = (kind for end, kind in COMPRESSED.items() if input.url.endswith(end))
-    kind = next(kinds, None)
-    if kind == "gzip":
-        return lambda: zlib.decompressobj(wbits=31)
-    if kind == "zstd":
-        zstandard = needed("zstandard", "zstd", f"reading {input.url}")
-        return lambda: zstandard.ZstdDecompressor().decompressobj()
-    return None
+        return compression_of(first)
+    kinds = (kind for end, kind in COMPRESSED.items() if input.url.endswith(end))
+    return next(kinds, None)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import closing
 
 import click
 
 from cobotwire.capture import CaptureReader, Direction, is_capture, read
 from cobotwire.capture.byte_source import hex_arguments
+from cobotwire.capture.capture_file import open_capture
+from cobotwire.protocol.errors import CobotwireError
 
 ARROWS: dict[Direction, str] = {"sent": ">", "received": "<", "unknown": "?"}
 
@@ -28,9 +31,9 @@ def recording_named(arguments: Sequence[str]) -> CaptureReader | None:
     if not single or not os.path.isfile(arguments[0]):
         return None
     try:
-        with open(arguments[0], "rb") as file:
+        with closing(open_capture(arguments[0])) as file:
             first = file.read(12)
-    except OSError:
+    except (OSError, CobotwireError):
         return None
     return read(arguments[0]) if is_capture(first) else None
 
