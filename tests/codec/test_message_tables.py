@@ -82,7 +82,7 @@ def lacks_pandas_type(field: Any) -> bool:
     """Return whether it holds bytes, lists, or flags that may be missing."""
     if pa.types.is_boolean(field.type):
         return bool(field.nullable)
-    return pa.types.is_binary(field.type) or pa.types.is_list(field.type)
+    return bool(pa.types.is_binary(field.type) or pa.types.is_list(field.type))
 
 
 def comparable(value: Any) -> Any:

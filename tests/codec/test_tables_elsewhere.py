@@ -43,7 +43,8 @@ def test_libraries_agree_on_the_types_of_a_wide_table(mycobot280: Codec) -> None
     angles = columns.to_arrow("get_angles", wide=True)
     assert str(pl.DataFrame(angles).schema["j1"]) == "Float64"
     assert angles.to_pandas()["j1"].dtype == "float64"
-    assert duckdb.sql("select j1, j1 = 1 from angles").types == ["DOUBLE", "BOOLEAN"]
+    query: Any = duckdb.sql("select j1, j1 = 1 from angles")
+    assert query.types == ["DOUBLE", "BOOLEAN"]
     servos = columns.to_arrow("is_servo_enable", wide=True)
     assert [str(type) for type in pl.DataFrame(servos).dtypes] == ["UInt64", "Int64", "Boolean"]
     assert [str(type) for type in servos.to_pandas().dtypes] == ["uint64", "float64", "bool"]
@@ -52,13 +53,15 @@ def test_libraries_agree_on_the_types_of_a_wide_table(mycobot280: Codec) -> None
         "int64[pyarrow]",
         "bool[pyarrow]",
     ]
-    assert duckdb.sql("from servos").types == ["UBIGINT", "BIGINT", "BOOLEAN"]
+    query = duckdb.sql("from servos")
+    assert query.types == ["UBIGINT", "BIGINT", "BOOLEAN"]
     modes = columns.to_arrow("get_fresh_mode", wide=True)
     assert modes["mode"].to_pylist() == ["REFRESH"]
     assert modes.schema.field("mode").metadata == {b"values": b"INTERPOLATION=0, REFRESH=1"}
     assert str(pl.DataFrame(modes).schema["mode"]) == "Categorical"
     assert modes.to_pandas()["mode"].dtype == "category"
-    assert duckdb.sql("select mode from modes where mode = 'REFRESH'").fetchall() == [("REFRESH",)]
+    query = duckdb.sql("select mode from modes where mode = 'REFRESH'")
+    assert query.fetchall() == [("REFRESH",)]
 
 
 @EACH_SHAPE
@@ -76,7 +79,8 @@ def test_parquet_file_takes_batches_with_and_without_rows(
     assert read.schema.equals(whole.schema, check_metadata=wide)
     assert read.schema.field(1).metadata == whole.schema.field(1).metadata
     assert read.to_pylist() == whole.to_pylist()
-    assert duckdb.sql(f"select count(*) from '{path}'").fetchall() == [(whole.num_rows,)]
+    query: Any = duckdb.sql(f"select count(*) from '{path}'")
+    assert query.fetchall() == [(whole.num_rows,)]
 
 
 @EACH_SHAPE

@@ -8,6 +8,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from cobotwire.codec.arrow import as_array
+
 
 class Gaps:
     """Counts the pauses between the messages of one interface, both directions together."""
@@ -19,7 +21,7 @@ class Gaps:
 
     def take(self, times: Sequence[Any]) -> int:
         """Take the times of the next messages, in any order; return the number of pauses."""
-        arrays = [pa.array(memoryview(each), pa.int64()) for each in times if len(each)]
+        arrays = [times_of for each in times if len(times_of := as_array(each).cast(pa.int64()))]
         if not arrays:
             return 0
         before = [] if self._last_ns is None else [pa.array([self._last_ns], pa.int64())]
