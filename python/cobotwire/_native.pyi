@@ -10,8 +10,8 @@ from typing import Any, Literal, final
 from typing_extensions import Buffer
 
 from cobotwire.codec.columns import Columns, Scan
-from cobotwire.codec.interface import Counters, Data, DecodedMessage, Event, Listening
-from cobotwire.protocol.table import Direction, Table
+from cobotwire.codec.interface import Counters, Data, DecodedMessage, Event, Listening, Noise
+from cobotwire.protocol.table import Command, Direction, FrameFormat, Table
 
 __all__ = [
     "Memory",
@@ -20,6 +20,7 @@ __all__ = [
     "NativeColumnReader",
     "NativeFrame",
     "NativeFramer",
+    "NativeSurvey",
 ]
 
 @final
@@ -250,6 +251,52 @@ class NativeCaptureReader:
         That is the number of bytes read; whether the recording was finished; the offset of the
         incomplete block at the end; and the damage: its offset, its kind and its numbers.
         """
+
+@final
+class NativeSurvey:
+    """Counts the messages and the noise of a stream, and writes lines of JSON.
+
+    ``bus`` is the format of the servo bus, ``lengths`` are the legal LENs of its packets. ``texts``
+    has the texts of the lines (:class:`cobotwire.diagnose.survey.LineTexts`); None: no lines.
+    :class:`cobotwire.diagnose.survey.StreamSurvey` uses it.
+    """
+
+    def __new__(
+        cls,
+        codec: NativeCodec,
+        listening: Listening,
+        accept_unknown: bool,
+        bus: FrameFormat,
+        lengths: Sequence[int],
+        texts: tuple[Any, ...] | None,
+    ) -> NativeSurvey:
+        """Start a stream."""
+
+    def feed(self, data: bytes) -> list[Noise | tuple[Any, ...] | None]:
+        """Take bytes; return what is not only counted, in the order of the stream.
+
+        A part is noise to diagnose, ``(offset, bytes)`` of a frame without a legal message,
+        ``(offset, size, lines)`` of other frames and of noise with a fixed text, or None where no
+        later noise belongs to the noise before.
+        """
+
+    def flush(self) -> list[Noise | tuple[Any, ...] | None]:
+        """Report everything, because no more bytes follow."""
+
+    @property
+    def counters(self) -> Counters:
+        """The counts of the framer."""
+
+    @property
+    def messages(self) -> list[tuple[int, Command | None, int]]:
+        """Id, command and number of frames, in the order of the first frames.
+
+        The command is None if no message is legal.
+        """
+
+    @property
+    def findings(self) -> list[tuple[str, int, int]]:
+        """The noise that was only counted: kind, number of findings and of bytes."""
 
 @final
 class Memory(Buffer):

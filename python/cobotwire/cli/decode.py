@@ -21,13 +21,14 @@ from cobotwire.capture.streams import DirectionStream
 from cobotwire.cli.shared.exit_codes import OUTPUT_CLOSED
 from cobotwire.cli.shared.hex_colours import frame_colours
 from cobotwire.cli.shared.input_files import input_files
-from cobotwire.cli.shared.item_formats import Format, as_object, byte_by_byte, one_line
+from cobotwire.cli.shared.item_formats import Format, as_object, byte_by_byte, line_texts, one_line
 from cobotwire.cli.shared.output import discard_output
 from cobotwire.cli.shared.recordings import ARROWS, recording_named, warn_if_incomplete
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose import Diagnoser, Item
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
+from cobotwire.diagnose.survey import Lines, StreamSurvey
 from cobotwire.inspect.captured import diagnose_capture
 from cobotwire.protocol.printable import printable
 
@@ -163,6 +164,9 @@ class _StreamPrinter:
     def format(self, item: Item) -> str:
         return self._format(item)
 
+    def line(self, item: Item) -> str:
+        return item.text if isinstance(item, Lines) else self.format(item) + "\n"
+
 
 class _TimedStreamPrinter(_StreamPrinter):
     """Prints the time and direction of each item of a recorded stream."""
@@ -195,6 +199,39 @@ class _TimedStreamPrinter(_StreamPrinter):
 def _decode_bytes(source: ByteSource, options: Options, counts: StreamCounts) -> None:
     """Decode bytes that have no times and one direction."""
     codec = codecs.load(editions.load(options.edition).TABLE)
+    counted_only = options.as_json or options.quiet
+    if counted_only and not source.from_arguments and StreamSurvey.reads(codec):
+        _survey_bytes(codec, source, options, counts)
+    else:
+        _diagnose_bytes(codec, source, options, counts)
+
+
+def _survey_bytes(codec: Codec, source: ByteSource, options: Options, counts: StreamCounts) -> None:
+    """Decode bytes, as :func:`_diagnose_bytes` does, without an object for each frame."""
+    texts = None if options.quiet else line_texts(codec.table, options.file)
+    survey = StreamSurvey(
+        codec, options.direction, accept_unknown=options.accept_unknown, texts=texts
+    )
+    printer = _StreamPrinter(codec, options.direction, options, StreamCounts())
+
+    def report(items: list[Item]) -> None:
+        counts.add_findings(items)
+        if not options.quiet:
+            _write("".join(map(printer.line, items)))
+
+    try:
+        with _progress(source, options.quiet) as blocks:
+            for block in blocks:
+                report(survey.feed(block))
+            report(survey.flush())
+    finally:
+        counts.add_survey(survey)
+
+
+def _diagnose_bytes(
+    codec: Codec, source: ByteSource, options: Options, counts: StreamCounts
+) -> None:
+    """Decode bytes frame by frame."""
     framer = codec.framer(options.direction, accept_unknown=options.accept_unknown)
     counts.framers.append(framer)
     if source.from_arguments:
@@ -240,8 +277,12 @@ def _counts_json(counts: StreamCounts) -> str:
 
 
 def _print(text: str) -> None:
+    _write(text + "\n")
+
+
+def _write(text: str) -> None:
     try:
-        sys.stdout.write(text + "\n")
+        sys.stdout.write(text)
         # After each block, so that live input is shown as it comes.
         sys.stdout.flush()
     except BrokenPipeError:

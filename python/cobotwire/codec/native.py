@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Literal
 
-from cobotwire._native import NativeCaptureReader, NativeCodec, NativeFrame
+from cobotwire._native import NativeCaptureReader, NativeCodec, NativeFrame, NativeSurvey
 from cobotwire.codec.events import Frame
 from cobotwire.codec.interface import Codec
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.protocol.table import Table
 
-__all__ = ["NativeCaptureReader", "NativeCodec", "native_codec"]
+__all__ = ["NativeCaptureReader", "NativeCodec", "NativeSurvey", "native_codec"]
 
 Frame.register(NativeFrame)
 

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Protocol
 
-from cobotwire.codec.interface import Frame, Framer
+from cobotwire.codec.interface import Counters, Frame
 from cobotwire.diagnose.diagnoser import Item
 from cobotwire.diagnose.explain import FrameReader
+from cobotwire.diagnose.findings import Finding
 from cobotwire.diagnose.summary import Summary
+from cobotwire.diagnose.survey import StreamSurvey, message_name
+from cobotwire.protocol.table import Command
+
+
+class Framed(Protocol):
+    """A framer, or what has one."""
+
+    @property
+    def counters(self) -> Counters:
+        """The counts of the framer."""
+        ...
 
 
 class StreamCounts:
@@ -22,7 +34,7 @@ class StreamCounts:
     """
 
     def __init__(self) -> None:
-        self.framers: list[Framer] = []
+        self.framers: list[Framed] = []
         self.frames: Counter[str] = Counter()
         self.findings = Summary()
         self._illegal = 0
@@ -61,9 +73,25 @@ class StreamCounts:
     def _add_frame(self, frame: Frame, reader: FrameReader) -> None:
         readings = reader.read(frame.data)
         message = readings[0].message if readings else None
-        self._illegal += message is None
-        name = "illegal value or unknown id" if message is None else message.command.name
-        self.frames[f"0x{frame.command:02X} {name}"] += 1
+        self._count(frame.command, None if message is None else message.command, 1)
+
+    def _count(self, id: int, command: Command | None, count: int) -> None:
+        self._illegal += count if command is None else 0
+        self.frames[message_name(id, command)] += count
+
+    def add_findings(self, items: Iterable[Item]) -> None:
+        """Count the findings by kind, but not the frames, which :meth:`add_survey` counts."""
+        for item in items:
+            if isinstance(item, Finding):
+                self.findings.add(item)
+
+    def add_survey(self, survey: StreamSurvey) -> None:
+        """Count what a survey has counted; once, after all its findings."""
+        self.framers.append(survey.native)
+        for id, command, count in survey.native.messages:
+            self._count(id, command, count)
+        for kind, count, size in survey.native.findings:
+            self.findings.add_more(kind, count, size)
 
     def as_dict(self) -> dict[str, Any]:
         """Return all counts by name."""

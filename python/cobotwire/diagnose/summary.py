@@ -37,6 +37,14 @@ class Summary:
             self._causes.setdefault(kind, failure)
             self._rebooted |= finding.reboots
 
+    def add_more(self, kind: str, count: int, size: int) -> None:
+        """Count further findings of a kind, of ``size`` bytes together; none of them is a failure.
+
+        The first finding of each kind must be added with :meth:`add`.
+        """
+        self.kinds[kind] += count
+        self.bytes[kind] += size
+
     def __str__(self) -> str:
         """Return the sentence, most important findings first; empty if there are none."""
         parts = [self._failed()] if self._failures else []

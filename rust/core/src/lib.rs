@@ -19,17 +19,20 @@ mod given;
 mod judge;
 mod legal;
 mod message;
+mod noise;
 mod number;
 mod read;
 mod reason;
 mod scan;
 mod seam;
+mod survey;
 mod table;
 mod tally;
 mod write;
 
 pub use bulk::{
-    Advise, Cells, ColumnReader, Columns, Numbers, OffsetReader, Offsets, Plans, Rows, Spans,
+    Advise, Cells, ColumnReader, Columns, Counted, Numbers, OffsetReader, Offsets, Plans, Rows,
+    Spans,
 };
 pub use capture::{
     CaptureReader, Damage, Decoder, Decoders, Fault, Interface, PacketDirection, StreamBatch, Times,
@@ -45,9 +48,11 @@ pub use framer::{Event, Framer};
 pub use given::{Given, Row, Unread, ValueFault};
 pub use judge::{Rules, Verdict};
 pub use message::{Command, Variant, VariantId};
+pub use noise::{Kind, Packets};
 pub use number::{Bits, Encoding, Misfit, Number, Order, Value};
 pub use read::BadRaw;
 pub use reason::Reason;
+pub use survey::{Extent, Sink, Survey, Texts};
 pub use table::{Table, TableError};
 pub use tally::Tally;
 pub use write::{BadValue, EncodeError};

@@ -18,7 +18,7 @@ use crate::{errors, words};
 /// One edition's encoder, decoder and framer.
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeCodec {
-    edition: Arc<Edition>,
+    pub edition: Arc<Edition>,
 }
 
 #[pymethods]
@@ -208,7 +208,12 @@ impl NativeCodec {
         &self.edition
     }
 
-    fn rules(&self, listening: Option<&Bound<'_, PyAny>>, accept_unknown: bool) -> PyResult<Rules> {
+    /// Return the rules of a framer.
+    pub fn rules(
+        &self,
+        listening: Option<&Bound<'_, PyAny>>,
+        accept_unknown: bool,
+    ) -> PyResult<Rules> {
         let rules = self.edition.core.rules(listen(listening)?).clone();
         Ok(if accept_unknown {
             rules.accepting_unknown()

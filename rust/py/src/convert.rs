@@ -116,6 +116,11 @@ pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
     Ok((table, names))
 }
 
+/// Return the core's frame format.
+pub fn format(given: &Bound<'_, PyAny>) -> PyResult<FrameFormat> {
+    frame_format(given.extract()?)
+}
+
 fn frame_format(record: FrameRecord) -> PyResult<FrameFormat> {
     let layout = Layout {
         address_at: record.address_at,

@@ -22,6 +22,7 @@ mod memory;
 mod names;
 mod objects;
 mod parts;
+mod survey;
 mod values;
 mod words;
 
@@ -36,5 +37,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<bulk::NativeColumnReader>()?;
     module.add_class::<capture::NativeCaptureReader>()?;
     module.add_class::<frame::NativeFrame>()?;
+    module.add_class::<survey::NativeSurvey>()?;
     module.add_class::<framer::NativeFramer>()
 }

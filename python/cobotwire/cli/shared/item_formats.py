@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
@@ -11,14 +12,16 @@ import click
 from cobotwire.cli.shared.hex_colours import Paint
 from cobotwire.cli.shared.output import as_hex, as_json_value
 from cobotwire.codec.interface import Frame
-from cobotwire.diagnose import Finding, Item, Unrecognised
+from cobotwire.diagnose import CommandError, Finding, Item, Unrecognised
 from cobotwire.diagnose.explain import (
+    DIRECTIONS,
     REMEMBERED,
     FrameReader,
     Reading,
     format_message,
     frame_parts,
 )
+from cobotwire.diagnose.survey import LineTexts
 from cobotwire.protocol.table import Table
 
 # Bytes of a finding that are shown on its line.
@@ -106,6 +109,28 @@ def as_object(reader: FrameReader, item: Item) -> dict[str, Any]:
         return {"kind": "frame", **common, "legal": legal, **described}
     noise = {"kind": "noise", **common, "legal": False, "reason": item.reason}
     return {**noise, **described, **_finding_object(item)}
+
+
+def line_texts(table: Table, file: str | None) -> LineTexts:
+    """Return the texts of the lines that the native codec writes, as :func:`as_object` has them.
+
+    ``file`` is the first value of each line; None: it has none.
+    """
+    requests, replies = (
+        [
+            [[json.dumps(field.name) for field in variant.fields] for variant in variants]
+            for variants in (command.variants(direction) for command in table.commands)
+        ]
+        for direction in DIRECTIONS
+    )
+    return LineTexts(
+        first="" if file is None else f'"file": {json.dumps(file)}, ',
+        commands=[json.dumps(command.name) for command in table.commands],
+        requests=requests,
+        replies=replies,
+        unrecognised=json.dumps(Unrecognised(spans=(), reason="no-header").describe()),
+        command_error=json.dumps(CommandError(spans=(), reason="no-header").describe()),
+    )
 
 
 def _finding_object(finding: Finding) -> dict[str, Any]:

@@ -49,6 +49,8 @@ class ServoBusReader:
         self.every = next(a.value for a in table.addresses if a.replies == "none")
         requests, replies = FrameIndex(table, "request"), FrameIndex(table, "reply")
         self._judge = Judge(table.frame, [requests, replies])
+        # A status packet carries no instruction, so these are legal with any byte after LEN.
+        self.lengths = sorted(replies.lengths)
         self._requests = Judge(table.frame, [requests])
         self._names = {c.id: c.name.replace("_", " ") for c in table.commands}
         query = table.command("read")

@@ -140,7 +140,7 @@ impl ColumnReader {
             rows: &self.sorter.rows,
             rejected: &self.sorter.rejected,
             noise: noise.closed(),
-            open_noise: noise.open(),
+            open_noise: noise.open().map(|(from, _)| from),
         }
     }
 

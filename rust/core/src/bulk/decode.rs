@@ -8,6 +8,9 @@ use crate::number::{Number, Value};
 use crate::read::Reader;
 use crate::table::Table;
 
+/// The numbers of a frame: the index of the field, the raw and the physical value of each.
+type Numbers = Vec<(usize, i64, Value)>;
+
 /// The frames of a group in a block.
 pub(crate) struct Job<'a> {
     pub(crate) table: &'a Table,
@@ -89,10 +92,20 @@ impl Job<'_> {
     // Inlined, it would make the loops over columns an eighth slower.
     #[inline(never)]
     fn row(&self, plan: &Plan, at: u16, all: &mut [Rows]) -> bool {
-        for (id, rows) in plan.variants.iter().zip(all.iter_mut().skip(plan.rows)) {
-            let Some(variant) = self.table.variant(*id) else {
-                continue;
-            };
+        let Some((index, values)) = self.first_allowed(plan, at) else {
+            return false;
+        };
+        if let Some(rows) = all.get_mut(plan.rows + index) {
+            rows.offsets.push(self.place(at));
+            push(values, &mut rows.fields);
+        }
+        true
+    }
+
+    /// Return the index of the first variant that allows the values of a frame, and the values.
+    fn first_allowed(&self, plan: &Plan, at: u16) -> Option<(usize, Numbers)> {
+        plan.variants.iter().enumerate().find_map(|(index, id)| {
+            let variant = self.table.variant(*id)?;
             let data = self.table.frame().data_start(id.direction);
             let start = usize::from(at) + data;
             let reader = Reader {
@@ -104,19 +117,28 @@ impl Job<'_> {
                     .unwrap_or_default(),
                 offset: data,
             };
-            let Ok(values) = reader.numbers() else {
-                continue;
-            };
-            rows.offsets.push(self.place(at));
-            push(values, &mut rows.fields);
-            return true;
+            Some((index, reader.numbers().ok()?))
+        })
+    }
+
+    /// Count the frames for the variant that each of them is, by its index; `None`: for no variant.
+    pub(crate) fn count(&self, plan: &Plan, mut count: impl FnMut(Option<usize>, u64, u64)) {
+        let fields = plan.fields.as_ref();
+        if fields.is_some_and(|fields| fields.iter().all(|field| self.all_allowed(field))) {
+            if let Some(first) = self.frames.first() {
+                count(Some(0), self.frames.len() as u64, self.place(*first));
+            }
+            return;
         }
-        false
+        for at in self.frames {
+            let found = self.first_allowed(plan, *at);
+            count(found.map(|(index, _)| index), 1, self.place(*at));
+        }
     }
 }
 
 /// Append each field's numbers to its column.
-fn push(values: Vec<(usize, i64, Value)>, fields: &mut [Cells]) {
+fn push(values: Numbers, fields: &mut [Cells]) {
     for (field, raw, physical) in values {
         if let Some(cells) = fields.get_mut(field) {
             cells.push(raw, physical);

@@ -7,6 +7,7 @@
 mod block;
 mod buckets;
 mod cells;
+mod census;
 mod columns;
 mod decode;
 mod lanes;
@@ -21,9 +22,12 @@ mod window;
 mod words;
 
 pub use cells::{Advise, Cells, Numbers};
+pub(crate) use census::Census;
+pub use census::Counted;
 pub(crate) use columns::Workspace;
 pub use columns::{ColumnReader, Columns};
 pub use offsets::{OffsetReader, Offsets};
 pub use plan::Plans;
 pub use rows::Rows;
 pub use spans::Spans;
+pub(crate) use stream::Stream;

@@ -101,9 +101,9 @@ impl Noise {
         &self.closed.offsets
     }
 
-    /// Return the position of the span that may continue.
-    pub(crate) fn open(&self) -> Option<u64> {
-        self.open.map(|(from, _)| from)
+    /// Return the start and the end of the span that may continue.
+    pub(crate) fn open(&self) -> Option<(u64, u64)> {
+        self.open
     }
 
     /// Return the completed spans.

@@ -95,6 +95,11 @@ impl Stream {
         self.noise.take()
     }
 
+    /// Return the start and the end of the noise that no frame has ended yet.
+    pub(crate) fn open_noise(&self) -> Option<(u64, u64)> {
+        self.noise.open()
+    }
+
     pub(crate) fn feed(&mut self, chunk: &[u8], collect: &mut impl Collect) {
         self.cut(chunk, false, collect);
     }

@@ -1,0 +1,111 @@
+//! Counts the messages of a stream, without their values.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::block::{Block, Found, LANES};
+use super::buckets::Buckets;
+use super::decode::Job;
+use super::plan::{Plan, Plans};
+use super::stream::Collect;
+use crate::frame::Part;
+use crate::legal::BELIEVED;
+use crate::table::Table;
+use crate::tally::Tally;
+
+/// How often a message occurred.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counted {
+    /// The id of its frames.
+    pub id: u16,
+    /// The index of its command; `None`: no message has that id, or none allows the values.
+    pub command: Option<usize>,
+    /// How many frames there are.
+    pub count: u64,
+    /// The position of the first one.
+    pub first: u64,
+}
+
+/// Counts the messages of a stream, and keeps the positions of their frames if that is wanted.
+pub(crate) struct Census {
+    table: Arc<Table>,
+    plans: Arc<Plans>,
+    buckets: Buckets,
+    id: Part,
+    counted: BTreeMap<(u16, Option<usize>), Counted>,
+    /// The positions of the frames.
+    pub(crate) frames: Option<Vec<u64>>,
+}
+
+impl Census {
+    pub(crate) fn new(table: Arc<Table>, plans: Arc<Plans>, keep: bool) -> Self {
+        Self {
+            buckets: Buckets::new(plans.groups.len()),
+            id: table.frame().layout.id,
+            table,
+            plans,
+            counted: BTreeMap::new(),
+            frames: keep.then(Vec::new),
+        }
+    }
+
+    /// Return the counts, in the order of the first frames.
+    pub(crate) fn counted(&self) -> Vec<Counted> {
+        let mut all: Vec<Counted> = self.counted.values().copied().collect();
+        all.sort_unstable_by_key(|counted| counted.first);
+        all
+    }
+}
+
+impl Collect for Census {
+    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally) {
+        if let Some(frames) = &mut self.frames {
+            let all = found.into_iter().flatten();
+            frames.extend(all.map(|frame| offset + u64::from(frame.at())));
+        }
+        let counted = &mut self.counted;
+        let mut add = |id, command, count, first| {
+            let key = (id, command);
+            let entry = counted.entry(key).or_insert_with(|| Counted {
+                id,
+                command,
+                count: 0,
+                first,
+            });
+            entry.count += count;
+            entry.first = entry.first.min(first);
+        };
+        self.buckets.fill(found);
+        self.buckets.drain(|group, frames| {
+            let Some(plan) = self.plans.groups.get(group) else {
+                return;
+            };
+            tally.add_frames(plan.id, frames.len() as u64);
+            let job = Job {
+                table: &self.table,
+                block,
+                offset,
+                frames,
+            };
+            job.count(plan, |index, count, first| {
+                add(
+                    plan.id,
+                    index.and_then(|index| command(plan, index)),
+                    count,
+                    first,
+                );
+            });
+        });
+        let unknown = found.into_iter().flatten();
+        for frame in unknown.filter(|frame| frame.group() == BELIEVED) {
+            let bytes = block.get(usize::from(frame.at())..).unwrap_or_default();
+            let id = self.id.read(bytes).unwrap_or_default();
+            tally.add_frames(id, 1);
+            add(id, None, 1, offset + u64::from(frame.at()));
+        }
+    }
+}
+
+fn command(plan: &Plan, index: usize) -> Option<usize> {
+    plan.variants.get(index).map(|variant| variant.command)
+}

@@ -1,0 +1,205 @@
+//! Diagnoses noise: finds the class of each byte that belongs to no frame.
+//!
+//! Python's `cobotwire.diagnose` defines the classes and describes them. This module finds the
+//! frequent ones, in noise that nothing can follow any more, at the speed of a capture. What it does
+//! not know, it leaves to Python.
+
+mod cluster;
+mod damaged;
+mod firmware;
+mod frames;
+mod plain;
+mod servo;
+
+pub(crate) use cluster::{Cluster, reason};
+pub use servo::Packets;
+
+use crate::direction::{Direction, Listening};
+use crate::judge::Rules;
+use crate::table::Table;
+use damaged::Lengths;
+
+/// A class of noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Bytes in which nothing is found.
+    Unrecognised,
+    /// Bytes that look like a wrong baud rate.
+    Garbage,
+    /// NULs in a row, fewer than a reboot sends.
+    Nuls,
+    /// The firmware's `cmd_len error`.
+    CommandError,
+    /// A line of text.
+    Text,
+    /// Header and id of a command, without a legal frame.
+    Damaged,
+    /// A complete frame with an id that the edition lacks.
+    Unlisted,
+    /// A legal frame of the other direction.
+    Opposite,
+    /// A packet of the servo bus.
+    Servo,
+    /// A class that only Python knows.
+    Other,
+}
+
+impl Kind {
+    /// The classes that this module knows.
+    pub const ALL: [Self; 9] = [
+        Self::Unrecognised,
+        Self::Garbage,
+        Self::Nuls,
+        Self::CommandError,
+        Self::Text,
+        Self::Damaged,
+        Self::Unlisted,
+        Self::Opposite,
+        Self::Servo,
+    ];
+
+    /// Return the name of the class in the API.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Unrecognised => "unrecognised",
+            Self::Garbage => "garbage",
+            Self::Nuls => "nuls",
+            Self::CommandError => "cmd-len-error",
+            Self::Text => "text",
+            Self::Damaged => "damaged-frame",
+            Self::Unlisted => "unlisted-frame",
+            Self::Opposite => "opposite-frame",
+            Self::Servo => "servo",
+            Self::Other => "other",
+        }
+    }
+
+    /// Return the size of a full piece; longer noise of these classes is cut into pieces.
+    fn piece(self) -> Option<usize> {
+        match self {
+            Self::Unrecognised | Self::Garbage => Some(plain::PIECE),
+            Self::Nuls => Some(plain::NULS),
+            Self::Text => Some(firmware::LINE),
+            _ => None,
+        }
+    }
+}
+
+/// Noise that belongs together: the bytes of a cluster from `start` to before `end`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Finding {
+    pub(crate) kind: Kind,
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+    /// Whether it is the next piece of the finding before it.
+    pub(crate) continued: bool,
+}
+
+/// What starts at a place: its class and its end.
+type Verdict = Option<(Kind, usize)>;
+
+/// Diagnoses the noise of a stream.
+#[derive(Clone)]
+pub(crate) struct Diagnosis {
+    /// The rules of the stream, which tell why a byte is noise.
+    rules: Rules,
+    /// The rules of the directions that count as listed.
+    listed: Rules,
+    /// The rules of the direction that the stream does not listen to.
+    other: Option<Rules>,
+    /// The rules that accept any id.
+    any: Rules,
+    lengths: Lengths,
+    packets: Packets,
+    /// The bytes with which something but plain noise can start.
+    starts: Box<[bool; 256]>,
+}
+
+impl Diagnosis {
+    pub(crate) fn new(table: &Table, listening: Listening, rules: Rules, packets: Packets) -> Self {
+        let listed = table.rules(listening).clone();
+        let other = match listening {
+            Listening::To(Direction::Request) => Some(Direction::Reply),
+            Listening::To(Direction::Reply) => Some(Direction::Request),
+            Listening::Both => None,
+        };
+        let header = table.frame().header.first().copied().unwrap_or_default();
+        let starts = |byte: u8| {
+            byte == header || byte == 0 || byte == packets.first() || firmware::readable(byte)
+        };
+        let mut all = Box::new([false; 256]);
+        for (byte, entry) in (0..=u8::MAX).zip(all.iter_mut()) {
+            *entry = starts(byte);
+        }
+        Self {
+            rules,
+            other: other.map(|way| table.rules(Listening::To(way)).clone()),
+            any: listed.clone().accepting_unknown(),
+            listed,
+            lengths: Lengths::new(table),
+            packets,
+            starts: all,
+        }
+    }
+
+    /// Find the classes of all bytes of a cluster. Return false if one of them is for Python.
+    pub(crate) fn run(&self, cluster: &Cluster<'_>, findings: &mut Vec<Finding>) -> bool {
+        findings.clear();
+        let (mut at, mut in_text) = (0, false);
+        let mut next = None;
+        while at < cluster.data.len() {
+            let first = next.take().or_else(|| self.recognise(cluster, at, in_text));
+            let (kind, end) = first.unwrap_or_else(|| {
+                let (end, after) = self.plain(cluster, at);
+                next = after;
+                (plain::classify(cluster, at, end), end)
+            });
+            if kind == Kind::Other || end <= at {
+                return false;
+            }
+            in_text = matches!(kind, Kind::Text | Kind::CommandError);
+            findings.push(Finding {
+                kind,
+                start: at,
+                end,
+                continued: continues(cluster, findings.last(), kind, at),
+            });
+            at = end;
+        }
+        true
+    }
+
+    /// Return the end of the plain noise at `start`, and what starts there.
+    fn plain(&self, cluster: &Cluster<'_>, start: usize) -> (usize, Verdict) {
+        let limit = cluster.stretch(start).min(start + plain::PIECE);
+        let rest = cluster.data.get(start + 1..limit).unwrap_or_default();
+        for (place, byte) in (start + 1..).zip(rest) {
+            if self.starts.get(usize::from(*byte)) == Some(&true)
+                && let Some(found) = self.recognise(cluster, place, false)
+            {
+                return (place, Some(found));
+            }
+        }
+        (limit, None)
+    }
+
+    /// Return what starts at `at`; `after_text`: the finding before it is text.
+    fn recognise(&self, cluster: &Cluster<'_>, at: usize, after_text: bool) -> Verdict {
+        self.frame(cluster, at)
+            .or_else(|| self.damaged(cluster, at))
+            .or_else(|| Some((Kind::Servo, self.packets.end(cluster.data, at)?)))
+            .or_else(|| plain::nuls(cluster, at))
+            .or_else(|| firmware::line(cluster, at, after_text))
+    }
+}
+
+/// Return whether a finding continues the last one, which was cut at its limit.
+fn continues(cluster: &Cluster<'_>, last: Option<&Finding>, kind: Kind, at: usize) -> bool {
+    let Some(last) = last.filter(|last| last.kind == kind) else {
+        return false;
+    };
+    let full = Some(last.end - last.start) == kind.piece();
+    let ended = at > 0 && cluster.data.get(at - 1) == Some(&b'\n');
+    full && !ended && !cluster.is_mark(at)
+}

@@ -1,0 +1,55 @@
+//! Noise in which nothing else is found: NULs, a wrong baud rate, or unknown bytes.
+
+use super::{Cluster, Kind, Verdict};
+
+/// Unrecognised bytes are reported in pieces of this size.
+pub(super) const PIECE: usize = 256;
+/// The largest piece of a run of NULs.
+pub(super) const NULS: usize = 4096;
+/// This many NULs in a row are a finding, also inside other noise.
+const FEWEST_NULS: usize = 4;
+/// This many NULs in a row mean a reboot, which Python describes.
+const REBOOT_NULS: usize = 64;
+/// Fewer bytes prove no wrong baud rate.
+const FEWEST_GARBAGE: usize = 3;
+/// Fitting bytes from here on are not small numbers.
+const LARGE: u8 = 0x40;
+
+/// Recognise the run of NULs at `at`.
+pub(super) fn nuls(cluster: &Cluster<'_>, at: usize) -> Verdict {
+    let rest = cluster.rest(at);
+    let run = rest.iter().take(NULS).take_while(|byte| **byte == 0);
+    let count = run.count();
+    (count >= FEWEST_NULS).then_some((run_of(count), at + count))
+}
+
+fn run_of(nuls: usize) -> Kind {
+    if nuls < REBOOT_NULS {
+        Kind::Nuls
+    } else {
+        Kind::Other
+    }
+}
+
+/// Return the class of plain bytes.
+pub(super) fn classify(cluster: &Cluster<'_>, start: usize, end: usize) -> Kind {
+    let data = cluster.data.get(start..end).unwrap_or_default();
+    if data.iter().all(|byte| *byte == 0) {
+        return run_of(data.len());
+    }
+    let fitting = data.iter().filter(|byte| fits(**byte)).count();
+    let large = data.iter().filter(|byte| fits(**byte) && **byte >= LARGE);
+    // Three quarters of the bytes fit, and half of them are no small numbers.
+    let stretched = 4 * fitting >= 3 * data.len() && 2 * large.count() >= data.len();
+    if data.len() >= FEWEST_GARBAGE && stretched {
+        Kind::Garbage
+    } else {
+        Kind::Unrecognised
+    }
+}
+
+/// Return whether a byte is even, not zero, and its ones are consecutive.
+fn fits(byte: u8) -> bool {
+    let ones = u32::from(byte) >> byte.trailing_zeros();
+    byte & 1 == 0 && byte != 0 && ones & (ones + 1) == 0
+}
