@@ -53,6 +53,10 @@ impl Job<'_> {
                 let byte = self.block[usize::from(*at) + usize::from(plan.start)];
                 bytes[usize::from(byte)]
             }),
+            Allowed::Within(bounds) => plan
+                .words
+                .as_ref()
+                .is_some_and(|words| words.within(self.block, self.frames, plan.start, bounds)),
             Allowed::Some(field) => self.numbers(plan, |number, raw| field.allows(number, raw)),
         }
     }

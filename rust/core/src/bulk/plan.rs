@@ -1,6 +1,6 @@
 //! Plans how to read the frames of each group, once for each table.
 
-use super::words::Words;
+use super::words::{Bounds, Words};
 use crate::direction::Listening;
 use crate::field::{Field, Shape};
 use crate::message::{Variant, VariantId};
@@ -87,10 +87,11 @@ fn plain_fields(table: &Table, id: VariantId, variant: &Variant) -> Option<Vec<F
 impl FieldPlan {
     fn new(start: u16, field: &Field) -> Self {
         let numbers = field.numbers(0).to_vec();
+        let words = Words::new(&numbers);
         Self {
             start,
-            allowed: Allowed::new(field, &numbers),
-            words: Words::new(&numbers),
+            allowed: Allowed::new(field, &numbers, words.is_some()),
+            words,
             numbers,
         }
     }
@@ -103,12 +104,14 @@ pub(crate) enum Allowed {
     All,
     /// The field is one byte; these are allowed.
     Bytes(Box<[bool; 256]>),
+    /// Those between these bounds.
+    Within(Bounds),
     /// Those that the field allows.
     Some(Box<Field>),
 }
 
 impl Allowed {
-    fn new(field: &Field, numbers: &[Number]) -> Self {
+    fn new(field: &Field, numbers: &[Number], words: bool) -> Self {
         if field.choices.is_empty() && numbers.iter().all(Number::takes_all_bytes) {
             return Self::All;
         }
@@ -122,6 +125,9 @@ impl Allowed {
             }
             return Self::Bytes(Box::new(bytes));
         }
-        Self::Some(Box::new(field.clone()))
+        match Bounds::new(numbers).filter(|_| words && field.choices.is_empty()) {
+            Some(bounds) => Self::Within(bounds),
+            None => Self::Some(Box::new(field.clone())),
+        }
     }
 }

@@ -47,6 +47,26 @@ impl Words {
         Some(words)
     }
 
+    /// Return whether all raw values are between their bounds.
+    pub(crate) fn within(&self, block: &Block, frames: &[u16], start: u16, all: &Bounds) -> bool {
+        let task = Task {
+            words: self,
+            block,
+            frames,
+            start,
+        };
+        match (self.width, self.count) {
+            (1, 1) => task.within::<1, 1>(all),
+            (1, 2) => task.within::<1, 2>(all),
+            (1, 3) => task.within::<1, 3>(all),
+            (1, _) => task.within::<1, MOST>(all),
+            (_, 1) => task.within::<2, 1>(all),
+            (_, 2) => task.within::<2, 2>(all),
+            (_, 3) => task.within::<2, 3>(all),
+            (_, _) => task.within::<2, MOST>(all),
+        }
+    }
+
     /// Append a row of physical values for each frame.
     pub(crate) fn physical(&self, block: &Block, frames: &[u16], start: u16, out: &mut Vec<f64>) {
         let all = Task {
@@ -88,6 +108,29 @@ impl Words {
     }
 }
 
+/// The least raw value of each number, and how far the largest is from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds([(i32, u32); MOST]);
+
+impl Bounds {
+    /// Return the bounds of a field whose numbers have no choices; `None`: one of them has some.
+    pub(crate) fn new(numbers: &[Number]) -> Option<Self> {
+        let mut all = [(0, u32::MAX); MOST];
+        for (number, bounds) in numbers.iter().zip(&mut all) {
+            if !number.choices.is_empty() {
+                return None;
+            }
+            let least = i32::try_from(number.minimum).ok()?;
+            let most = i32::try_from(number.maximum).ok()?;
+            *bounds = (
+                least,
+                u32::try_from(i64::from(most) - i64::from(least)).ok()?,
+            );
+        }
+        Some(Self(all))
+    }
+}
+
 /// One field of some frames.
 struct Task<'a> {
     words: &'a Words,
@@ -111,6 +154,24 @@ impl Task<'_> {
     #[inline(never)]
     fn raw<const WIDTH: usize, const N: usize, T: Cell>(&self, out: &mut Vec<T>) {
         self.rows::<WIDTH, N, T>(out, |_, raw| T::of(raw));
+    }
+
+    #[inline(never)]
+    #[allow(clippy::indexing_slicing)] // in bounds: N is at most MOST
+    fn within<const WIDTH: usize, const N: usize>(&self, all: &Bounds) -> bool {
+        let bias: [i32; N] = std::array::from_fn(|index| self.words.bias[index]);
+        let bounds: [(i32, u32); N] = std::array::from_fn(|index| all.0[index]);
+        let mut outside = false;
+        for at in self.frames {
+            let words = read::<WIDTH, N>(self.block, *at, self.start);
+            for index in 0..N {
+                let cut = (words[index] + bias[index]) & ((1 << (8 * WIDTH)) - 1);
+                let (least, span) = bounds[index];
+                let above = (cut - bias[index]).wrapping_sub(least);
+                outside |= above as u32 > span;
+            }
+        }
+        !outside
     }
 
     #[inline(always)]

@@ -1,9 +1,8 @@
 //! Damaged frames: header and id of a command, but no legal frame.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::{Cluster, Diagnosis, Kind, Verdict, firmware};
+use super::{Cluster, Diagnosis, FRAME, Kind, PACKET, TEXT, Verdict, firmware};
 use crate::check::Check;
 use crate::direction::Direction;
 use crate::reason::Reason;
@@ -13,23 +12,27 @@ use crate::table::Table;
 const SLACK: [isize; 5] = [0, -1, 1, -2, 2];
 const MOST_SLACK: usize = 2;
 
-/// Every LEN that is legal with an id, in any direction; in ascending order.
+/// Every LEN that is legal with an id, in any direction; by id, in ascending order.
 #[derive(Clone)]
-pub(super) struct Lengths(Arc<HashMap<u16, Vec<u16>>>);
+pub(super) struct Lengths(Arc<Vec<Vec<u16>>>);
 
 impl Lengths {
     pub(super) fn new(table: &Table) -> Self {
-        let mut all: HashMap<u16, Vec<u16>> = HashMap::new();
+        let mut all: Vec<Vec<u16>> = Vec::new();
         for command in table.commands() {
+            let id = usize::from(command.id);
+            all.resize(all.len().max(id + 1), Vec::new());
+            let Some(lengths) = all.get_mut(id) else {
+                continue;
+            };
             for direction in [Direction::Request, Direction::Reply] {
                 for variant in command.variants(direction) {
                     let length = table.frame().length(variant.size(), direction);
-                    let lengths = all.entry(command.id).or_default();
                     lengths.extend(u16::try_from(length));
                 }
             }
         }
-        for lengths in all.values_mut() {
+        for lengths in &mut all {
             lengths.sort_unstable();
             lengths.dedup();
         }
@@ -37,7 +40,8 @@ impl Lengths {
     }
 
     fn of(&self, id: u16) -> Option<&[u16]> {
-        self.0.get(&id).map(Vec::as_slice)
+        let lengths = self.0.get(usize::from(id)).map(Vec::as_slice);
+        lengths.filter(|lengths| !lengths.is_empty())
     }
 }
 
@@ -105,15 +109,10 @@ impl Diagnosis {
 
     /// Return whether something else starts at `at`, inside a damaged frame.
     fn stops(&self, cluster: &Cluster<'_>, at: usize) -> bool {
-        if cluster
-            .data
-            .get(at)
-            .is_none_or(|byte| self.starts.get(usize::from(*byte)) != Some(&true))
-        {
-            return false;
-        }
-        self.packets.end(cluster.data, at).is_some()
-            || firmware::starts_message(cluster.data.get(at..).unwrap_or_default())
-            || self.damaged_lengths(cluster, at).is_some()
+        let rest = cluster.data.get(at..).unwrap_or_default();
+        let starts = rest.first().map_or(0, |byte| self.starts_with(*byte));
+        starts & PACKET != 0 && self.packets.end(cluster.data, at).is_some()
+            || starts & TEXT != 0 && firmware::starts_message(rest)
+            || starts & FRAME != 0 && self.damaged_lengths(cluster, at).is_some()
     }
 }

@@ -112,9 +112,14 @@ pub(crate) struct Diagnosis {
     any: Rules,
     lengths: Lengths,
     packets: Packets,
-    /// The bytes with which something but plain noise can start.
-    starts: Box<[bool; 256]>,
+    /// What can start with each byte, but plain noise: a sum of `FRAME`, `PACKET`, `NUL`, `TEXT`.
+    starts: Box<[u8; 256]>,
 }
+
+const FRAME: u8 = 1;
+const PACKET: u8 = 2;
+const NUL: u8 = 4;
+const TEXT: u8 = 8;
 
 impl Diagnosis {
     pub(crate) fn new(table: &Table, listening: Listening, rules: Rules, packets: Packets) -> Self {
@@ -125,12 +130,13 @@ impl Diagnosis {
             Listening::Both => None,
         };
         let header = table.frame().header.first().copied().unwrap_or_default();
-        let starts = |byte: u8| {
-            byte == header || byte == 0 || byte == packets.first() || firmware::readable(byte)
-        };
-        let mut all = Box::new([false; 256]);
-        for (byte, entry) in (0..=u8::MAX).zip(all.iter_mut()) {
-            *entry = starts(byte);
+        let mut starts = Box::new([0; 256]);
+        for (byte, all) in (0..=u8::MAX).zip(starts.iter_mut()) {
+            let can = |is: bool, start: u8| if is { start } else { 0 };
+            *all = can(byte == header, FRAME)
+                | can(byte == packets.first(), PACKET)
+                | can(byte == 0, NUL)
+                | can(firmware::readable(byte), TEXT);
         }
         Self {
             rules,
@@ -139,7 +145,7 @@ impl Diagnosis {
             listed,
             lengths: Lengths::new(table),
             packets,
-            starts: all,
+            starts,
         }
     }
 
@@ -175,7 +181,7 @@ impl Diagnosis {
         let limit = cluster.stretch(start).min(start + plain::PIECE);
         let rest = cluster.data.get(start + 1..limit).unwrap_or_default();
         for (place, byte) in (start + 1..).zip(rest) {
-            if self.starts.get(usize::from(*byte)) == Some(&true)
+            if self.starts_with(*byte) != 0
                 && let Some(found) = self.recognise(cluster, place, false)
             {
                 return (place, Some(found));
@@ -184,13 +190,33 @@ impl Diagnosis {
         (limit, None)
     }
 
+    /// Return what can start with a byte.
+    #[inline]
+    fn starts_with(&self, byte: u8) -> u8 {
+        self.starts
+            .get(usize::from(byte))
+            .copied()
+            .unwrap_or_default()
+    }
+
     /// Return what starts at `at`; `after_text`: the finding before it is text.
+    #[inline]
     fn recognise(&self, cluster: &Cluster<'_>, at: usize, after_text: bool) -> Verdict {
-        self.frame(cluster, at)
-            .or_else(|| self.damaged(cluster, at))
-            .or_else(|| Some((Kind::Servo, self.packets.end(cluster.data, at)?)))
-            .or_else(|| plain::nuls(cluster, at))
-            .or_else(|| firmware::line(cluster, at, after_text))
+        let starts = self.starts_with(*cluster.data.get(at)?);
+        let frame = starts & FRAME != 0;
+        frame
+            .then(|| {
+                self.frame(cluster, at)
+                    .or_else(|| self.damaged(cluster, at))
+            })
+            .flatten()
+            .or_else(|| (starts & PACKET != 0).then(|| self.packet(cluster, at))?)
+            .or_else(|| (starts & NUL != 0).then(|| plain::nuls(cluster, at))?)
+            .or_else(|| (starts & TEXT != 0).then(|| firmware::line(cluster, at, after_text))?)
+    }
+
+    fn packet(&self, cluster: &Cluster<'_>, at: usize) -> Verdict {
+        Some((Kind::Servo, self.packets.end(cluster.data, at)?))
     }
 }
 
