@@ -25,9 +25,10 @@ pub(super) fn starts_message(data: &[u8]) -> bool {
 pub(super) fn line(cluster: &Cluster<'_>, at: usize, after_text: bool) -> Verdict {
     let rest = cluster.data.get(at..).unwrap_or_default();
     let readable = |byte: &&u8| readable(**byte);
+    // In random bytes the last of six is as telling as the first, and the first is known.
     let enough = rest
         .get(..FEWEST)
-        .is_some_and(|six| six.iter().all(|byte| readable(&byte)));
+        .is_some_and(|six| six.iter().rev().all(|byte| readable(&byte)));
     let first = rest.first().as_ref().is_some_and(readable);
     if !(enough || after_text && first) {
         return None;

@@ -37,10 +37,14 @@ pub(super) fn classify(cluster: &Cluster<'_>, start: usize, end: usize) -> Kind 
     if data.iter().all(|byte| *byte == 0) {
         return run_of(data.len());
     }
-    let fitting = data.iter().filter(|byte| fits(**byte)).count();
-    let large = data.iter().filter(|byte| fits(**byte) && **byte >= LARGE);
+    let (mut fitting, mut large) = (0, 0);
+    for byte in data {
+        let fits = usize::from(FITS.get(usize::from(*byte)) == Some(&true));
+        fitting += fits;
+        large += if *byte >= LARGE { fits } else { 0 };
+    }
     // Three quarters of the bytes fit, and half of them are no small numbers.
-    let stretched = 4 * fitting >= 3 * data.len() && 2 * large.count() >= data.len();
+    let stretched = 4 * fitting >= 3 * data.len() && 2 * large >= data.len();
     if data.len() >= FEWEST_GARBAGE && stretched {
         Kind::Garbage
     } else {
@@ -48,8 +52,20 @@ pub(super) fn classify(cluster: &Cluster<'_>, start: usize, end: usize) -> Kind 
     }
 }
 
-/// Return whether a byte is even, not zero, and its ones are consecutive.
-fn fits(byte: u8) -> bool {
-    let ones = u32::from(byte) >> byte.trailing_zeros();
-    byte & 1 == 0 && byte != 0 && ones & (ones + 1) == 0
-}
+/// Whether each byte is even, not zero, and its ones are consecutive.
+static FITS: [bool; 256] = {
+    let mut all = [false; 256];
+    let mut ones = 1;
+    while ones < 0x80 {
+        let mut byte = ones << 1;
+        while byte < 0x100 {
+            #[allow(clippy::indexing_slicing)] // in bounds: the loop ends there
+            {
+                all[byte] = true;
+            }
+            byte <<= 1;
+        }
+        ones = ones << 1 | 1;
+    }
+    all
+};
