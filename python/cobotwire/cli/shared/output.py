@@ -48,11 +48,16 @@ def as_hex(data: bytes) -> str:
 
 
 def as_json_value(value: Any) -> Any:
-    """Return a result as JSON values: named tuples become objects, enum members their names."""
+    """Return a result as JSON values.
+
+    Named tuples become objects, enum members their names, and bytes pairs of hex digits.
+    """
     if hasattr(value, "_asdict"):
         return {name: as_json_value(part) for name, part in value._asdict().items()}
     if isinstance(value, IntEnum):
         return value.name
+    if isinstance(value, bytes):
+        return as_hex(value)
     return list(value) if isinstance(value, tuple) else value
 
 

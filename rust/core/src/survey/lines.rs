@@ -62,10 +62,7 @@ impl Writer {
                 if out.len() > readings {
                     out.extend_from_slice(b", ");
                 }
-                if !self.reading(out, &message) {
-                    out.truncate(start);
-                    return false;
-                }
+                self.reading(out, &message);
             }
         }
         if out.len() == readings {
@@ -86,8 +83,8 @@ impl Writer {
         out.extend_from_slice(b", \"data\": \"");
     }
 
-    /// Append one reading of a frame; return false if it holds bytes, which JSON has not.
-    fn reading(&self, out: &mut Vec<u8>, message: &decode::Decoded) -> bool {
+    /// Append one reading of a frame.
+    fn reading(&self, out: &mut Vec<u8>, message: &decode::Decoded) {
         let id = message.variant;
         out.extend_from_slice(b"{\"direction\": \"");
         out.extend_from_slice(match id.direction {
@@ -109,16 +106,12 @@ impl Writer {
             }
             out.extend_from_slice(name.as_bytes());
             out.extend_from_slice(b": ");
-            let Some((value, more)) = rest.split_first() else {
-                return false;
-            };
-            rest = more;
-            if !append(out, *value, &mut rest) {
-                return false;
+            if let Some((value, more)) = rest.split_first() {
+                rest = more;
+                append(out, *value, &mut rest);
             }
         }
         out.extend_from_slice(b"}}");
-        true
     }
 
     fn names(&self, id: VariantId) -> &[String] {
@@ -172,8 +165,8 @@ pub(super) struct Noise<'a> {
     pub(super) continued: bool,
 }
 
-/// Append a value; what it consists of is taken from `rest`. Return false for bytes.
-fn append(out: &mut Vec<u8>, value: Value, rest: &mut &[Value]) -> bool {
+/// Append a value; what it consists of is taken from `rest`.
+fn append(out: &mut Vec<u8>, value: Value, rest: &mut &[Value]) {
     match value {
         Value::Integer(raw) => repr::integer(out, raw),
         Value::Real(real) => repr::real(out, real),
@@ -183,31 +176,35 @@ fn append(out: &mut Vec<u8>, value: Value, rest: &mut &[Value]) -> bool {
                 if index > 0 {
                     out.extend_from_slice(b", ");
                 }
-                let Some((value, more)) = rest.split_first() else {
-                    return false;
-                };
-                *rest = more;
-                if !append(out, *value, rest) {
-                    return false;
+                if let Some((value, more)) = rest.split_first() {
+                    *rest = more;
+                    append(out, *value, rest);
                 }
             }
             out.push(b']');
         }
         Value::Text(count, encoding) => {
-            let (bytes, more) = rest.split_at_checked(count).unwrap_or_default();
-            *rest = more;
-            let byte = |value: &Value| match value {
-                Value::Integer(raw) => u8::try_from(*raw).unwrap_or_default(),
-                _ => 0,
-            };
-            let bytes: Vec<u8> = bytes.iter().map(byte).collect();
+            let bytes: Vec<u8> = bytes(rest, count).collect();
             if encoding == Encoding::Utf8 {
                 repr::text(out, String::from_utf8_lossy(&bytes).chars());
             } else {
                 repr::text(out, bytes.into_iter().map(char::from));
             }
         }
-        Value::Bytes(_) => return false,
+        Value::Bytes(count) => {
+            out.push(b'"');
+            repr::hex(out, bytes(rest, count));
+            out.push(b'"');
+        }
     }
-    true
+}
+
+/// Take bytes from the values.
+fn bytes<'a>(rest: &mut &'a [Value], count: usize) -> impl Iterator<Item = u8> + use<'a> {
+    let (bytes, more) = rest.split_at_checked(count).unwrap_or_default();
+    *rest = more;
+    bytes.iter().map(|value| match value {
+        Value::Integer(raw) => u8::try_from(*raw).unwrap_or_default(),
+        _ => 0,
+    })
 }
