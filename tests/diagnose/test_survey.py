@@ -102,7 +102,7 @@ def check(
 
 @pytest.mark.parametrize("edition", NATIVE)
 @given(listening=LISTENING, data=st.data())
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_survey_equals_diagnosis_frame_by_frame(
     edition: str, listening: Listening, data: st.DataObject
 ) -> None:
@@ -112,7 +112,7 @@ def test_survey_equals_diagnosis_frame_by_frame(
 
 
 @given(st.sampled_from(FORMATS), LISTENING, st.data())
-@settings(max_examples=60)
+@settings(max_examples=35)
 def test_survey_equals_diagnosis_for_any_frame_format(
     codec: Codec, listening: Listening, data: st.DataObject
 ) -> None:
@@ -121,7 +121,7 @@ def test_survey_equals_diagnosis_for_any_frame_format(
 
 
 @given(random_tables.tables(), LISTENING, st.data())
-@settings(max_examples=60)
+@settings(max_examples=35)
 def test_survey_equals_diagnosis_for_any_table(
     table: Table, listening: Listening, data: st.DataObject
 ) -> None:
