@@ -40,7 +40,7 @@ pub(crate) struct Census {
 impl Census {
     pub(crate) fn new(table: Arc<Table>, plans: Arc<Plans>, keep: bool) -> Self {
         Self {
-            buckets: Buckets::new(plans.groups.len()),
+            buckets: Buckets::default(),
             id: table.frame().layout.id,
             table,
             plans,
@@ -75,6 +75,7 @@ impl Collect for Census {
             entry.count += count;
             entry.first = entry.first.min(first);
         };
+        self.buckets.fit(self.plans.groups.len());
         self.buckets.fill(found);
         self.buckets.drain(|group, frames| {
             let Some(plan) = self.plans.groups.get(group) else {
