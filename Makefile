@@ -80,6 +80,7 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/resync.py
 	$(BIN)/python bench/lock.py
 	$(BIN)/python bench/speed.py
+	$(BIN)/python bench/captures.py
 	$(BIN)/python bench/imports.py
 	$(BIN)/python bench/streaming.py
 	$(BIN)/python bench/pipelining.py
