@@ -10,9 +10,11 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import cobotwire.pymycobot as ours
+from cobotwire.editions import load
+from cobotwire.protocol.errors import ArmNotReady, ProtocolError
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from layer_rulings import FRAMES, OTHER_FRAMES, RESULTS, UNANSWERED
+from layer_rulings import FRAMES, MISTAKES, MOTIONS, OTHER_FRAMES, REPLIES, RESULTS, UNANSWERED
 from pymycobot_classes import REJECTIONS
 from robots.comparison import calls_of, raised
 from robots.driving import ArmPort, driven
@@ -23,6 +25,8 @@ REJECTED = "rejected"
 ITSELF = "the arm itself"
 # The result of a call that waits for bytes that never come.
 ENDLESS = "waits for ever"
+# Our call raised an error after it wrote; the library fails by a mistake of its own.
+FAILED, MISTAKE = "failed", "fails by mistake"
 
 
 class Recorded(MemoryTransport):
@@ -52,38 +56,66 @@ class Called(NamedTuple):
     result: Any
 
 
-def layer_on(name: str, transport: Any, errors: str = "raise") -> Any:
-    """Return our class of a name on a transport."""
-    kind = getattr(ours, name)
-    made = object.__new__(kind)
-    made._open(partial(kind.NATIVE, transport), False, errors)
+def class_of(robot: Robot) -> Any:
+    """Return our class that has the name of the maker's; ``Mercury (A1)`` is the class Mercury."""
+    return getattr(ours, robot.peer.partition(" ")[0])
+
+
+def layer_on(robot: Robot, transport: Any) -> Any:
+    """Return our class of a robot on a transport."""
+    made = object.__new__(class_of(robot))
+    made._open(partial(load(robot.edition).CLIENT, transport), False, "raise")
     return made
 
 
-def call_theirs(robot: Robot, call: Call) -> Called:
-    """Call the maker's class."""
+class Fixed:
+    """Stands in for an arm: it replies with the same bytes to everything."""
+
+    wait = None
+
+    def __init__(self, reply: bytes) -> None:
+        self._reply = reply
+
+    def connect(self) -> Fixed:
+        return self
+
+    def receive(self, data: bytes) -> bytes:
+        return self._reply
+
+    def flush(self) -> bytes:
+        return b""
+
+
+def call_theirs(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
+    """Call the maker's class on a simulated arm, or one that sends a reply to everything."""
     with driven(robot) as drive:
-        port = RecordedPort(drive.arm, drive.clock)
+        arm: Any = drive.arm if reply is None else Fixed(reply)
+        port = RecordedPort(arm, drive.clock)
         peer = robot.on(port)
         try:
             result = getattr(peer, call.method)(*call.theirs)
-        except (*REJECTIONS, *raised()):
-            return Called(port.written, REJECTED)
         except TimeoutError:
             return Called(port.written, ENDLESS)
+        except (*REJECTIONS, *raised(), AttributeError, IndexError, NotImplementedError):
+            return Called(port.written, MISTAKE if port.written else REJECTED)
         return Called(port.written, ITSELF if result is peer else result)
 
 
-def call_ours(robot: Robot, call: Call) -> Called:
-    """Call our class of the same name."""
+def call_ours(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
+    """Call our class of the same name on an arm of the same kind."""
     clock = SteppedClock(1000.0)
-    arm = SimulatedArm(robot.table, clock=clock, powered=True)
+    simulated = SimulatedArm(robot.table, clock=clock, powered=True)
+    arm: Any = simulated if reply is None else Fixed(reply)
     transport = Recorded(arm, clock)
-    layer = layer_on(robot.peer, transport)
+    layer = layer_on(robot, transport)
+    # What the constructor writes is not a part of the call, and neither is what it reads.
+    transport.written, layer._waits = b"", True
     try:
         result = getattr(layer, call.method)(*call.theirs)
-    except (ValueError, TypeError, TimeoutError):
+    except (ValueError, TypeError):
         result = REJECTED
+    except (TimeoutError, ProtocolError, ArmNotReady):
+        result = FAILED
     return Called(transport.written, ITSELF if result is layer else result)
 
 
@@ -107,13 +139,12 @@ def compare(robot: Robot, stride: int = 1) -> Compared:
         if REJECTED in (theirs.result, mine.result):
             # `make robots` compares and rules which values are allowed.
             continue
-        if (mine, type(mine.result)) == (theirs, type(theirs.result)):
+        if mine.result is FAILED and theirs.result in (None, -1):
+            # Both have no reply; the library may have asked again.
+            ruled += 1
+        elif (mine, type(mine.result)) == (theirs, type(theirs.result)):
             equal += 1
-        elif (
-            (robot.peer, call.method) in UNANSWERED
-            or (_may_write_others(robot, call) and mine.result == theirs.result)
-            or ((robot.peer, call.method) in RESULTS and mine.written == theirs.written)
-        ):
+        elif _is_ruled(robot, call, theirs, mine):
             ruled += 1
             needed.add(call.method)
         else:
@@ -121,12 +152,24 @@ def compare(robot: Robot, stride: int = 1) -> Compared:
     return Compared(equal, ruled, left, needed)
 
 
-def _may_write_others(robot: Robot, call: Call) -> bool:
-    return call.method in FRAMES or (robot.peer, call.method) in OTHER_FRAMES
+def _is_ruled(robot: Robot, call: Call, theirs: Called, mine: Called) -> bool:
+    key = robot.peer, call.method
+    if key in UNANSWERED or (key in MISTAKES and theirs.result is MISTAKE):
+        return True
+    if mine.result == theirs.result and (call.method in FRAMES or key in OTHER_FRAMES):
+        return True
+    if robot.table.find_role("motion ended") is not None and call.method in MOTIONS:
+        return _ended_alike(theirs.result, mine.result)
+    return mine.written == theirs.written and (key in RESULTS or key in REPLIES)
+
+
+def _ended_alike(theirs: Any, mine: Any) -> bool:
+    """Return whether both report the same end of a motion; ours raises if the motion failed."""
+    return theirs == mine if mine is not FAILED else theirs != 0
 
 
 def _sample(robot: Robot, stride: int) -> Iterator[Call]:
-    offered = set(dir(getattr(ours, robot.peer)))
+    offered = set(dir(class_of(robot)))
     counts: dict[str, int] = {}
     for call in calls_of(robot):
         count = counts[call.method] = counts.get(call.method, -1) + 1

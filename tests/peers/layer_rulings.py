@@ -29,7 +29,13 @@ OTHER_FRAMES = {
 }
 # By class and method, where the results may differ; the frames too, because the library sends
 # again what was not answered.
+_ONE_BYTE = "the library sends one byte where the maker's page has more, and gets no reply"
 UNANSWERED = {
+    **{
+        (robot, method): _ONE_BYTE
+        for robot in ("Mercury (A1)", "Mercury (B1, X1)", "Pro400", "Pro630")
+        for method in ("tool_serial_set_baud", "tool_serial_set_timeout")
+    },
     ("MyArm", "clear_error_information"): _NO_ACK,
     ("MechArm", "set_ssid_pwd"): _NO_ACK,
     ("MyCobot", "set_ssid_pwd"): _NO_ACK,
@@ -43,6 +49,9 @@ UNANSWERED = {
 }
 # By class and method, where the results may differ.
 RESULTS = {
+    ("Pro450Client", "base_external_485_control"): "the reply of the bus; the library wants a mode",
+    ("Pro450Client", "base_external_can_control"): "the reply of the bus; the library wants a mode",
+    ("Pro450Client", "get_force_sensor_data"): "six numbers or an error; the library has any bytes",
     **{
         (name, method): why
         for name in ("MyBuddy", "MyBuddySocket")
@@ -66,4 +75,58 @@ RESULTS = {
 PARAMETERS = {
     ("MyArmSocket", "sync_send_coords"): "mode has the default of the serial class",
     ("MyCobotSocket", "sync_send_coords"): "mode has the default of the serial class",
+}
+# By class and method, where the library raises an error by mistake.
+_EXPLAINS = "the library fails when a motion ends: it has no method to explain the end"
+MISTAKES = {
+    **{
+        ("Pro400", method): _EXPLAINS
+        for method in ("over_limit_return_zero", "set_solution_angles", "sync_send_angles")
+    },
+    ("Pro400", "power_on"): "the library fails by get_limit_switch, after the arm has power",
+}
+# Motions that both wait for: the frames in between may differ, and what a failed motion does.
+MOTIONS = dict.fromkeys(
+    ("send_angle", "send_angles", "send_coord", "send_coords", "set_solution_angles", "go_home")
+    + ("jog_increment_angle", "jog_increment_coord", "write_move_c", "write_move_c_r")
+    + ("send_base_coord", "send_base_coords", "over_limit_return_zero", "drag_teach_execute"),
+    "a failed motion raises RequestRefused; the library queries the arm and explains it",
+)
+_SIZE = "the library does not read replies of this size, or reads a part of them"
+_SIGN = "the library reads the highest bit as a sign, and lists other bits then"
+_PIN = "a pin in the reply is optional here; the library reads a reply of one kind wrongly"
+_TOOLS = [f"get_pro_gripper{what}" for what in ("", "_angle", "_torque", "_speed", "_status")]
+_TOOLS += [
+    f"get_hand_gripper_{what}" for what in ("angle", "torque", "p", "d", "i", "id", "status")
+]
+_TOOLS += ["get_hand_gripper_clockwise", "get_hand_gripper_counterclockwise", "get_hand_model"]
+_TOOLS += ["get_hand_gripper_min_pressure", "get_hand_gripper_default_speed"]
+_TOOLS += ["get_hand_firmware_major_version", "get_hand_firmware_minor_version"]
+_SIZES = ["get_robot_status", "get_quick_move_info", "get_pos_over", "get_servo_encoder"]
+_SIZES += ["get_dynamic_parameters", "get_digital_inputs", "tool_serial_read_data"]
+_SIZES_630 = ["get_comm_error_counts", "get_solution_angles", "get_max_speed", "get_max_acc"]
+_SIZES_630 += ["get_fusion_parameters", "get_pos_over_shoot", "get_joint_min_angle"]
+_SIZES_630 += ["get_joint_max_angle"]
+# By robot and method, where results of the same reply may differ.
+REPLIES = {
+    **{
+        (robot, method): _SIGN
+        for robot in ("Mercury (A1)", "Mercury (B1, X1)", "Pro630")
+        for method in ("get_robot_status", "get_motors_run_err")
+    },
+    **{
+        (robot, method): _SIZE
+        for robot in ("Pro400", "Pro630")
+        for method in (*_TOOLS, *_SIZES, *(_SIZES_630 if robot == "Pro630" else ()))
+    },
+    **{
+        (robot, "get_base_io_input"): _PIN
+        for robot in ("Mercury (A1)", "Mercury (B1, X1)", "Pro400", "Pro630", "Pro450Client")
+    },
+    ("Pro400", "get_limit_switch"): "the library fails: it expects two numbers in its list of one",
+    ("Pro450Client", "get_comm_error_counts"): "a count has no sign; the library gives it one",
+    (
+        "Pro450Client",
+        "get_pro_gripper_offset",
+    ): "-127..127 by its own page; the library has no sign",
 }

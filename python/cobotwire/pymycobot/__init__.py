@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from cobotwire.pymycobot.mecharm import MechArm
     from cobotwire.pymycobot.mecharm270 import MechArm270
     from cobotwire.pymycobot.mecharmsocket import MechArmSocket
+    from cobotwire.pymycobot.mercury import Mercury
+    from cobotwire.pymycobot.mercurysocket import MercurySocket
     from cobotwire.pymycobot.myarm import MyArm
     from cobotwire.pymycobot.myarmc import MyArmC
     from cobotwire.pymycobot.myarmm import MyArmM
@@ -38,6 +40,11 @@ if TYPE_CHECKING:
     from cobotwire.pymycobot.mypalletizer import MyPalletizer
     from cobotwire.pymycobot.mypalletizer260 import MyPalletizer260
     from cobotwire.pymycobot.mypalletizersocket import MyPalletizerSocket
+    from cobotwire.pymycobot.pro400 import Pro400
+    from cobotwire.pymycobot.pro400client import Pro400Client
+    from cobotwire.pymycobot.pro450client import Pro450Client
+    from cobotwire.pymycobot.pro630 import Pro630
+    from cobotwire.pymycobot.pro630client import Pro630Client
 
 # The module of each class; it is imported when the class is used.
 _MODULES = {
@@ -61,6 +68,13 @@ _MODULES = {
     "MyCobot": "mycobot",
     "MechArm": "mecharm",
     "MyPalletizer": "mypalletizer",
+    "Mercury": "mercury",
+    "MercurySocket": "mercurysocket",
+    "Pro400": "pro400",
+    "Pro400Client": "pro400client",
+    "Pro630Client": "pro630client",
+    "Pro630": "pro630",
+    "Pro450Client": "pro450client",
 }
 
 __all__ = [
@@ -71,6 +85,8 @@ __all__ = [
     "MechArm",
     "MechArm270",
     "MechArmSocket",
+    "Mercury",
+    "MercurySocket",
     "MyArm",
     "MyArmC",
     "MyArmM",
@@ -88,6 +104,11 @@ __all__ = [
     "MyPalletizer",
     "MyPalletizer260",
     "MyPalletizerSocket",
+    "Pro400",
+    "Pro400Client",
+    "Pro450Client",
+    "Pro630",
+    "Pro630Client",
     "utils",
 ]
 

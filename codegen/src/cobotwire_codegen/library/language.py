@@ -13,6 +13,23 @@ RESULTS = {
     "nothing": "None; for orders with an acknowledgement.",
     "done": "1 when the order is sent; for orders without an acknowledgement.",
     "ended": "The status with which the motion ended, which is waited for; 0 is success.",
+    "bytes_listed": "The bytes in a list; a single one as a number.",
+    "numbers": "The bytes in a list.",
+    "tenths": "A tenth of the number.",
+    "pairs": "Each two numbers in a list of their own.",
+    "calibrated": "1 if all are calibrated, else a number for each joint.",
+    "bits_from_the_highest": "For each number the list of the bits that are set, or 0.",
+    "robot_status": "All in one list; for each error word the list of the bits that are set, or 0.",
+    "quick_move_info": "The rows, two zeros, and the last six bytes.",
+    "in_hundredths": "Whole numbers of hundredths.",
+    "signed": "Words of two bytes as signed numbers.",
+    "solved": "A row of angles; a text if there is no solution.",
+    "hex_text": "Four hex digits.",
+    "calibrated_joints": "1 if everything is calibrated, else all numbers in one list.",
+    "robot_status_of_450": "As `robot_status`, with the lowest bits first.",
+    "flat": "All numbers in one list.",
+    "in_thousandths": "Whole numbers of thousandths.",
+    "listed_hundredths": "A list of one whole number of hundredths.",
     "joined": "The parts of all named tuples in one list.",
     "radians": "Radians, rounded to thousandths.",
     "bit_numbers": "For each byte the list of the bits that are set, or 0.",
@@ -67,7 +84,9 @@ class Class(Record):
     methods_of = optional(
         Text(), "A class for another edition: what it states about methods holds here too."
     )
-    helpers = optional(Names(), "Classes of the layer with methods of several requests.")
+    helpers = optional(
+        Names(), "Classes of the layer with methods of several requests: `Name`, or `module.Name`."
+    )
     lacks = optional(Names(), "Our methods that the class does not have under our name.")
     addresses = optional(
         Names(), "The parameters of its methods that select the device that a request goes to."

@@ -22,8 +22,6 @@ _OPTIONS = {
     "thread_lock": "bool",
     "timeout": "float",
 }
-# The modules of helpers that concern one robot; the others are in ``helpers``.
-_HELPERS = {"Limbs": "buddy", "LimbPins": "buddy"}
 _ENUM = re.compile(r"\b[A-Z]\w* \| int\b")
 
 
@@ -238,7 +236,8 @@ def _passed(method: Method) -> list[str]:
     # A number has no default.
     defaults = {each.name: each.default for each in method.parameters}
     ours = {name: each.default for name, each in zip(method.passes, arguments(method.command))}
-    left_out = {name for name in ours if (defaults.get(name), ours[name]) == ("False", "None")}
+    no = {"False", "0"}
+    left_out = {name for name in ours if defaults.get(name) in no and ours[name] == "None"}
     return [f"{name} or None" if name in left_out else name for name in method.passes]
 
 
@@ -264,8 +263,14 @@ def names(library: Library) -> list[str]:
 
 def bases(given: LibraryClass) -> str:
     """Return the bases of a class: the helpers, what it is like, or else what all share."""
-    found = [*given.helpers, *([given.like] if given.like else [])]
+    found = [*(_place(each)[1] for each in given.helpers), *([given.like] if given.like else [])]
     return ", ".join(found or ["CompatibleClient"])
+
+
+def _place(helper: str) -> tuple[str, str]:
+    """Return the module of the layer that has a helper, and the name of its class."""
+    module, _, name = helper.rpartition(".")
+    return module or "helpers", name
 
 
 def sequences(classes: list[LibraryClass]) -> bool:
@@ -292,10 +297,9 @@ def imports(library: Library, classes: list[LibraryClass]) -> list[str]:
         found.append(f"from {layer} import results")
     shared = ["CompatibleClient"] * any(bases(each) == "CompatibleClient" for each in classes)
     found.append(f"from {layer}.client import {', '.join([*shared, 'OnFailure'])}")
-    helpers = {helper for each in classes for helper in each.helpers}
-    for module in sorted({_HELPERS.get(each, "helpers") for each in helpers}):
-        listed = sorted(each for each in helpers if _HELPERS.get(each, "helpers") == module)
-        found.append(f"from {layer}.{module} import {', '.join(listed)}")
+    helpers = sorted({_place(helper) for each in classes for helper in each.helpers})
+    for module, group in groupby(helpers, key=lambda place: place[0]):
+        found.append(f"from {layer}.{module} import {', '.join(name for _, name in group)}")
     if any(map(naming, methods)):
         found.append(f"from {layer}.naming import naming")
     here = {each.name for each in classes}

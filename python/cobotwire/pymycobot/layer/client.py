@@ -36,6 +36,9 @@ class CompatibleClient:
     """
 
     NATIVE: ClassVar[type[Client]]
+    # How long an acknowledgement is waited for, and what a call returns that does not wait for it.
+    ACK_SECONDS: ClassVar[float] = ACK_SECONDS
+    QUIET: ClassVar[int | None] = None
     # What an order returns, and when. Older classes serve arms of every age, and older firmware
     # acknowledges nothing: then an order returns 1, or a list with 1, once it is sent.
     ORDERS: ClassVar[str] = "acknowledged"
@@ -93,9 +96,9 @@ class CompatibleClient:
             return [DONE] if self.ORDERS == "listed" else DONE
         if quiet:
             call(*arguments)
-            return None
+            return self.QUIET
         try:
-            call(*arguments, ack_within=ACK_SECONDS)
+            call(*arguments, ack_within=self.ACK_SECONDS)
         except (ProtocolError, ReplyTimeout):
             return self._failed()
         return gives(DONE)

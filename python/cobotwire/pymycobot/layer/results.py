@@ -11,6 +11,9 @@ from typing import Any
 # An error register of seven bytes: the first and the last code of each class of the library.
 _CLASSES = ((1, 16, 22), (2, 23, 28), (3, 32, 111))
 
+# What the library returns where an arm sends minus ten radians, in thousandths or hundredths.
+NO_SOLUTION, NO_ANGLES = "No solution for conversion", {-572.957, -572.95}
+
 
 def plain(value: Any) -> Any:
     """Return lists instead of tuples, and numbers instead of flags and enums."""
@@ -65,3 +68,98 @@ def words_of_text(value: Any) -> Any:
     """Return the first word of the first text, and the last word of the last."""
     words = [text.split(" ") for text in value]
     return words[0][0], words[-1][-1]
+
+
+def bytes_listed(value: Any) -> Any:
+    """Return the bytes as a list; a single one as a number."""
+    return value[0] if len(value) == 1 else list(value)
+
+
+def numbers(value: Any) -> Any:
+    """Return the bytes as a list."""
+    return list(value)
+
+
+def tenths(value: Any) -> Any:
+    """Return a tenth of a number."""
+    return value / 10
+
+
+def pairs(value: Any) -> Any:
+    """Return each two numbers in a list of their own."""
+    numbers = plain(value)
+    return [numbers[at : at + 2] for at in range(0, len(numbers), 2)]
+
+
+def calibrated(value: Any) -> Any:
+    """Return 1 if the first part is true, else the second part."""
+    every, joints = plain(value)
+    return 1 if every else joints
+
+
+def bits_from_the_highest(value: Any) -> Any:
+    """Return for each number the numbers of the bits that are set, highest first, or 0."""
+    return [[bit for bit in reversed(range(16)) if word >> bit & 1] or 0 for word in plain(value)]
+
+
+def robot_status(value: Any) -> Any:
+    """Return all parts in one list; the last two with the bits that are set, highest first."""
+    *flags, limits, motors, software = plain(value)
+    return [*flags, *limits, *bits_from_the_highest([*motors, *software])]
+
+
+def quick_move_info(value: Any) -> Any:
+    """Return the rows, two zeros, and the further bytes after the first two."""
+    angles, coords, further = plain(value)
+    return [angles, coords, 0, 0, *further[2:]]
+
+
+def in_hundredths(value: Any) -> Any:
+    """Return whole numbers of hundredths."""
+    return [round(each * 100) for each in value]
+
+
+def signed(value: Any) -> Any:
+    """Return words of two bytes as signed numbers."""
+    return [each - 0x10000 if each >= 0x8000 else each for each in plain(value)]
+
+
+def solved(value: Any) -> Any:
+    """Return the angles; a text if the arm sends minus ten radians of each joint."""
+    found = plain(value)
+    return NO_SOLUTION if set(found) <= NO_ANGLES else found
+
+
+def hex_text(value: Any) -> Any:
+    """Return a number as four hex digits."""
+    return f"{value:04X}"
+
+
+def calibrated_joints(value: Any) -> Any:
+    """Return 1 if everything is calibrated, else all parts in one list."""
+    every, joints = plain(value)
+    flags = [every, *joints]
+    return 1 if all(flags) else flags
+
+
+def robot_status_of_450(value: Any) -> Any:
+    """Return all parts in one list; the last two with the bits that are set, lowest first."""
+    *flags, limits, motors, software = plain(value)
+    words = bits_from_the_highest([*motors, *software])
+    return [*flags, *limits, *(bits and bits[::-1] for bits in words)]
+
+
+def flat(value: Any) -> Any:
+    """Return all parts in one list."""
+    parts = plain(value)
+    return [each for part in parts for each in (part if isinstance(part, list) else [part])]
+
+
+def in_thousandths(value: Any) -> Any:
+    """Return whole numbers of thousandths."""
+    return [round(each * 1000) for each in value]
+
+
+def listed_hundredths(value: Any) -> Any:
+    """Return a list of one whole number of hundredths."""
+    return [round(value * 100)]

@@ -1,0 +1,92 @@
+"""The gripper of a Pro 450, which the arm reaches by Modbus frames."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cobotwire.protocol.errors import ProtocolError, RequestRefused, UsageError
+from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
+
+READ, WRITE = 3, 6
+# The number of a new gripper on the bus.
+GRIPPER = 14
+# What a frame of the gripper's own kind begins with: the head, and its length.
+OWN_HEAD = bytes([0xFE, 0xFE, 8])
+
+
+def check_of(data: bytes) -> int:
+    """Return the check of Modbus over some bytes."""
+    rest = 0xFFFF
+    for each in data:
+        rest ^= each
+        for _ in range(8):
+            rest = (rest >> 1) ^ (0xA001 if rest & 1 else 0)
+    return rest
+
+
+class ModbusGripper(CompatibleClient):
+    """Reads and writes registers of the gripper by ``tool_serial_write_data``.
+
+    A register that cannot be read, or a value that the gripper does not accept, raises
+    ProtocolError; with ``errors="return"`` the result is -1.
+    """
+
+    def _write(
+        self, register: int, value: int, allowed: tuple[str, int, int], gripper_id: int
+    ) -> int:
+        """Write a register; ``allowed`` is the parameter, its lowest and its highest value."""
+        _check(*allowed, value)
+        return self._write_in(b"", register, value, gripper_id)
+
+    def _write_in(self, head: bytes, register: int, value: int, gripper_id: int) -> int:
+        _check("gripper_id", 1, 254, gripper_id)
+        size = len(head)
+        reply = self._sent(head, WRITE, register, value, gripper_id)
+        if isinstance(reply, int):
+            return reply
+        accepted = int.from_bytes(reply[size + 4 : size + 6], "big")
+        if accepted == DONE:
+            return DONE
+        return self._fails(
+            RequestRefused(f"the write of register {register}", "status", str(accepted), reply)
+        )
+
+    def _read(self, register: int, gripper_id: int) -> int:
+        """Read a register."""
+        _check("gripper_id", 1, 254, gripper_id)
+        reply = self._sent(b"", READ, register, 0, gripper_id)
+        return reply if isinstance(reply, int) else int.from_bytes(reply[4:6], "big")
+
+    def _sent(
+        self, head: bytes, function: int, register: int, value: int, gripper_id: int
+    ) -> bytes | int:
+        """Send a frame; return the reply, or what a call returns that fails."""
+        data = bytes(
+            [gripper_id, function, *register.to_bytes(2, "big"), *value.to_bytes(2, "big")]
+        )
+        # A frame of the gripper's own kind has the check's high byte first.
+        check = check_of(data).to_bytes(2, "big" if head else "little")
+        reply: Any = self._ask(bytes, self.arm.tool_serial_write_data, head + data + check)
+        if isinstance(reply, int):
+            return reply
+        size = len(head)
+        if len(reply) >= size + 6 and reply[size + 1 : size + 4] == data[1:4]:
+            return bytes(reply)
+        what = f"the gripper replied to another request than that for register {register}"
+        return self._fails(ProtocolError("bad-value", size, reply, what))
+
+    def _fails(self, error: ProtocolError) -> int:
+        try:
+            raise error
+        except ProtocolError:
+            return self._failed()
+
+
+def _check(name: str, lowest: int, highest: int, value: int) -> None:
+    if not isinstance(value, int) or not lowest <= value <= highest:
+        raise UsageError(name, value, f"a whole number {lowest}..{highest}")
+
+
+def percent(name: str) -> tuple[str, int, int]:
+    """Return what is allowed for a parameter in percent."""
+    return name, 0, 100
