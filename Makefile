@@ -14,7 +14,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack robots demos
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack robots layer demos
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -111,6 +111,9 @@ attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180
 
 robots: .venv/.tools .venv/.native ## compare every request of the maker's classes with ours
 	PYTHONPATH=tests:tests/peers $(BIN)/python -W ignore -m robots $(ROBOTS)
+
+layer: .venv/.tools .venv/.native ## compare every call of our classes with the maker's names with its classes
+	PYTHONPATH=python:codegen/src:tests:tests/peers $(BIN)/python -W ignore -m layer_main
 
 demos: .venv/.tools .venv/.native ## run the maker's public demos: with the library, with our layer, rewritten
 	PYTHONPATH=python:tests:tests/peers $(BIN)/python -m demos

@@ -14,7 +14,16 @@ from cobotwire.editions import load
 from cobotwire.protocol.errors import ArmNotReady, ProtocolError
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from layer_rulings import FRAMES, MISTAKES, MOTIONS, OTHER_FRAMES, REPLIES, RESULTS, UNANSWERED
+from layer_rulings import (
+    FRAMES,
+    LATE,
+    MISTAKES,
+    MOTIONS,
+    OTHER_FRAMES,
+    REPLIES,
+    RESULTS,
+    UNANSWERED,
+)
 from pymycobot_classes import REJECTIONS
 from robots.comparison import calls_of, raised
 from robots.driving import ArmPort, driven
@@ -61,10 +70,11 @@ def class_of(robot: Robot) -> Any:
     return getattr(ours, robot.peer.partition(" ")[0])
 
 
-def layer_on(robot: Robot, transport: Any) -> Any:
-    """Return our class of a robot on a transport."""
-    made = object.__new__(class_of(robot))
-    made._open(partial(load(robot.edition).CLIENT, transport), False, "raise")
+def layer_on(name: str, transport: Any, native: Any = None) -> Any:
+    """Return our class of a name on a transport; ``native`` is the client that it uses."""
+    kind = getattr(ours, name)
+    made = object.__new__(kind)
+    made._open(partial(native or kind.NATIVE, transport), False, "raise")
     return made
 
 
@@ -96,7 +106,7 @@ def call_theirs(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
             result = getattr(peer, call.method)(*call.theirs)
         except TimeoutError:
             return Called(port.written, ENDLESS)
-        except (*REJECTIONS, *raised(), AttributeError, IndexError, NotImplementedError):
+        except (*REJECTIONS, *raised(), AttributeError, LookupError, NotImplementedError):
             return Called(port.written, MISTAKE if port.written else REJECTED)
         return Called(port.written, ITSELF if result is peer else result)
 
@@ -107,12 +117,12 @@ def call_ours(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
     simulated = SimulatedArm(robot.table, clock=clock, powered=True)
     arm: Any = simulated if reply is None else Fixed(reply)
     transport = Recorded(arm, clock)
-    layer = layer_on(robot, transport)
+    layer = layer_on(class_of(robot).__name__, transport, load(robot.edition).CLIENT)
     # What the constructor writes is not a part of the call, and neither is what it reads.
     transport.written, layer._waits = b"", True
     try:
         result = getattr(layer, call.method)(*call.theirs)
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, NotImplementedError):
         result = REJECTED
     except (TimeoutError, ProtocolError, ArmNotReady):
         result = FAILED
@@ -131,10 +141,10 @@ class Compared(NamedTuple):
     needed: set[str]
 
 
-def compare(robot: Robot, stride: int = 1) -> Compared:
-    """Compare the calls of a class; of each method every ``stride``-th."""
+def compare(robot: Robot, stride: int = 1, every: int = 1) -> Compared:
+    """Compare the calls of a class: of every ``every``-th method each ``stride``-th call."""
     equal, ruled, left, needed = 0, 0, [], set()
-    for call in _sample(robot, stride):
+    for call in _sample(robot, stride, every):
         theirs, mine = call_theirs(robot, call), call_ours(robot, call)
         if REJECTED in (theirs.result, mine.result):
             # `make robots` compares and rules which values are allowed.
@@ -154,6 +164,8 @@ def compare(robot: Robot, stride: int = 1) -> Compared:
 
 def _is_ruled(robot: Robot, call: Call, theirs: Called, mine: Called) -> bool:
     key = robot.peer, call.method
+    if mine.result is FAILED and call.method in LATE:
+        return True
     if key in UNANSWERED or (key in MISTAKES and theirs.result is MISTAKE):
         return True
     if mine.result == theirs.result and (call.method in FRAMES or key in OTHER_FRAMES):
@@ -165,13 +177,14 @@ def _is_ruled(robot: Robot, call: Call, theirs: Called, mine: Called) -> bool:
 
 def _ended_alike(theirs: Any, mine: Any) -> bool:
     """Return whether both report the same end of a motion; ours raises if the motion failed."""
-    return theirs == mine if mine is not FAILED else theirs != 0
+    return bool(theirs == mine if mine is not FAILED else theirs != 0)
 
 
-def _sample(robot: Robot, stride: int) -> Iterator[Call]:
+def _sample(robot: Robot, stride: int, every: int) -> Iterator[Call]:
     offered = set(dir(class_of(robot)))
     counts: dict[str, int] = {}
     for call in calls_of(robot):
         count = counts[call.method] = counts.get(call.method, -1) + 1
-        if call.method in offered and count % stride == 0 and not call.why:
+        chosen = count % stride == 0 and len(counts) % every == 0
+        if call.method in offered and chosen and not call.why:
             yield call

@@ -87,7 +87,8 @@ def _cases(robot: Robot, stride: int) -> Iterator[tuple[Call, bytes]]:
 
 def _by_method(robot: Robot) -> dict[str, list[Call]]:
     """Return the calls of queries that our class offers."""
-    offered, found = set(dir(class_of(robot))), {}
+    offered = set(dir(class_of(robot)))
+    found: dict[str, list[Call]] = {}
     queries = {c.name for c in robot.table.commands if c.reply and not c.ack and not c.event}
     for call in calls_of(robot):
         if call.method in offered and call.command in queries and not call.why:

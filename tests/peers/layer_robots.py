@@ -10,6 +10,7 @@ from typing import Any
 from pymycobot_classes import CLASSES
 from robots.classes import ROBOTS
 from robots.robot import Robot
+from robots.tcp_classes import opened_by_client
 
 
 class ArmSocket:
@@ -61,6 +62,16 @@ SAME_ROBOT: dict[str, Robot] = {
     "MyCobot": _another("MyCobot", "MyCobot280"),
     "MyCobotSocket": _another("MyCobotSocket", "MyCobot280", opened=on_socket),
     "MyPalletizerSocket": _another("MyPalletizerSocket", "MyPalletizer260", opened=on_socket),
+}
+# Robots that report the end of motions, and the classes that reach them by TCP.
+CLOSED_LOOP: dict[str, Robot] = {
+    **{
+        name: ROBOTS[name]
+        for name in ("Mercury (A1)", "Mercury (B1, X1)", "Pro400", "Pro630", "Pro450Client")
+    },
+    "MercurySocket": _another("MercurySocket", "Mercury (B1, X1)", opened=opened_by_client),
+    "Pro400Client": _another("Pro400Client", "Pro400", opened=opened_by_client),
+    "Pro630Client": _another("Pro630Client", "Pro630", opened=opened_by_client),
 }
 LAYER_ROBOTS: dict[str, Robot] = {**ROBOTS, **SAME_ROBOT}
 # It cannot be compared: each call of the maker's class fails.

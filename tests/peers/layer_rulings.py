@@ -5,6 +5,15 @@ Both differ in which values they allow; ``make robots`` compares and rules that 
 
 from __future__ import annotations
 
+# Classes that a ruling of another class concerns, too: they reach the same robot by TCP.
+BY_TCP = {"Mercury (B1, X1)": "MercurySocket", "Pro400": "Pro400Client", "Pro630": "Pro630Client"}
+
+
+def _also_by_tcp(rulings: dict[tuple[str, str], str]) -> dict[tuple[str, str], str]:
+    others = {(BY_TCP[name], m): why for (name, m), why in rulings.items() if name in BY_TCP}
+    return {**others, **rulings}
+
+
 _NEAREST = "the nearest step; the library truncates"
 _ASKS_ONCE = "the arm is asked whether it moves, and less often where it is"
 _NO_ACK = "the edition has no acknowledgement of it, so the library waits in vain and returns -1"
@@ -17,6 +26,7 @@ _NOT_READ = "the library does not read the reply"
 
 # By method, where the frames may differ.
 FRAMES = {
+    "is_in_position": _NEAREST,
     "send_angles": _NEAREST,
     "send_radians": _NEAREST,
     "sync_send_angles": _ASKS_ONCE,
@@ -26,6 +36,12 @@ FRAMES = {
 OTHER_FRAMES = {
     ("MyBuddy", "set_encoders"): _ROWS,
     ("MyBuddySocket", "set_encoders"): _ROWS,
+    **_also_by_tcp(
+        {
+            ("Pro400", "set_servos_calibration"): "six joints; the library sends seven requests",
+            ("Pro630", "set_servos_calibration"): "six joints; the library sends seven requests",
+        }
+    ),
 }
 # By class and method, where the results may differ; the frames too, because the library sends
 # again what was not answered.
@@ -47,6 +63,7 @@ UNANSWERED = {
     ("MyPalletizerSocket", "get_tof_distance"): _ENDLESS,
     ("MyPalletizer260", "set_ssid_pwd"): _NO_ACK,
 }
+UNANSWERED = _also_by_tcp(UNANSWERED)
 # By class and method, where the results may differ.
 RESULTS = {
     ("Pro450Client", "base_external_485_control"): "the reply of the bus; the library wants a mode",
@@ -76,22 +93,27 @@ PARAMETERS = {
     ("MyArmSocket", "sync_send_coords"): "mode has the default of the serial class",
     ("MyCobotSocket", "sync_send_coords"): "mode has the default of the serial class",
 }
+# Motions that both wait for: the frames in between may differ, and what a failed motion does.
+MOTIONS = dict.fromkeys(
+    (
+        *("send_angle", "send_angles", "send_coord", "send_coords", "set_solution_angles"),
+        *("jog_increment_angle", "jog_increment_coord", "write_move_c", "write_move_c_r"),
+        *("send_base_coord", "send_base_coords", "over_limit_return_zero", "go_home"),
+        "drag_teach_execute",
+    ),
+    "a failed motion raises RequestRefused; the library queries the arm and explains it",
+)
+# Where ours raises MotionTimeout: the simulated arm does not reach a target, since no source gives
+# its geometry; the library returns as if it did.
+LATE = ("sync_send_angles", "sync_send_coords")
 # By class and method, where the library raises an error by mistake.
 _EXPLAINS = "the library fails when a motion ends: it has no method to explain the end"
 MISTAKES = {
-    **{
-        ("Pro400", method): _EXPLAINS
-        for method in ("over_limit_return_zero", "set_solution_angles", "sync_send_angles")
-    },
+    **{("Pro400", method): _EXPLAINS for method in (*MOTIONS, "sync_send_angles")},
+    ("MyCobot280RDKX5", "sync_send_angles"): "the library fails by is_in_position, which it asks",
     ("Pro400", "power_on"): "the library fails by get_limit_switch, after the arm has power",
 }
-# Motions that both wait for: the frames in between may differ, and what a failed motion does.
-MOTIONS = dict.fromkeys(
-    ("send_angle", "send_angles", "send_coord", "send_coords", "set_solution_angles", "go_home")
-    + ("jog_increment_angle", "jog_increment_coord", "write_move_c", "write_move_c_r")
-    + ("send_base_coord", "send_base_coords", "over_limit_return_zero", "drag_teach_execute"),
-    "a failed motion raises RequestRefused; the library queries the arm and explains it",
-)
+MISTAKES = _also_by_tcp(MISTAKES)
 _SIZE = "the library does not read replies of this size, or reads a part of them"
 _SIGN = "the library reads the highest bit as a sign, and lists other bits then"
 _PIN = "a pin in the reply is optional here; the library reads a reply of one kind wrongly"
@@ -130,3 +152,5 @@ REPLIES = {
         "get_pro_gripper_offset",
     ): "-127..127 by its own page; the library has no sign",
 }
+REPLIES = _also_by_tcp(REPLIES)
+REPLIES["Pro400Client", "get_angles"] = "ours are degrees; the library divides thousandths by 100"

@@ -24,6 +24,7 @@ with warnings.catch_warnings():
         MechArm,
         MechArm270,
         Mercury,
+        MercurySocket,
         MyArm,
         MyArmC,
         MyArmM,
@@ -38,8 +39,10 @@ with warnings.catch_warnings():
         MyPalletizer260,
         MyPalletizerSocket,
         Pro400,
+        Pro400Client,
         Pro450Client,
         Pro630,
+        Pro630Client,
     )
     from pymycobot.common import DataProcessor, read, write
     from pymycobot.error import (
@@ -62,6 +65,7 @@ CLASSES: dict[str, type[Any]] = {
     # The class serves three robots; two of them have the same messages.
     "Mercury (A1)": Mercury,
     "Mercury (B1, X1)": Mercury,
+    "MercurySocket": MercurySocket,
     "MyArm": MyArm,
     "MyArmC": MyArmC,
     "MyArmM": MyArmM,
@@ -76,8 +80,10 @@ CLASSES: dict[str, type[Any]] = {
     "MyPalletizer260": MyPalletizer260,
     "MyPalletizerSocket": MyPalletizerSocket,
     "Pro400": Pro400,
+    "Pro400Client": Pro400Client,
     "Pro450Client": Pro450Client,
     "Pro630": Pro630,
+    "Pro630Client": Pro630Client,
 }
 
 # Exceptions that a call raises before it writes: on purpose, for an argument outside its limits; or

@@ -16,3 +16,6 @@ MyBuddyDataException = UsageError
 MyPalletizerDataException = UsageError
 MyPalletizer260DataException = UsageError
 MercuryDataException = UsageError
+MercuryRobotException = UsageError
+MyCobot630ProDataException = UsageError
+MyCobotPro450DataException = UsageError

@@ -10,6 +10,7 @@ from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.mercury import ByPort
 from cobotwire.pymycobot.layer.naming import naming
+from cobotwire.pymycobot.layer.ranges import check_range
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -837,6 +838,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_hand_gripper, 11, hand_id, gripper_angle, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -855,6 +857,7 @@ class Mercury(ByPort):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("hand_id", hand_id, 1, 6)
         return self._order(self.arm.set_pro_gripper, 13, hand_id, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -863,6 +866,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 21, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -873,6 +877,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 23, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -881,6 +886,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 17, hand_id, value, gripper_id)
 
     @naming(value="flag", gripper="gripper_id")
@@ -889,6 +895,7 @@ class Mercury(ByPort):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("flag", flag, 0, 1)
         return self._order(self.arm.set_pro_gripper, 10, flag, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -897,6 +904,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 19, hand_id, value, gripper_id)
 
     @naming(value="new_hand_id", gripper="gripper_id")
@@ -905,6 +913,7 @@ class Mercury(ByPort):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("new_hand_id", new_hand_id, 1, 254)
         return self._order(self.arm.set_pro_gripper, 3, new_hand_id, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -913,6 +922,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 25, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -921,6 +931,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 15, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", value="speed", gripper="gripper_id")
@@ -929,6 +940,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_hand_gripper, 32, hand_id, speed, gripper_id)
 
     @naming(finger="hand_id", value="torque", gripper="gripper_id")
@@ -937,6 +949,7 @@ class Mercury(ByPort):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_hand_gripper, 27, hand_id, torque, gripper_id)
 
     @naming(on="mode")
@@ -1027,6 +1040,7 @@ class Mercury(ByPort):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("angle", angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 36, angle, gripper_id)
 
     @naming(value="gripper_angle", gripper="gripper_id")
@@ -1035,6 +1049,7 @@ class Mercury(ByPort):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 11, gripper_angle, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -1083,6 +1098,7 @@ class Mercury(ByPort):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_pro_gripper, 32, speed, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -1099,6 +1115,7 @@ class Mercury(ByPort):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_pro_gripper, 27, torque, gripper_id)
 
     @naming(frame="rftype")

@@ -10,6 +10,7 @@ from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.closed_loop import Reporting
 from cobotwire.pymycobot.layer.naming import naming
+from cobotwire.pymycobot.layer.ranges import check_range
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -759,6 +760,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_hand_gripper, 11, hand_id, gripper_angle, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -777,6 +779,7 @@ class Pro400(Reporting):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("hand_id", hand_id, 1, 6)
         return self._order(self.arm.set_pro_gripper, 13, hand_id, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -785,6 +788,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 21, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -795,6 +799,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 23, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -803,6 +808,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 17, hand_id, value, gripper_id)
 
     @naming(value="flag", gripper="gripper_id")
@@ -811,6 +817,7 @@ class Pro400(Reporting):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("flag", flag, 0, 1)
         return self._order(self.arm.set_pro_gripper, 10, flag, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -819,6 +826,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 19, hand_id, value, gripper_id)
 
     @naming(value="new_hand_id", gripper="gripper_id")
@@ -827,6 +835,7 @@ class Pro400(Reporting):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("new_hand_id", new_hand_id, 1, 254)
         return self._order(self.arm.set_pro_gripper, 3, new_hand_id, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -835,6 +844,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 25, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -843,6 +853,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 15, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", value="speed", gripper="gripper_id")
@@ -851,6 +862,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_hand_gripper, 32, hand_id, speed, gripper_id)
 
     @naming(finger="hand_id", value="torque", gripper="gripper_id")
@@ -859,6 +871,7 @@ class Pro400(Reporting):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_hand_gripper, 27, hand_id, torque, gripper_id)
 
     @naming(on="mode")
@@ -953,6 +966,7 @@ class Pro400(Reporting):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("angle", angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 36, angle, gripper_id)
 
     @naming(value="gripper_angle", gripper="gripper_id")
@@ -961,6 +975,7 @@ class Pro400(Reporting):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 11, gripper_angle, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -1009,6 +1024,7 @@ class Pro400(Reporting):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_pro_gripper, 32, speed, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -1025,6 +1041,7 @@ class Pro400(Reporting):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_pro_gripper, 27, torque, gripper_id)
 
     @naming(frame="rftype")

@@ -10,6 +10,7 @@ from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.naming import naming
 from cobotwire.pymycobot.layer.pro630 import MethodsOfPro630
+from cobotwire.pymycobot.layer.ranges import check_range
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -766,6 +767,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_hand_gripper, 11, hand_id, gripper_angle, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -784,6 +786,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("hand_id", hand_id, 1, 6)
         return self._order(self.arm.set_pro_gripper, 13, hand_id, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -792,6 +795,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 21, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -802,6 +806,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 23, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -810,6 +815,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 17, hand_id, value, gripper_id)
 
     @naming(value="flag", gripper="gripper_id")
@@ -818,6 +824,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("flag", flag, 0, 1)
         return self._order(self.arm.set_pro_gripper, 10, flag, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -826,6 +833,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 19, hand_id, value, gripper_id)
 
     @naming(value="new_hand_id", gripper="gripper_id")
@@ -834,6 +842,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("new_hand_id", new_hand_id, 1, 254)
         return self._order(self.arm.set_pro_gripper, 3, new_hand_id, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -842,6 +851,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 25, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", gripper="gripper_id")
@@ -850,6 +860,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 15, hand_id, value, gripper_id)
 
     @naming(finger="hand_id", value="speed", gripper="gripper_id")
@@ -858,6 +869,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_hand_gripper, 32, hand_id, speed, gripper_id)
 
     @naming(finger="hand_id", value="torque", gripper="gripper_id")
@@ -866,6 +878,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_hand_gripper(address, finger, value, gripper)``.
         """
+        check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_hand_gripper, 27, hand_id, torque, gripper_id)
 
     @naming(on="mode")
@@ -948,6 +961,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("angle", angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 36, angle, gripper_id)
 
     @naming(value="gripper_angle", gripper="gripper_id")
@@ -956,6 +970,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 11, gripper_angle, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -1004,6 +1019,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_pro_gripper, 32, speed, gripper_id)
 
     @naming(gripper="gripper_id")
@@ -1020,6 +1036,7 @@ class Pro630Client(MethodsOfPro630):
 
         Calls ``set_pro_gripper(address, value, gripper)``.
         """
+        check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_pro_gripper, 27, torque, gripper_id)
 
     @naming(frame="rftype")

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import socket
 from typing import Any
 
 from pymycobot_classes import CLASSES
 from pymycobot_ports import RecordingPort
-from robots.crc_classes import ReadFrames
+from robots.crc_classes import SINGLE, ReadFrames, opened_as
 
 
 class PortSocket:
-    """The part of a socket that the class writes to."""
+    """The part of a socket that the classes write to."""
+
+    # A class of the Mercury checks that it has a socket.
+    __class__ = property(lambda self: socket.socket)
 
     def __init__(self, port: Any) -> None:
         self._port = port
@@ -53,4 +57,12 @@ def opened_on_socket(peer_class: str, port: Any) -> Any:
     if not isinstance(port, RecordingPort):
         peer.event = SteppedEvent()
         peer.read_command = SocketFrames(peer, port)
+    return peer
+
+
+def opened_by_client(peer_class: str, port: Any) -> Any:
+    """Return an object of a class that has a serial class beside it, with a socket instead."""
+    peer = opened_as(SINGLE)(peer_class, port)
+    del peer._serial_port
+    peer.sock = PortSocket(port)
     return peer

@@ -16,8 +16,9 @@ from cobotwire_codegen.model import Command, Edition
 from cobotwire_codegen.reader import Reader
 from cobotwire_codegen.render.arguments import arguments
 
-# A default is a plain literal: None, a truth value, a number, a quoted word.
+_RANGE = re.compile(r"(\w+)=(-?\d+)\.\.(-?\d+)\Z")
 _NUMBER = re.compile(r"-?\d+\Z")
+# A default is a plain literal: None, a truth value, a number, a quoted word.
 _PARAMETER = re.compile(
     r"(_?[a-z][A-Za-z0-9_]*)(?:=(None|True|False|-?\d+(?:\.\d+)?|'[\w./-]*'))?\Z"
 )
@@ -186,7 +187,24 @@ def _method(
         message = f"{reader.what} passes {len(passed)} parameters, but {called} takes {most}"
         reader.problem("bad-number", message)
     address = next((each for each in names if each in addresses), "")
-    return Method(name, command, parameters, passed, reader.get(spec.result), address, lacks)
+    ranges = _ranges(reader, spec.ranges, names)
+    result = reader.get(spec.result)
+    return Method(name, command, parameters, passed, result, address, lacks, ranges)
+
+
+def _ranges(
+    reader: Reader, key: Key[tuple[str, ...]], parameters: tuple[str, ...]
+) -> tuple[tuple[str, str, str], ...]:
+    """Return the ranges of parameters; note those that are no ranges, or of no parameter."""
+    found = []
+    for text in reader.get(key):
+        match = _RANGE.match(text)
+        if match is None or match[1] not in parameters:
+            message = f"{reader.what} has the range {text}; write parameter=lowest..highest"
+            reader.problem("bad-name", message, reader.place_of(key))
+        else:
+            found.append((match[1], match[2], match[3]))
+    return tuple(found)
 
 
 def _known(

@@ -59,6 +59,9 @@ class Method(Record):
     lacks = optional(
         Names(), "Parameters that the edition cannot send; an error says so, unless they are None."
     )
+    ranges = optional(
+        Texts(), "Ranges that the library has and the edition lacks: `name=lowest..highest`."
+    )
     result = optional(Word(RESULTS, RESULTS.values()), "How the result is given.", "plain")
 
 

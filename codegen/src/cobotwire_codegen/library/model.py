@@ -31,6 +31,7 @@ class Method:
     result: str
     address: str = ""
     lacks: tuple[str, ...] = ()
+    ranges: tuple[tuple[str, str, str], ...] = ()
 
     @property
     def takes(self) -> frozenset[str]:

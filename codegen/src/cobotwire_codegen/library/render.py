@@ -77,7 +77,8 @@ def _class_json(given: LibraryClass) -> str:
         "native": given.elsewhere.class_name,
         "joints": given.edition.joints,
         "like": given.like,
-        "helpers": given.helpers,
+        "helpers": [_place(each)[1] for each in given.helpers],
+        "on_ports": [given.edition.class_name, *given.ports] if given.ports else [],
         "devices": {str(a.value): a.attribute for a in given.edition.frame.addresses},
     }
     methods = (f'  "{each.name}": {json.dumps(_as_data(each))}' for each in given.methods)
@@ -175,8 +176,10 @@ def _annotation(name: str, ours: dict[str, Argument], address: str) -> str:
 def call(given: LibraryClass, method: Method) -> str:
     """Return the body of a method of a class."""
     lacks = [f"{name}={name}" for name in method.lacks]
-    first = laid_out("self._lacks(", lacks, ")", 8) + "\n        " if lacks else ""
-    return first + _returned(given, method)
+    checks = [laid_out("self._lacks(", lacks, ")", 8)] if lacks else []
+    for name, lowest, highest in method.ranges:
+        checks.append(laid_out("check_range(", [f'"{name}"', name, lowest, highest], ")", 8))
+    return "\n        ".join([*checks, _returned(given, method)])
 
 
 def _returned(given: LibraryClass, method: Method) -> str:
@@ -302,6 +305,8 @@ def imports(library: Library, classes: list[LibraryClass]) -> list[str]:
         found.append(f"from {layer}.{module} import {', '.join(name for _, name in group)}")
     if any(map(naming, methods)):
         found.append(f"from {layer}.naming import naming")
+    if any(method.ranges for method in methods):
+        found.append(f"from {layer}.ranges import check_range")
     here = {each.name for each in classes}
     modules = {each.name: each.module for each in library.classes}
     likes = sorted({each.like for each in classes} - here - {""})

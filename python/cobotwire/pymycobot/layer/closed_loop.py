@@ -16,6 +16,7 @@ from cobotwire.protocol.errors import (
 )
 from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
 from cobotwire.pymycobot.layer.naming import naming
+from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain, tenths
 
 # If the end of a motion is not reported for so long, the arm is asked whether it moves.
@@ -215,8 +216,7 @@ class Reporting(ClosedLoop):
         if idle_flag is not None:
             message = "set_hand_gripper_pinch_action_speed_consort() takes no idle_flag: no source"
             raise UsageError("idle_flag", idle_flag, message=f"{message} describes the message")
-        for name, value, most in (("pinch_pose", pinch_pose, 4), ("rank_mode", rank_mode, 5)):
-            if value not in range(most + 1):
-                raise UsageError(name, value, f"0..{most}")
+        check_range("pinch_pose", pinch_pose, 0, 4)
+        check_range("rank_mode", rank_mode, 0, 5)
         value = pinch_pose << 8 | rank_mode
         return self._order(self.arm.set_pro_gripper, PINCH_REGISTER, value, gripper_id)

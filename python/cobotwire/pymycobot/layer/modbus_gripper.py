@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from cobotwire.protocol.errors import ProtocolError, RequestRefused, UsageError
+from cobotwire.protocol.errors import ProtocolError, RequestRefused
 from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
+from cobotwire.pymycobot.layer.ranges import check_range
 
 READ, WRITE = 3, 6
 # The number of a new gripper on the bus.
@@ -35,11 +36,12 @@ class ModbusGripper(CompatibleClient):
         self, register: int, value: int, allowed: tuple[str, int, int], gripper_id: int
     ) -> int:
         """Write a register; ``allowed`` is the parameter, its lowest and its highest value."""
-        _check(*allowed, value)
+        name, lowest, highest = allowed
+        check_range(name, value, lowest, highest)
         return self._write_in(b"", register, value, gripper_id)
 
     def _write_in(self, head: bytes, register: int, value: int, gripper_id: int) -> int:
-        _check("gripper_id", 1, 254, gripper_id)
+        check_range("gripper_id", gripper_id, 1, 254)
         size = len(head)
         reply = self._sent(head, WRITE, register, value, gripper_id)
         if isinstance(reply, int):
@@ -53,7 +55,7 @@ class ModbusGripper(CompatibleClient):
 
     def _read(self, register: int, gripper_id: int) -> int:
         """Read a register."""
-        _check("gripper_id", 1, 254, gripper_id)
+        check_range("gripper_id", gripper_id, 1, 254)
         reply = self._sent(b"", READ, register, 0, gripper_id)
         return reply if isinstance(reply, int) else int.from_bytes(reply[4:6], "big")
 
@@ -80,11 +82,6 @@ class ModbusGripper(CompatibleClient):
             raise error
         except ProtocolError:
             return self._failed()
-
-
-def _check(name: str, lowest: int, highest: int, value: int) -> None:
-    if not isinstance(value, int) or not lowest <= value <= highest:
-        raise UsageError(name, value, f"a whole number {lowest}..{highest}")
 
 
 def percent(name: str) -> tuple[str, int, int]:

@@ -6,10 +6,11 @@ from collections.abc import Callable, Sequence
 from struct import unpack_from
 from typing import Any
 
-from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.errors import ProtocolError
 from cobotwire.pymycobot.layer.closed_loop import HOME_SPEED, REPORTS_ENDS, ClosedLoop
 from cobotwire.pymycobot.layer.modbus_gripper import GRIPPER, OWN_HEAD, ModbusGripper, percent
 from cobotwire.pymycobot.layer.naming import naming
+from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain
 
 # A trajectory is over if the arm stands still twice.
@@ -134,8 +135,7 @@ class Gripper450(ModbusGripper):
         self, state: int, custom_mode: bool = False, gripper_id: int = GRIPPER
     ) -> int:
         """Switch Modbus on or off; with ``custom_mode`` by a frame of the gripper's own kind."""
-        if state not in (0, 1):
-            raise UsageError("state", state, "0 or 1")
+        check_range("state", state, 0, 1)
         return self._write_in(OWN_HEAD if custom_mode else b"", 47, state, gripper_id)
 
 
@@ -144,9 +144,8 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
 
     def set_limit_switch(self, limit_mode: int, state: int) -> None:
         """Let motions wait for their end, or return when they are accepted; 1 has no effect."""
-        for name, value, allowed in (("limit_mode", limit_mode, (1, 2)), ("state", state, (0, 1))):
-            if value not in allowed:
-                raise UsageError(name, value, f"{allowed[0]} or {allowed[1]}")
+        check_range("limit_mode", limit_mode, 1, 2)
+        check_range("state", state, 0, 1)
         if limit_mode == REPORTS_ENDS:
             self._waits = bool(state)
 
@@ -182,8 +181,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
     @naming(data="can_data")
     def base_external_can_control(self, can_id: int, can_data: Sequence[int]) -> Any:
         """Send a message on the CAN bus of the base; return its reply: 2, the number, the bytes."""
-        if can_id not in range(1, 65536):
-            raise UsageError("can_id", can_id, "1..65535")
+        check_range("can_id", can_id, 1, 65535)
         data = [*can_id.to_bytes(4, "big"), *can_data]
         return self._ask(_external, self.arm.base_external_control, data)
 

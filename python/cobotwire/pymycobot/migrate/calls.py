@@ -42,9 +42,10 @@ class LibraryClass:
         opens: what its constructor opens.
         constructor: the parameters of its constructor.
         native: our class.
+        on_ports: another class of ours, and the ports on which it is needed; often empty.
         joints: the joints of the robot.
         devices: our attribute for each address of the robot, by the number of the address.
-        home: the call of ours that does what ``go_home`` does.
+        home: the call of ours that does what ``go_home`` does; empty if that depends on arguments.
         methods: its methods.
         absent: why names have no counterpart.
     """
@@ -52,6 +53,7 @@ class LibraryClass:
     opens: str
     constructor: tuple[str, ...]
     native: str
+    on_ports: tuple[str, ...]
     joints: int
     devices: dict[str, str]
     home: str
@@ -86,6 +88,7 @@ _OF_HELPERS = {
 _HOMES = {
     "HomingAndWaiting": "move_angles([0] * {joints}, 30)",
     "HomingWithoutResult": "send_angles([0] * {joints}, 20)",
+    **dict.fromkeys(["ByPort", "Reporting", "MethodsOfPro630", "MethodsOfPro450"], ""),
 }
 _HOME = "send_angles([0] * {joints}, 10)"
 
@@ -106,12 +109,14 @@ def _class(name: str, given: dict[str, Any], like: LibraryClass | None) -> Libra
     for helper in helpers:
         methods |= _OF_HELPERS.get(helper, {})
     methods |= {key: _call(each) for key, each in given["methods"].items()}
-    homes = (_HOMES.get(each, _HOME) for each in helpers if each.startswith("Homing"))
-    home = next(homes, _HOME).format(joints=given["joints"])
+    known = [each for each in helpers if each in _HOMES or each.startswith("Homing")]
+    homes = (_HOMES.get(each, _HOME) for each in known)
+    home = next(homes, like.home if like else _HOME).format(joints=given["joints"])
     return LibraryClass(
         given["opens"],
         tuple(given["constructor"]),
         given["native"],
+        tuple(given["on_ports"]),
         given["joints"],
         given["devices"],
         home,

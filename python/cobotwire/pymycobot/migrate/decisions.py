@@ -30,7 +30,23 @@ NO_COUNTERPART = {
     ),
     "open": "our clients open the port when they are created; create a new one",
 }
+_BITS = "our result has the error words as they come, not lists of bit numbers"
+_UNITS = "our result is in the units of the reply, not in steps"
+_FORM = "our result has the parts of the reply, not one list of them"
+_BYTES = "our result has bytes, not a list of numbers"
 RESULTS = {
+    "ended": (
+        "the library waits for the end of this motion, ours does not; if the program needs that, "
+        "use move_angles or move_coords"
+    ),
+    **dict.fromkeys(["robot_status", "robot_status_of_450", "bits_from_the_highest"], _BITS),
+    **dict.fromkeys(["in_hundredths", "in_thousandths", "listed_hundredths"], _UNITS),
+    **dict.fromkeys(["calibrated", "calibrated_joints", "flat", "pairs", "quick_move_info"], _FORM),
+    **dict.fromkeys(["bytes_listed", "numbers"], _BYTES),
+    "tenths": "our result is ten times the library's",
+    "hex_text": "our result is a number, not a text of hex digits",
+    "signed": "our result has no sign",
+    "solved": "our result is a row of angles where the library's is a text: there is no solution",
     "listed": "our result is a number, not a list of one",
     "joined": "our result has one named tuple for each part, not one list of all numbers",
     "radians": "our result is not rounded to thousandths",
@@ -43,5 +59,7 @@ NEVER_FAILED = (
     "a call that fails raises ReplyTimeout or ProtocolError here, so this comparison never finds a "
     "failure; catch the error"
 )
+HOME = "go_home waits, and its pose and speed depend on its arguments; use move_angles"
+OTHER_ROBOT = "the class is {} here; if the port is that of an arm on a body, write {} ({})"
 TIMEOUT = "timeout was the time of one read of the port; ours limits the whole wait for a reply"
 UNKNOWN = "{name} may be an arm, whose class is not known here; the call is left as it is"

@@ -16,8 +16,10 @@ from cobotwire.pymycobot.migrate.arguments import (
 )
 from cobotwire.pymycobot.migrate.calls import Call, LibraryClass, library
 from cobotwire.pymycobot.migrate.decisions import (
+    HOME,
     NEVER_FAILED,
     NO_COUNTERPART,
+    OTHER_ROBOT,
     RESULTS,
     TIMEOUT,
     UNKNOWN,
@@ -147,6 +149,9 @@ class Rewriter(cst.CSTTransformer):
         if known is None:
             self.decide(original, "the arguments are not known here; compare them by hand")
             return updated
+        if kind.on_ports:
+            there, *ports = kind.on_ports
+            self.decide(original, OTHER_ROBOT.format(kind.native, there, " or ".join(ports)))
         if "timeout" in known:
             self.decide(original, TIMEOUT)
         place, speed = (known.get(each) for each in kind.constructor[:2])
@@ -169,6 +174,9 @@ class Rewriter(cst.CSTTransformer):
 
     def home(self, original: cst.Call, updated: cst.Call, kind: LibraryClass) -> cst.BaseExpression:
         """Return the call that does what ``go_home`` does."""
+        if not kind.home:
+            self.decide(original, HOME)
+            return updated
         return _in_place_of(updated, kind.home)
 
     def gripper_kind(
