@@ -42,7 +42,8 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     help="A folder, or a single file, such as all.mcap or angles.parquet.",
 )
 @click.option(
-    "--format",
+    "--as",
+    "format",
     type=click.Choice(get_args(FormatName)),
     help="The format; by default that of OUT's ending, or Parquet.",
 )

@@ -20,7 +20,7 @@ def report_lines(report: Report) -> Iterator[str]:
         yield f"{report.not_chosen} messages left out: other commands or directions"
     if report.outside:
         yield f"{report.outside} messages left out: outside of the time range"
-    yield from _by_reason("pauses", report.gaps)
+    yield from _by_reason("pause" if report.gaps.total() == 1 else "pauses", report.gaps)
     yield from (f"incomplete: {printable(text)}" for text in report.truncated)
     yield from (f"wrote {printable(file.path)}: {file.bytes} bytes" for file in report.files)
 

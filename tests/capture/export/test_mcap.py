@@ -1,0 +1,135 @@
+"""MCAP files hold all messages in the order of their times, and what Foxglove draws."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jsonschema
+import pytest
+from mcap.reader import make_reader
+
+from capture.export.exporting import START, export, polled, recording, reply
+from cobotwire.capture import Packet
+from cobotwire.editions import load
+from cobotwire.protocol.errors import UsageError
+from cobotwire.simulator.kinematics import flange, geometry_of
+
+
+class Written(NamedTuple):
+    schema: str
+    topic: str
+    time_ns: int
+    content: Any
+
+
+def written(path: Path) -> list[Written]:
+    """Return the messages of a file, each checked with the schema of its channel."""
+    found = []
+    with path.open("rb") as file:
+        for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages():
+            assert schema is not None
+            assert (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
+            content = json.loads(message.data)
+            jsonschema.validate(content, json.loads(schema.data))
+            found.append(Written(schema.name, channel.topic, message.log_time, content))
+    return found
+
+
+@pytest.fixture
+def arm(tmp_path: Path) -> list[Written]:
+    packets = [*polled(3), Packet(START + 10**9, "received", reply("is_power_on", 1))]
+    report = export(
+        tmp_path / "arm.mcap", recording(tmp_path / "arm.pcapng", packets), format="mcap"
+    )
+    assert report.rows.total() == 7
+    return written(tmp_path / "arm.mcap")
+
+
+def test_each_message_of_each_robot_is_a_channel(arm: list[Written]) -> None:
+    assert {(each.topic, each.schema) for each in arm} == {
+        ("/arm/get_angles/request", "cobotwire.get_angles.request"),
+        ("/arm/get_angles/reply", "cobotwire.get_angles.reply"),
+        ("/arm/is_power_on/reply", "cobotwire.is_power_on.reply"),
+        ("/arm/joint_states", "foxglove.JointStates"),
+        ("/arm/end", "foxglove.PoseInFrame"),
+    }
+    assert arm[-1].content == {"powered": True}
+
+
+def test_messages_are_in_the_order_of_their_times(tmp_path: Path) -> None:
+    path = tmp_path / "arm.mcap"
+    export(path, recording(tmp_path / "arm.pcapng", polled(100)), format="mcap")
+    with path.open("rb") as file:
+        messages = make_reader(file).iter_messages(log_time_order=False)
+        times = [message.log_time for _, _, message in messages]
+    assert len(times) == 400
+    assert times == sorted(times)
+
+
+def test_joint_states_are_in_radians(arm: list[Written]) -> None:
+    states = [each for each in arm if each.schema == "foxglove.JointStates"]
+    second = states[1].content
+    assert second["timestamp"] == {"sec": START // 10**9, "nsec": 23_000_000}
+    assert [joint["name"] for joint in second["joints"]] == ["j1", "j2", "j3", "j4", "j5", "j6"]
+    positions = [joint["position"] for joint in second["joints"]]
+    assert positions == pytest.approx([math.radians(0.01 + joint) for joint in range(6)])
+
+
+def test_pose_of_the_end_is_that_of_the_geometry(tmp_path: Path) -> None:
+    angles = [10.0, -20.0, 30.0, -40.0, 50.0, -60.0]
+    packets = [Packet(START, "received", reply("get_angles", angles))]
+    export(tmp_path / "arm.mcap", recording(tmp_path / "a.pcapng", packets), format="mcap")
+    (pose,) = [e.content for e in written(tmp_path / "arm.mcap") if e.topic.endswith("/end")]
+    geometry = geometry_of(load().TABLE)
+    assert geometry is not None
+    expected = flange(geometry, angles)
+    assert pose["frame_id"] == "base"
+    position, turn = pose["pose"]["position"], pose["pose"]["orientation"]
+    assert [position[axis] * 1000 for axis in "xyz"] == pytest.approx(expected.origin)
+    x, y, z, w = (turn[part] for part in "xyzw")
+    assert math.hypot(x, y, z, w) == pytest.approx(1)
+    # The axes of the rotation that the quaternion stands for.
+    assert [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)] == pytest.approx(
+        expected.x
+    )
+    assert [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)] == pytest.approx(
+        expected.y
+    )
+
+
+def test_arm_without_a_known_geometry_has_joint_states_only(tmp_path: Path) -> None:
+    from cobotwire import codec as codecs
+
+    codec = codecs.load(load("myarm300").TABLE)
+    packets = [Packet(START, "received", codec.encode("get_angles", "reply", [[0.0] * 7]))]
+    path = recording(tmp_path / "a.pcapng", packets, "myarm300")
+    export(tmp_path / "arm.mcap", path, format="mcap")
+    topics = [each.topic for each in written(tmp_path / "arm.mcap")]
+    assert sorted(topics) == ["/a/get_angles/reply", "/a/joint_states"]
+
+
+def test_raw_bytes_have_no_times_for_an_mcap_file(tmp_path: Path) -> None:
+    (tmp_path / "arm.bin").write_bytes(reply("is_power_on", 1))
+    with pytest.raises(UsageError, match="without times, which an MCAP file needs"):
+        export(tmp_path / "arm.mcap", tmp_path / "arm.bin", format="mcap")
+
+
+def test_mcap_file_for_each_robot_and_day(tmp_path: Path) -> None:
+    recording(tmp_path / "left.pcapng", polled(2))
+    recording(tmp_path / "right.pcapng", polled(2))
+    export(
+        tmp_path / "out",
+        *sorted(tmp_path.glob("*.pcapng")),
+        format="mcap",
+        partition=("robot", "day"),
+    )
+    found = sorted(
+        path.relative_to(tmp_path / "out").as_posix() for path in tmp_path.rglob("*.mcap")
+    )
+    assert found == [
+        "robot=left/day=2026-11-23/messages.mcap",
+        "robot=right/day=2026-11-23/messages.mcap",
+    ]

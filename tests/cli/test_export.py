@@ -1,0 +1,174 @@
+"""``cobotwire export``: options, report, exit codes, missing packages."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+
+from capture.export.exporting import START, polled, recording, reply
+from cli.test_missing_packages import run_without
+from cobotwire.capture import Packet
+from cobotwire.cli.app import app
+from in_process import Ended, run
+from terminal import Terminal
+
+SECOND = 10**9
+POWERED = reply("is_power_on", 1)
+
+
+def exported(*words: str | Path, given: bytes = b"") -> Ended:
+    return run(app, "cobotwire", "export", *map(str, words), given=given)
+
+
+@pytest.fixture
+def arm(tmp_path: Path) -> Path:
+    """Record two seconds of an arm, with noise and a pause."""
+    packets = [
+        *polled(3),
+        Packet(START + SECOND // 10, "received", b"Guru", "noise", "no-header"),
+        Packet(START + 3 * SECOND, "received", POWERED),
+    ]
+    return recording(tmp_path / "arm.pcapng", packets)
+
+
+def test_report_counts_what_was_written_and_what_was_lost(arm: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    done = exported(arm, "-o", out)
+    assert (done.returncode, done.stdout) == (1, "")
+    lines = done.stderr.splitlines()
+    assert lines[0] == "1 input, 76 bytes: 7 rows in 3 files"
+    assert "           3 x get_angles.reply" in lines
+    assert "4 bytes of noise: 4 no-header" in lines
+    assert "1 pause: 1 arm" in lines
+    assert any(line.startswith(f"wrote {out}/is_power_on.reply.parquet: ") for line in lines)
+
+
+def test_json_report_is_on_standard_output(arm: Path, tmp_path: Path) -> None:
+    done = exported(arm, "-o", tmp_path / "out", "--command", "get_angles", "--json")
+    assert (done.returncode, done.stderr) == (1, "")
+    report = json.loads(done.stdout)
+    assert report["rows"] == {"get_angles.reply": 3, "get_angles.request": 3}
+    assert report["noise"] == {"no-header": 4}
+    assert report["not_chosen"] == 1
+    assert {Path(file["path"]).name: file["rows"] for file in report["files"]} == {
+        "get_angles.reply.parquet": 3,
+        "get_angles.request.parquet": 3,
+    }
+
+
+def test_clean_input_exits_with_0_and_quiet_prints_nothing(tmp_path: Path) -> None:
+    (tmp_path / "arm.bin").write_bytes(POWERED)
+    done = exported(tmp_path / "arm.bin", "-o", tmp_path / "out", "--quiet")
+    assert done == (0, "", "")
+
+
+def test_standard_input_is_exported(tmp_path: Path) -> None:
+    (tmp_path / "arm.bin").write_bytes(POWERED * 3)
+    with (tmp_path / "arm.bin").open("rb") as file:
+        kept = os.dup(0)
+        os.dup2(file.fileno(), 0)
+        try:
+            done = exported("-", "-o", tmp_path / "out", "--direction", "reply", "--json")
+        finally:
+            os.dup2(kept, 0)
+            os.close(kept)
+    assert json.loads(done.stdout)["rows"] == {"is_power_on.reply": 3}
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["--command", "get_angels"], "did you mean get_angles?"),
+        (["--from", "yesterday"], "give a time in ISO 8601, such as 2026-11-23T14:30:00Z"),
+        (["--from", "2026-11-24", "--to", "2026-11-23"], "the time range is empty"),
+        (["--partition", "robots"], "did you mean robot?"),
+        (["--as", "mcap", "--wide"], "not wide"),
+        (["none.bin"], "none.bin: no such file"),
+    ],
+)
+def test_wrong_usage_is_explained_before_anything_is_written(
+    arm: Path, tmp_path: Path, words: list[str], text: str
+) -> None:
+    done = exported(arm, "-o", tmp_path / "out", *words)
+    assert done.returncode == 2
+    assert text in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_single_file_needs_a_single_message(arm: Path, tmp_path: Path) -> None:
+    out = tmp_path / "angles.parquet"
+    done = exported(arm, "-o", out, "--command", "get_angles")
+    assert done.returncode == 2
+    assert "choose one with --command and --direction, or give a folder" in done.stderr
+    done = exported(arm, "-o", out, "--command", "get_angles", "--direction", "reply")
+    assert (done.returncode, pq.read_table(out).num_rows) == (1, 3)
+
+
+@pytest.mark.parametrize(
+    ("begin", "end", "rows"),
+    [
+        ("2026-11-23", "2026-11-24", 7),
+        ("2026-11-23T02:13:20.030Z", "2026-11-23T03:13:22+01:00", 2),
+        ("2026-11-24", None, 0),
+    ],
+)
+def test_time_range_is_iso_8601_in_utc(
+    arm: Path, tmp_path: Path, begin: str, end: str | None, rows: int
+) -> None:
+    assert START == 1_795_400_000 * SECOND, "2026-11-23T02:13:20Z"
+    until = () if end is None else ("--to", end)
+    done = exported(arm, "-o", tmp_path / "out", "--from", begin, *until, "--json")
+    report = json.loads(done.stdout)
+    assert sum(report["rows"].values()) == rows
+    assert report["outside"] == 7 - rows
+
+
+def test_partitions_are_folders_that_readers_know(arm: Path, tmp_path: Path) -> None:
+    out = tmp_path / "lake"
+    exported(arm, "-o", out, "--partition", "robot,command,day", "--direction", "reply")
+    folder = out / "robot=arm" / "command=is_power_on" / "day=2026-11-23"
+    assert [path.name for path in folder.iterdir()] == ["is_power_on.reply.parquet"]
+    table: Any = pq.read_table(out / "robot=arm" / "command=get_angles", partitioning="hive")
+    assert table.column("day").to_pylist() == ["2026-11-23"] * 3
+    assert "robot" not in table.column_names
+
+
+@pytest.mark.parametrize(
+    ("package", "words", "extra"),
+    [
+        ("pyarrow", [], "arrow"),
+        ("mcap", ["--as", "mcap"], "mcap"),
+        ("fsspec", ["memory://none"], "fsspec"),
+        ("zstandard", ["arm.bin.zst"], "zstd"),
+    ],
+)
+def test_missing_package_is_an_error_that_names_the_extra(
+    arm: Path, tmp_path: Path, package: str, words: list[str], extra: str
+) -> None:
+    zst = tmp_path / "arm.bin.zst"
+    zst.write_bytes(b"")
+    named = [str(zst) if word == zst.name else word for word in words]
+    done = run_without(package, "export", str(arm), *named, "-o", str(tmp_path / "out"))
+    assert done.returncode == 2
+    assert f"needs {package}: pip install 'cobotwire[{extra}]'" in done.stderr
+
+
+def test_terminal_shows_progress_and_then_the_report(tmp_path: Path) -> None:
+    fifo = tmp_path / "arm.bin"
+    os.mkfifo(fifo)
+    words = ("export", str(fifo), "-o", str(tmp_path / "out"))
+    with Terminal(*words, columns=100, lines=30) as terminal:
+        # A pipe that is open keeps the export waiting, so its bar is on the screen.
+        with fifo.open("wb") as pipe:
+            pipe.write(POWERED * 3)
+            pipe.flush()
+            terminal.until(lambda: "exporting" in terminal.text())
+        assert terminal.finish() == 0
+        rows = [row.split() for row in terminal.rows()]
+        assert ["3", "x", "is_power_on.reply"] in rows
+        assert ["exporting"] not in [row[:1] for row in rows]
