@@ -1,5 +1,7 @@
 """Compare reading recordings into columns with decoding the same bytes without times.
 
+Compare exports with pyarrow, which writes the tables when they are ready.
+
 The recording is a polled arm: a request and its reply, 100 times a second. Each round runs each
 program once; a ratio is the median over the rounds. The file is larger than the L3 cache of most
 machines (`--polls` makes it larger).
@@ -22,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from rich.console import Console
 
+from captures_export import exports
 from cobotwire import codec as codecs
 from cobotwire.capture import block_encoding as blocks
 from cobotwire.capture import read
@@ -34,6 +37,8 @@ from speed_table import Ratio, Target, Timed, measure, ratios, show, untargeted,
 REQUEST = bytes.fromhex("FE FE 02 20 FA")
 # Messages that the Python reader takes in a round; its time is scaled to the whole file.
 SLOWEST = 5_000
+# The size of the raw bytes to export, larger than the cache.
+EXPORTED = 256_000_000
 POLL_NS = 10_000_000
 START_NS = 1_700_000_000_000_000_000
 PLAIN = "decode_columns without times"
@@ -151,9 +156,19 @@ def compressed(codec: Codec, recording: Recording) -> Part:
     return timed, [untargeted("32 MiB of .pcapng.gz to columns", "gz", "zlib.decompress")]
 
 
+def exported(codec: Codec, recording: Recording) -> Part:
+    """Measure exports of raw bytes and of the recording, on one core."""
+    raw = recording.path.with_name("received.bin")
+    with raw.open("wb") as file:
+        for _ in range(EXPORTED // len(recording.received)):
+            file.write(recording.received)
+    return exports(recording.path.parent, {"raw bytes": raw, "recording": recording.path})
+
+
 PARTS = {
     "recordings to columns": columns,
     "compressed recordings": compressed,
+    "exports, one core": exported,
 }
 
 if __name__ == "__main__":
