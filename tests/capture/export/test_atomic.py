@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from capture.export.exporting import export, reply
+from cobotwire.capture.export import atomic_file
 from cobotwire.capture.export.atomic_file import AtomicFile
 from cobotwire.protocol.errors import OutputError, UsageError
 from command_line import PROGRAM
@@ -109,17 +110,28 @@ def test_failing_export_with_overwrite_leaves_the_old_file(tmp_path: Path) -> No
     assert files(out) == ["is_power_on.reply.parquet"]
 
 
-def test_two_exports_cannot_write_one_file_at_the_same_time(tmp_path: Path) -> None:
-    first = AtomicFile(tmp_path / "a.parquet", overwrite=True)
-    with pytest.raises(UsageError, match="another export is writing this file"):
-        AtomicFile(tmp_path / "a.parquet", overwrite=True)
-    first.file.write(b"whole")
-    first.finish()
-    first.publish()
-    second = AtomicFile(tmp_path / "a.parquet", overwrite=True)
-    second.discard()
-    assert (tmp_path / "a.parquet").read_bytes() == b"whole"
+def test_two_exports_of_one_file_do_not_disturb_each_other(tmp_path: Path) -> None:
+    first, second = (AtomicFile(tmp_path / "a.parquet", overwrite=True) for _ in range(2))
+    first.file.write(b"first")
+    second.file.write(b"second")
+    for each in (first, second):
+        each.finish()
+        each.publish()
+    assert (tmp_path / "a.parquet").read_bytes() == b"second"
     assert files(tmp_path) == ["a.parquet"]
+
+
+def test_files_of_killed_exports_are_removed_and_others_are_kept(tmp_path: Path) -> None:
+    for name in ("a.parquet.12345678", "b.parquet.12345678"):
+        (tmp_path / f".{name}.cobotwire-tmp").write_bytes(b"half")
+    running = AtomicFile(tmp_path / "a.parquet", overwrite=False)
+    other = AtomicFile(tmp_path / "a.parquet", overwrite=False)
+    left = files(tmp_path)
+    assert len(left) == 3
+    assert ".b.parquet.12345678.cobotwire-tmp" in left
+    running.discard()
+    other.discard()
+    assert files(tmp_path) == [".b.parquet.12345678.cobotwire-tmp"]
 
 
 def test_file_that_appears_during_the_export_is_not_replaced(tmp_path: Path) -> None:
@@ -138,10 +150,11 @@ def test_folder_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="the system has no /dev/full")
-def test_device_without_space_is_an_error(tmp_path: Path) -> None:
+def test_device_without_space_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "arm.bin").write_bytes(POWERED)
-    # The temporary name is beside the final one, so the link is that of the temporary file.
-    os.symlink("/dev/full", tmp_path / ".a.parquet.cobotwire-tmp")
+    monkeypatch.setattr(
+        atomic_file, "open", lambda name, mode: Path("/dev/full").open("wb"), raising=False
+    )
     with pytest.raises(OutputError, match="No space left on device"):
         export(
             tmp_path / "a.parquet",

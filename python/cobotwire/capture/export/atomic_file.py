@@ -8,7 +8,9 @@ from __future__ import annotations
 import io
 import os
 from contextlib import suppress
+from glob import escape
 from pathlib import Path
+from secrets import token_hex
 from typing import TYPE_CHECKING, BinaryIO
 
 from cobotwire.protocol.errors import OutputError, UsageError
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 try:
     import fcntl
-except ImportError:  # Windows: two exports into one folder at a time are not detected there.
+except ImportError:  # Windows: what killed exports leave behind is not removed there.
     fcntl = None  # type: ignore[assignment]
 
 # Readers of data sets ignore files with a leading dot.
@@ -26,10 +28,10 @@ _SUFFIX = ".cobotwire-tmp"
 
 
 class AtomicFile:
-    """A file that is being written.
+    """A file that is being written, under a name that no other export uses.
 
-    A temporary file that a killed export left behind is written anew. It is locked, so that two
-    exports cannot write one file at the same time.
+    The temporary files of killed exports of the same file are removed. A lock shows which files
+    belong to exports that are running.
 
     Attributes:
         path: the final name.
@@ -40,67 +42,41 @@ class AtomicFile:
         """Create the temporary file, and the folders above it.
 
         Raises:
-            UsageError: the final name is taken, or another export is writing it.
+            UsageError: the final name is taken.
             OutputError: the file cannot be created.
         """
         self.path, self._overwrite = path, overwrite
+        self._temporary = path.with_name(f".{path.name}.{token_hex(4)}{_SUFFIX}")
         self._published = False
-        self._temporary = path.with_name(f".{path.name}{_SUFFIX}")
         self._refuse_existing()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._stored = self._open_locked()
+            _remove_abandoned(path)
+            stored = open(self._temporary, "xb")  # noqa: SIM115  (closed by finish and discard)
         except OSError as error:
             raise output_error(path, error) from error
-        self.file = WritableFile(self._stored)
+        if fcntl is not None:
+            fcntl.flock(stored, fcntl.LOCK_EX)
+        self.file = WritableFile(stored)
 
     def _refuse_existing(self) -> None:
         if not self._overwrite and os.path.lexists(self.path):
-            raise existing(self.path)
-
-    def _open_locked(self) -> BinaryIO:
-        while True:
-            file = open(self._temporary, "ab")  # noqa: SIM115  (closed by publish and discard)
-            try:
-                if self._lock(file):
-                    # Devices cannot be truncated.
-                    if os.fstat(file.fileno()).st_size:
-                        file.truncate(0)
-                    return file
-            except BaseException:
-                file.close()
-                raise
-            file.close()
-
-    def _lock(self, file: BinaryIO) -> bool:
-        """Lock the temporary file; return False if it has got another name in the meantime."""
-        if fcntl is None:
-            return True
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            message = f"{self.path}: another export is writing this file"
-            raise UsageError("output", str(self.path), message=message) from None
-        try:
-            return os.path.samestat(os.fstat(file.fileno()), os.stat(self._temporary))
-        except FileNotFoundError:
-            return False
+            message = f"{self.path} exists already; --overwrite replaces it"
+            raise UsageError("output", str(self.path), message=message)
 
     def finish(self) -> int:
-        """Write the file to the disk; return its size in bytes.
+        """Write the file to the disk, and close it; return its size in bytes.
 
         Raises:
             OutputError: the system cannot write it.
         """
         try:
-            self._stored.flush()
-            os.fsync(self._stored.fileno())
-            return os.fstat(self._stored.fileno()).st_size
+            return self.file.finish()
         except OSError as error:
             raise output_error(self.path, error) from error
 
     def publish(self) -> None:
-        """Give the file its final name.
+        """Give the file its final name; then :func:`sync_folder` makes the name last.
 
         Raises:
             UsageError: the final name was taken in the meantime.
@@ -110,34 +86,29 @@ class AtomicFile:
         try:
             os.replace(self._temporary, self.path)
             self._published = True
-            self._stored.close()
-            _sync_folder(self.path.parent)
         except OSError as error:
             raise output_error(self.path, error) from error
 
     def discard(self) -> None:
         """Remove the temporary file; do nothing after :meth:`publish`."""
-        self.file.discarded = True
+        self.file.discard()
         if not self._published:
             with suppress(OSError):
                 self._temporary.unlink()
-            with suppress(OSError):
-                self._stored.close()
 
 
 class WritableFile(io.BufferedIOBase):
-    """A file that can only be written; closing it leaves the file below it open.
+    """A file that can only be written; only its owner closes it.
 
-    Attributes:
-        discarded: whether further bytes are ignored. Writers of formats write an end when they are
-            closed, also if their file has failed.
+    After :meth:`discard` it ignores what is written: writers of formats write an end when they are
+    closed, also if their file has failed.
     """
 
-    def __init__(self, file: BinaryIO) -> None:
+    def __init__(self, stored: BinaryIO) -> None:
         super().__init__()
-        self._file = file
+        self._stored = stored
         self._size = 0
-        self.discarded = False
+        self._discarded = False
 
     def writable(self) -> bool:
         """Return True."""
@@ -151,13 +122,21 @@ class WritableFile(io.BufferedIOBase):
         """Write all bytes."""
         size = memoryview(data).nbytes
         self._size += size
-        return size if self.discarded else self._file.write(data)
+        return size if self._discarded else self._stored.write(data)
 
+    def finish(self) -> int:
+        """Write everything to the disk, and close the stored file; return its size in bytes."""
+        self._stored.flush()
+        os.fsync(self._stored.fileno())
+        size = os.fstat(self._stored.fileno()).st_size
+        self._stored.close()
+        return size
 
-def existing(path: Path) -> UsageError:
-    """Return the error for an output that exists."""
-    message = f"{path} exists already; --overwrite replaces it"
-    return UsageError("output", str(path), message=message)
+    def discard(self) -> None:
+        """Close the stored file, and ignore what is written from now on."""
+        self._discarded = True
+        with suppress(OSError):
+            self._stored.close()
 
 
 def output_error(path: Path, error: OSError) -> OutputError:
@@ -165,7 +144,7 @@ def output_error(path: Path, error: OSError) -> OutputError:
     return OutputError(str(path), error.strerror or str(error))
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Write the names in a folder to the disk, where the system can do that."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)
@@ -173,3 +152,13 @@ def _sync_folder(folder: Path) -> None:
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
+
+
+def _remove_abandoned(path: Path) -> None:
+    """Remove the temporary files of exports that were killed while they wrote a file."""
+    if fcntl is None:
+        return
+    for left in path.parent.glob(f".{escape(path.name)}.*{_SUFFIX}"):
+        with suppress(OSError), left.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            left.unlink()

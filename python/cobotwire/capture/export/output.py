@@ -6,7 +6,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from cobotwire.capture.export.atomic_file import AtomicFile, output_error
+from cobotwire.capture.export.atomic_file import AtomicFile, output_error, sync_folder
 from cobotwire.capture.export.batch import Batch
 from cobotwire.capture.export.formats import FORMATS, Format, Sink
 from cobotwire.capture.export.layout import Layout, empty_table
@@ -123,6 +123,8 @@ class Output:
             target.complete()
         for target in targets:
             target.atomic.publish()
+        for folder in {target.atomic.path.parent for target in targets}:
+            sync_folder(folder)
         return [OutputFile(str(t.atomic.path), t.rows, t.size) for t in targets]
 
     def _target(self, path: Path, schema: Any, edition: str) -> Target:
