@@ -9,6 +9,7 @@ import sys
 import time
 from contextlib import suppress
 from pathlib import Path
+from typing import BinaryIO
 
 import pyarrow.parquet as pq
 import pytest
@@ -152,9 +153,11 @@ def test_folder_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="the system has no /dev/full")
 def test_device_without_space_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "arm.bin").write_bytes(POWERED)
-    monkeypatch.setattr(
-        atomic_file, "open", lambda name, mode: Path("/dev/full").open("wb"), raising=False
-    )
+
+    def open_full(name: Path, mode: str) -> BinaryIO:
+        return os.fdopen(os.open("/dev/full", os.O_WRONLY), "wb")
+
+    monkeypatch.setattr(atomic_file, "open", open_full, raising=False)
     with pytest.raises(OutputError, match="No space left on device"):
         export(
             tmp_path / "a.parquet",
