@@ -138,11 +138,18 @@ class CapturedRows:
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.
         """
-        from cobotwire.codec.arrow import stamped_table
+        return self._rows.to_arrow(wide=wide, leading=self.leading())
 
-        return stamped_table(
-            self._rows, self.time, self.direction, DIRECTIONS, self.interface, wide
-        )
+    def leading(self) -> dict[str, Any]:
+        """Return the columns of :meth:`to_arrow` before the fields.
+
+        Raises:
+            ImportError: pyarrow (the extra ``arrow``) is not installed.
+        """
+        from cobotwire.codec.arrow import stamps
+
+        when = stamps(self.time, self.direction, DIRECTIONS, self.interface)
+        return {**when, "offset": self.offset}
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """Return the Arrow PyCapsule stream of :meth:`to_arrow`."""
@@ -186,6 +193,18 @@ class StreamColumns:
     def rejected(self) -> TimedOffsets:
         """The legal frames with a value that the edition does not allow, with their times."""
         return TimedOffsets(self.rejected_time, self.columns.rejected)
+
+    def captured(self, rows: Rows) -> CapturedRows:
+        """Return rows of ``columns`` with their times; or rows of a message that did not occur."""
+        part = Part(self.interface, self.direction, len(rows))
+        for found, time in zip(self.columns, self.times):
+            if found is rows:
+                return CapturedRows(rows, time, [part])
+        return CapturedRows(rows, memoryview(b"").cast("q"), [part])
+
+    def leading(self, rows: Rows) -> dict[str, Any]:
+        """Return the columns before the fields in a table of some rows of ``columns``."""
+        return self.captured(rows).leading()
 
     def __iter__(self) -> Iterator[CapturedRows]:
         """Yield the rows of each variant that occurred, in the order of the table."""
@@ -254,6 +273,55 @@ class CapturedColumns:
             UsageError: there is no such command, variant or interface; or several variants or
                 editions occurred.
         """
+        streams = self._chosen(interface, captured)
+        found = [
+            stream.captured(stream.columns.rows(command, direction, variant)) for stream in streams
+        ]
+        filled = [rows for rows in found if len(rows)] or found[:1]
+        kinds = {(id(rows.command), rows.variant_index) for rows in filled}
+        if len(kinds) > 1:
+            raise self._several(command, direction, filled)
+        return filled[0] if len(filled) == 1 else _joined(filled)
+
+    def to_arrow(
+        self,
+        command: str,
+        direction: tables.Direction = "reply",
+        *,
+        wide: bool = False,
+        interface: int | None = None,
+        captured: Direction | None = None,
+    ) -> Any:
+        """Return all rows of one message as a ``pyarrow.Table``, in the order of their times.
+
+        The columns are ``time`` (``timestamp[ns]``, UTC), ``direction`` (dictionary),
+        ``interface``, ``offset``, and those of :meth:`cobotwire.codec.columns.Columns.to_arrow`:
+        with ``wide`` each number has its own. They do not depend on the rows.
+
+        Args:
+            command: the name of the command.
+            direction: whether to return its requests or its replies.
+            wide: whether each number of a field has a column of its own.
+            interface: restricts the rows to one interface.
+            captured: restricts the rows to packets of that direction.
+
+        Raises:
+            ImportError: pyarrow (the extra ``arrow``) is not installed.
+            UsageError: there is no such command or interface, or in several editions that occurred
+                the message has other columns.
+        """
+        from cobotwire.codec.arrow import in_order_of_time
+
+        found = [
+            stream.columns.to_arrow(command, direction, wide=wide, leading=stream.leading)
+            for stream in self._chosen(interface, captured)
+        ]
+        if any(table.schema != found[0].schema for table in found):
+            message = f"the {command} {direction} has other columns in other editions"
+            raise UsageError("interface", None, message=f"{message}: choose one with interface=")
+        return in_order_of_time(found)
+
+    def _chosen(self, interface: int | None, captured: Direction | None) -> Sequence[StreamColumns]:
         if interface is not None and not 0 <= interface < len(self.interfaces):
             raise UsageError("interface", interface, f"0..{len(self.interfaces) - 1}")
         streams = [
@@ -263,12 +331,7 @@ class CapturedColumns:
         ]
         if not streams:
             raise self._no_stream(interface, captured)
-        found = [_rows_of(stream, command, direction, variant) for stream in streams]
-        filled = [rows for rows in found if len(rows)] or found[:1]
-        kinds = {(id(rows.command), rows.variant_index) for rows in filled}
-        if len(kinds) > 1:
-            raise self._several(command, direction, filled)
-        return filled[0] if len(filled) == 1 else _joined(filled)
+        return streams
 
     def _no_stream(self, interface: int | None, captured: Direction | None) -> UsageError:
         what = "packets" if captured is None else f"packets of direction {captured!r}"
@@ -286,17 +349,6 @@ class CapturedColumns:
         occurred = " and ".join(str(index) for index in sorted({r.variant_index for r in found}))
         message = f"variants {occurred} of the {command} {direction} occurred"
         return UsageError("variant", None, message=f"{message}: choose one with variant=")
-
-
-def _rows_of(
-    stream: StreamColumns, command: str, direction: tables.Direction, variant: int | None
-) -> CapturedRows:
-    rows = stream.columns.rows(command, direction, variant)
-    part = Part(stream.interface, stream.direction, len(rows))
-    for found, time in zip(stream.columns, stream.times):
-        if found is rows:
-            return CapturedRows(rows, time, [part])
-    return CapturedRows(rows, memoryview(b"").cast("q"), [part])
 
 
 def _joined(found: Sequence[CapturedRows]) -> CapturedRows:

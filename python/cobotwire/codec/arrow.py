@@ -96,22 +96,24 @@ def repeated(text: str, choices: Sequence[str], rows: int) -> Any:
     return pa.DictionaryArray.from_arrays(index, pa.array(choices, pa.utf8()))
 
 
-def stamped_table(
-    rows: Any,
-    time: memoryview,
-    direction: memoryview,
-    names: Sequence[str],
-    interface: memoryview,
-    wide: bool = False,
-) -> pa.Table:
-    """Return the table of some rows with three more columns in front: when and where.
+def stamps(
+    time: memoryview, direction: memoryview, names: Sequence[str], interface: memoryview
+) -> dict[str, Any]:
+    """Return three leading columns: when and where messages were captured.
 
     ``time`` has nanoseconds since 1970 (UTC), and ``direction`` indexes ``names``.
     """
     directions = pa.DictionaryArray.from_arrays(flat(direction), pa.array(names, pa.utf8()))
-    leading = {"time": times(time), "direction": directions, "interface": interface}
-    leading["offset"] = rows.offset
-    return rows.to_arrow(wide=wide, leading=leading)
+    return {"time": times(time), "direction": directions, "interface": flat(interface)}
+
+
+def in_order_of_time(tables: Sequence[pa.Table]) -> pa.Table:
+    """Return the rows of tables with the same columns in the order of their times.
+
+    Rows with the same time keep their order.
+    """
+    table = pa.concat_tables(tables)
+    return table if len(tables) == 1 else table.take(pc.sort_indices(table["time"]))
 
 
 def _piece_table(piece: Part, columns: Sequence[tuple[TableColumn, Any]], schema: Any) -> Any:
