@@ -14,7 +14,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots table fuzz figures clean faults conform attack robots layer demos
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots answers table fuzz figures clean faults conform attack robots layer demos
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -92,6 +92,12 @@ plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes
 	mkdir -p target
 	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
+
+answers: .venv/.tools .venv/.native ## record the example capture of docs/answers.md, export it, draw its pictures
+	rm -rf target/answers && mkdir -p target/answers
+	$(BIN)/python docs/answers/record_three_days.py target/answers/arm7.pcapng
+	$(BIN)/cobotwire export target/answers/arm7.pcapng -o target/answers/archive --wide || test $$? = 1
+	$(BIN)/python docs/answers/draw.py target/answers/archive docs/plots
 
 fuzz: products .venv/.native $(CARGO_FUZZ) ## fuzz each target for FUZZ_SECONDS (60); see CONTRIBUTING.md
 	cargo clippy --manifest-path rust/fuzz/Cargo.toml --all-targets --quiet -- -D warnings
