@@ -56,6 +56,23 @@ def test_file_is_read(tmp_path: Path) -> None:
         ),
         ("    methods: {stop: {result: joind}}\n", "11:30", "did you mean joined?"),
         ("    like: MyCobot280\n", "1:1", "is not listed before it"),
+        (
+            "    methods: {go: {calls: stop, parameters: [speed], passes: ['1', angle]}}\n",
+            "11:62",
+            "has no parameter angle",
+        ),
+        (
+            "    methods: {send_angle: {parameters: [id, degree, speed], ranges: [speed=1-100]}}\n",
+            "11:69",
+            "write parameter=lowest..highest",
+        ),
+        (
+            "    methods: {send_angle: {parameters: [id, degree, speed], ranges: [size=1..100]}}\n",
+            "11:69",
+            "has the range size=1..100",
+        ),
+        ("    methods_of: MyCobots\n", "11:17", "did you mean MyCobot?"),
+        ("    elsewhere: mycobots\n", "11:16", "did you mean mycobot?"),
         ("    helper: [Homing]\n", "11:5", "did you mean helpers?"),
     ],
 )

@@ -145,6 +145,18 @@ def test_motions_do_not_wait_if_their_ends_are_not_reported() -> None:
     assert arm.send_angles(HOME, 5) == 1
 
 
+def test_simulated_arm_reports_ends_only_while_that_is_on() -> None:
+    arm, _ = made("Mercury", "mercury_a1")
+    assert arm.get_limit_switch() == [1, 1]
+    arm.set_limit_switch(2, 0)
+    with arm.arm.events(mercury_a1.MotionEnded, timeout=5) as ends:
+        arm.send_angles(HOME, 50)
+        assert list(ends) == []
+        arm.set_limit_switch(2, 1)
+        arm.send_angle(1, 10, 50, _async=True)
+        assert next(ends).status == 0
+
+
 @pytest.mark.parametrize(
     ("method", "arguments", "why"),
     [

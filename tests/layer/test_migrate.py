@@ -99,6 +99,30 @@ def test_what_a_person_must_decide_is_listed(line: str, says: str) -> None:
     assert any(each.startswith(says) for each in found), found
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "says"),
+    [
+        (
+            "mc.set_pro_gripper_angle(50)",
+            "mc.set_pro_gripper(11, 50)",
+            "if the port is that of an arm on a body, write MercuryB1",
+        ),
+        (
+            "mc.get_hand_gripper_p(3, gripper_id=15)",
+            "mc.get_hand_gripper(16, 3, gripper=15)",
+            "write MercuryB1",
+        ),
+        ("mc.send_angles(row, 50)", "mc.send_angles(row, 50)", "use move_angles or move_coords"),
+        ("mc.go_home(2)", "mc.go_home(2)", "go_home waits"),
+    ],
+)
+def test_program_of_a_mercury_is_rewritten(before: str, after: str, says: str) -> None:
+    head = "from {} import {}\nmc = {}('/dev/ttyAMA1')\n"
+    found = migrate(f"{head.format('pymycobot', 'Mercury', 'Mercury')}{before}\n")
+    assert found.text == f"{head.format('cobotwire', 'MercuryA1', 'MercuryA1')}{after}\n"
+    assert any(says in str(each) for each in found.decisions)
+
+
 def test_default_that_ours_lacks_is_written() -> None:
     head = "from pymycobot import MyCobot280RDKX5\nmc = MyCobot280RDKX5(port)\n"
     assert migrate(f"{head}mc.get_gripper_value()\n").text.endswith("mc.get_gripper_value(1)\n")

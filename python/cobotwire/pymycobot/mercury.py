@@ -213,7 +213,7 @@ class Mercury(ByPort):
     def get_hand_firmware_major_version(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(1, 0, gripper)``.
         """
         return self._ask(results.tenths, self.arm.get_hand_gripper, 1, 0, gripper_id)
 
@@ -221,7 +221,7 @@ class Mercury(ByPort):
     def get_hand_firmware_minor_version(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(2, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 2, 0, gripper_id)
 
@@ -229,7 +229,7 @@ class Mercury(ByPort):
     def get_hand_gripper_angle(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(12, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 12, hand_id, gripper_id)
 
@@ -237,7 +237,7 @@ class Mercury(ByPort):
     def get_hand_gripper_angles(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(50, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 50, 0, gripper_id)
 
@@ -245,7 +245,7 @@ class Mercury(ByPort):
     def get_hand_gripper_clockwise(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(22, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 22, hand_id, gripper_id)
 
@@ -253,7 +253,7 @@ class Mercury(ByPort):
     def get_hand_gripper_counterclockwise(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(24, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 24, hand_id, gripper_id)
 
@@ -261,7 +261,7 @@ class Mercury(ByPort):
     def get_hand_gripper_d(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(18, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 18, hand_id, gripper_id)
 
@@ -269,7 +269,7 @@ class Mercury(ByPort):
     def get_hand_gripper_default_speed(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(33, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 33, hand_id, gripper_id)
 
@@ -277,7 +277,7 @@ class Mercury(ByPort):
     def get_hand_gripper_i(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(20, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 20, hand_id, gripper_id)
 
@@ -285,7 +285,7 @@ class Mercury(ByPort):
     def get_hand_gripper_id(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(4, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 4, 0, gripper_id)
 
@@ -293,7 +293,7 @@ class Mercury(ByPort):
     def get_hand_gripper_min_pressure(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(26, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 26, hand_id, gripper_id)
 
@@ -301,7 +301,7 @@ class Mercury(ByPort):
     def get_hand_gripper_p(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(16, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 16, hand_id, gripper_id)
 
@@ -309,7 +309,7 @@ class Mercury(ByPort):
     def get_hand_gripper_status(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(14, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 14, 0, gripper_id)
 
@@ -317,7 +317,7 @@ class Mercury(ByPort):
     def get_hand_gripper_torque(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(28, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 28, hand_id, gripper_id)
 
@@ -325,7 +325,7 @@ class Mercury(ByPort):
     def get_hand_model(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(53, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 53, 0, gripper_id)
 
@@ -389,7 +389,7 @@ class Mercury(ByPort):
     def get_pro_gripper_angle(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(12, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 12, gripper_id)
 
@@ -397,7 +397,7 @@ class Mercury(ByPort):
     def get_pro_gripper_speed(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(33, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 33, gripper_id)
 
@@ -405,7 +405,7 @@ class Mercury(ByPort):
     def get_pro_gripper_status(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(14, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 14, gripper_id)
 
@@ -413,7 +413,7 @@ class Mercury(ByPort):
     def get_pro_gripper_torque(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(28, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 28, gripper_id)
 
@@ -836,7 +836,7 @@ class Mercury(ByPort):
     def set_hand_gripper_angle(self, hand_id: int, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(11, finger, value, gripper)``.
         """
         check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_hand_gripper, 11, hand_id, gripper_angle, gripper_id)
@@ -855,7 +855,7 @@ class Mercury(ByPort):
     def set_hand_gripper_calibrate(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(13, value, gripper)``.
         """
         check_range("hand_id", hand_id, 1, 6)
         return self._order(self.arm.set_pro_gripper, 13, hand_id, gripper_id)
@@ -864,7 +864,7 @@ class Mercury(ByPort):
     def set_hand_gripper_clockwise(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(21, finger, value, gripper)``.
         """
         check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 21, hand_id, value, gripper_id)
@@ -875,7 +875,7 @@ class Mercury(ByPort):
     ) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(23, finger, value, gripper)``.
         """
         check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 23, hand_id, value, gripper_id)
@@ -884,7 +884,7 @@ class Mercury(ByPort):
     def set_hand_gripper_d(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(17, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 17, hand_id, value, gripper_id)
@@ -893,7 +893,7 @@ class Mercury(ByPort):
     def set_hand_gripper_enabled(self, flag: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(10, value, gripper)``.
         """
         check_range("flag", flag, 0, 1)
         return self._order(self.arm.set_pro_gripper, 10, flag, gripper_id)
@@ -902,7 +902,7 @@ class Mercury(ByPort):
     def set_hand_gripper_i(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(19, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 19, hand_id, value, gripper_id)
@@ -911,7 +911,7 @@ class Mercury(ByPort):
     def set_hand_gripper_id(self, new_hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(3, value, gripper)``.
         """
         check_range("new_hand_id", new_hand_id, 1, 254)
         return self._order(self.arm.set_pro_gripper, 3, new_hand_id, gripper_id)
@@ -920,7 +920,7 @@ class Mercury(ByPort):
     def set_hand_gripper_min_pressure(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(25, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 25, hand_id, value, gripper_id)
@@ -929,7 +929,7 @@ class Mercury(ByPort):
     def set_hand_gripper_p(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(15, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 15, hand_id, value, gripper_id)
@@ -938,7 +938,7 @@ class Mercury(ByPort):
     def set_hand_gripper_speed(self, hand_id: int, speed: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(32, finger, value, gripper)``.
         """
         check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_hand_gripper, 32, hand_id, speed, gripper_id)
@@ -947,7 +947,7 @@ class Mercury(ByPort):
     def set_hand_gripper_torque(self, hand_id: int, torque: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(27, finger, value, gripper)``.
         """
         check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_hand_gripper, 27, hand_id, torque, gripper_id)
@@ -1038,7 +1038,7 @@ class Mercury(ByPort):
     def set_pro_gripper_abs_angle(self, angle: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(36, value, gripper)``.
         """
         check_range("angle", angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 36, angle, gripper_id)
@@ -1047,7 +1047,7 @@ class Mercury(ByPort):
     def set_pro_gripper_angle(self, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, value, gripper)``.
         """
         check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 11, gripper_angle, gripper_id)
@@ -1056,7 +1056,7 @@ class Mercury(ByPort):
     def set_pro_gripper_calibration(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(13, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 13, 0, gripper_id)
 
@@ -1064,7 +1064,7 @@ class Mercury(ByPort):
     def set_pro_gripper_close(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 11, 0, gripper_id)
 
@@ -1072,7 +1072,7 @@ class Mercury(ByPort):
     def set_pro_gripper_open(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, 100, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 11, 100, gripper_id)
 
@@ -1080,7 +1080,7 @@ class Mercury(ByPort):
     def set_pro_gripper_pause(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(37, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 37, 0, gripper_id)
 
@@ -1088,7 +1088,7 @@ class Mercury(ByPort):
     def set_pro_gripper_resume(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(38, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 38, 0, gripper_id)
 
@@ -1096,7 +1096,7 @@ class Mercury(ByPort):
     def set_pro_gripper_speed(self, speed: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(32, value, gripper)``.
         """
         check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_pro_gripper, 32, speed, gripper_id)
@@ -1105,7 +1105,7 @@ class Mercury(ByPort):
     def set_pro_gripper_stop(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(39, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 39, 0, gripper_id)
 
@@ -1113,7 +1113,7 @@ class Mercury(ByPort):
     def set_pro_gripper_torque(self, torque: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(27, value, gripper)``.
         """
         check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_pro_gripper, 27, torque, gripper_id)

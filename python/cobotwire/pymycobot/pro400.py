@@ -199,7 +199,7 @@ class Pro400(Reporting):
     def get_hand_firmware_major_version(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(1, 0, gripper)``.
         """
         return self._ask(results.tenths, self.arm.get_hand_gripper, 1, 0, gripper_id)
 
@@ -207,7 +207,7 @@ class Pro400(Reporting):
     def get_hand_firmware_minor_version(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(2, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 2, 0, gripper_id)
 
@@ -215,7 +215,7 @@ class Pro400(Reporting):
     def get_hand_gripper_angle(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(12, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 12, hand_id, gripper_id)
 
@@ -223,7 +223,7 @@ class Pro400(Reporting):
     def get_hand_gripper_angles(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(50, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 50, 0, gripper_id)
 
@@ -231,7 +231,7 @@ class Pro400(Reporting):
     def get_hand_gripper_clockwise(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(22, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 22, hand_id, gripper_id)
 
@@ -239,7 +239,7 @@ class Pro400(Reporting):
     def get_hand_gripper_counterclockwise(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(24, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 24, hand_id, gripper_id)
 
@@ -247,7 +247,7 @@ class Pro400(Reporting):
     def get_hand_gripper_d(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(18, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 18, hand_id, gripper_id)
 
@@ -255,7 +255,7 @@ class Pro400(Reporting):
     def get_hand_gripper_default_speed(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(33, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 33, hand_id, gripper_id)
 
@@ -263,7 +263,7 @@ class Pro400(Reporting):
     def get_hand_gripper_i(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(20, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 20, hand_id, gripper_id)
 
@@ -271,7 +271,7 @@ class Pro400(Reporting):
     def get_hand_gripper_id(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(4, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 4, 0, gripper_id)
 
@@ -279,7 +279,7 @@ class Pro400(Reporting):
     def get_hand_gripper_min_pressure(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(26, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 26, hand_id, gripper_id)
 
@@ -287,7 +287,7 @@ class Pro400(Reporting):
     def get_hand_gripper_p(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(16, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 16, hand_id, gripper_id)
 
@@ -295,7 +295,7 @@ class Pro400(Reporting):
     def get_hand_gripper_status(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(14, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 14, 0, gripper_id)
 
@@ -303,7 +303,7 @@ class Pro400(Reporting):
     def get_hand_gripper_torque(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(28, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 28, hand_id, gripper_id)
 
@@ -311,7 +311,7 @@ class Pro400(Reporting):
     def get_hand_model(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(53, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 53, 0, gripper_id)
 
@@ -379,7 +379,7 @@ class Pro400(Reporting):
     def get_pro_gripper_angle(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(12, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 12, gripper_id)
 
@@ -387,7 +387,7 @@ class Pro400(Reporting):
     def get_pro_gripper_speed(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(33, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 33, gripper_id)
 
@@ -395,7 +395,7 @@ class Pro400(Reporting):
     def get_pro_gripper_status(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(14, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 14, gripper_id)
 
@@ -403,7 +403,7 @@ class Pro400(Reporting):
     def get_pro_gripper_torque(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(28, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 28, gripper_id)
 
@@ -758,7 +758,7 @@ class Pro400(Reporting):
     def set_hand_gripper_angle(self, hand_id: int, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(11, finger, value, gripper)``.
         """
         check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_hand_gripper, 11, hand_id, gripper_angle, gripper_id)
@@ -777,7 +777,7 @@ class Pro400(Reporting):
     def set_hand_gripper_calibrate(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(13, value, gripper)``.
         """
         check_range("hand_id", hand_id, 1, 6)
         return self._order(self.arm.set_pro_gripper, 13, hand_id, gripper_id)
@@ -786,7 +786,7 @@ class Pro400(Reporting):
     def set_hand_gripper_clockwise(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(21, finger, value, gripper)``.
         """
         check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 21, hand_id, value, gripper_id)
@@ -797,7 +797,7 @@ class Pro400(Reporting):
     ) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(23, finger, value, gripper)``.
         """
         check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 23, hand_id, value, gripper_id)
@@ -806,7 +806,7 @@ class Pro400(Reporting):
     def set_hand_gripper_d(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(17, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 17, hand_id, value, gripper_id)
@@ -815,7 +815,7 @@ class Pro400(Reporting):
     def set_hand_gripper_enabled(self, flag: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(10, value, gripper)``.
         """
         check_range("flag", flag, 0, 1)
         return self._order(self.arm.set_pro_gripper, 10, flag, gripper_id)
@@ -824,7 +824,7 @@ class Pro400(Reporting):
     def set_hand_gripper_i(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(19, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 19, hand_id, value, gripper_id)
@@ -833,7 +833,7 @@ class Pro400(Reporting):
     def set_hand_gripper_id(self, new_hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(3, value, gripper)``.
         """
         check_range("new_hand_id", new_hand_id, 1, 254)
         return self._order(self.arm.set_pro_gripper, 3, new_hand_id, gripper_id)
@@ -842,7 +842,7 @@ class Pro400(Reporting):
     def set_hand_gripper_min_pressure(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(25, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 25, hand_id, value, gripper_id)
@@ -851,7 +851,7 @@ class Pro400(Reporting):
     def set_hand_gripper_p(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(15, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 15, hand_id, value, gripper_id)
@@ -860,7 +860,7 @@ class Pro400(Reporting):
     def set_hand_gripper_speed(self, hand_id: int, speed: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(32, finger, value, gripper)``.
         """
         check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_hand_gripper, 32, hand_id, speed, gripper_id)
@@ -869,7 +869,7 @@ class Pro400(Reporting):
     def set_hand_gripper_torque(self, hand_id: int, torque: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(27, finger, value, gripper)``.
         """
         check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_hand_gripper, 27, hand_id, torque, gripper_id)
@@ -964,7 +964,7 @@ class Pro400(Reporting):
     def set_pro_gripper_abs_angle(self, angle: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(36, value, gripper)``.
         """
         check_range("angle", angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 36, angle, gripper_id)
@@ -973,7 +973,7 @@ class Pro400(Reporting):
     def set_pro_gripper_angle(self, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, value, gripper)``.
         """
         check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 11, gripper_angle, gripper_id)
@@ -982,7 +982,7 @@ class Pro400(Reporting):
     def set_pro_gripper_calibration(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(13, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 13, 0, gripper_id)
 
@@ -990,7 +990,7 @@ class Pro400(Reporting):
     def set_pro_gripper_close(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 11, 0, gripper_id)
 
@@ -998,7 +998,7 @@ class Pro400(Reporting):
     def set_pro_gripper_open(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, 100, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 11, 100, gripper_id)
 
@@ -1006,7 +1006,7 @@ class Pro400(Reporting):
     def set_pro_gripper_pause(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(37, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 37, 0, gripper_id)
 
@@ -1014,7 +1014,7 @@ class Pro400(Reporting):
     def set_pro_gripper_resume(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(38, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 38, 0, gripper_id)
 
@@ -1022,7 +1022,7 @@ class Pro400(Reporting):
     def set_pro_gripper_speed(self, speed: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(32, value, gripper)``.
         """
         check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_pro_gripper, 32, speed, gripper_id)
@@ -1031,7 +1031,7 @@ class Pro400(Reporting):
     def set_pro_gripper_stop(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(39, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 39, 0, gripper_id)
 
@@ -1039,7 +1039,7 @@ class Pro400(Reporting):
     def set_pro_gripper_torque(self, torque: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(27, value, gripper)``.
         """
         check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_pro_gripper, 27, torque, gripper_id)

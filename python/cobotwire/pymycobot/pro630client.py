@@ -206,7 +206,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_firmware_major_version(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(1, 0, gripper)``.
         """
         return self._ask(results.tenths, self.arm.get_hand_gripper, 1, 0, gripper_id)
 
@@ -214,7 +214,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_firmware_minor_version(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(2, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 2, 0, gripper_id)
 
@@ -222,7 +222,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_angle(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(12, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 12, hand_id, gripper_id)
 
@@ -230,7 +230,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_angles(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(50, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 50, 0, gripper_id)
 
@@ -238,7 +238,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_clockwise(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(22, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 22, hand_id, gripper_id)
 
@@ -246,7 +246,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_counterclockwise(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(24, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 24, hand_id, gripper_id)
 
@@ -254,7 +254,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_d(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(18, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 18, hand_id, gripper_id)
 
@@ -262,7 +262,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_default_speed(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(33, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 33, hand_id, gripper_id)
 
@@ -270,7 +270,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_i(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(20, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 20, hand_id, gripper_id)
 
@@ -278,7 +278,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_id(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(4, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 4, 0, gripper_id)
 
@@ -286,7 +286,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_min_pressure(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(26, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 26, hand_id, gripper_id)
 
@@ -294,7 +294,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_p(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(16, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 16, hand_id, gripper_id)
 
@@ -302,7 +302,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_status(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(14, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 14, 0, gripper_id)
 
@@ -310,7 +310,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_gripper_torque(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(28, finger, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 28, hand_id, gripper_id)
 
@@ -318,7 +318,7 @@ class Pro630Client(MethodsOfPro630):
     def get_hand_model(self, gripper_id: int = 14) -> Any:
         """Read a finger's register of a hand.
 
-        Calls ``get_hand_gripper(address, finger, gripper)``.
+        Calls ``get_hand_gripper(53, 0, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_hand_gripper, 53, 0, gripper_id)
 
@@ -378,7 +378,7 @@ class Pro630Client(MethodsOfPro630):
     def get_pro_gripper_angle(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(12, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 12, gripper_id)
 
@@ -386,7 +386,7 @@ class Pro630Client(MethodsOfPro630):
     def get_pro_gripper_speed(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(33, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 33, gripper_id)
 
@@ -394,7 +394,7 @@ class Pro630Client(MethodsOfPro630):
     def get_pro_gripper_status(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(14, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 14, gripper_id)
 
@@ -402,7 +402,7 @@ class Pro630Client(MethodsOfPro630):
     def get_pro_gripper_torque(self, gripper_id: int = 14) -> Any:
         """Read a register of a tool.
 
-        Calls ``get_pro_gripper(address, gripper)``.
+        Calls ``get_pro_gripper(28, gripper)``.
         """
         return self._ask(results.plain, self.arm.get_pro_gripper, 28, gripper_id)
 
@@ -765,7 +765,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_angle(self, hand_id: int, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(11, finger, value, gripper)``.
         """
         check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_hand_gripper, 11, hand_id, gripper_angle, gripper_id)
@@ -784,7 +784,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_calibrate(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(13, value, gripper)``.
         """
         check_range("hand_id", hand_id, 1, 6)
         return self._order(self.arm.set_pro_gripper, 13, hand_id, gripper_id)
@@ -793,7 +793,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_clockwise(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(21, finger, value, gripper)``.
         """
         check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 21, hand_id, value, gripper_id)
@@ -804,7 +804,7 @@ class Pro630Client(MethodsOfPro630):
     ) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(23, finger, value, gripper)``.
         """
         check_range("value", value, 0, 16)
         return self._order(self.arm.set_hand_gripper, 23, hand_id, value, gripper_id)
@@ -813,7 +813,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_d(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(17, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 17, hand_id, value, gripper_id)
@@ -822,7 +822,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_enabled(self, flag: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(10, value, gripper)``.
         """
         check_range("flag", flag, 0, 1)
         return self._order(self.arm.set_pro_gripper, 10, flag, gripper_id)
@@ -831,7 +831,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_i(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(19, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 19, hand_id, value, gripper_id)
@@ -840,7 +840,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_id(self, new_hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(3, value, gripper)``.
         """
         check_range("new_hand_id", new_hand_id, 1, 254)
         return self._order(self.arm.set_pro_gripper, 3, new_hand_id, gripper_id)
@@ -849,7 +849,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_min_pressure(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(25, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 25, hand_id, value, gripper_id)
@@ -858,7 +858,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_p(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(15, finger, value, gripper)``.
         """
         check_range("value", value, 0, 254)
         return self._order(self.arm.set_hand_gripper, 15, hand_id, value, gripper_id)
@@ -867,7 +867,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_speed(self, hand_id: int, speed: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(32, finger, value, gripper)``.
         """
         check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_hand_gripper, 32, hand_id, speed, gripper_id)
@@ -876,7 +876,7 @@ class Pro630Client(MethodsOfPro630):
     def set_hand_gripper_torque(self, hand_id: int, torque: int, gripper_id: int = 14) -> Any:
         """Write a finger's register of a hand.
 
-        Calls ``set_hand_gripper(address, finger, value, gripper)``.
+        Calls ``set_hand_gripper(27, finger, value, gripper)``.
         """
         check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_hand_gripper, 27, hand_id, torque, gripper_id)
@@ -959,7 +959,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_abs_angle(self, angle: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(36, value, gripper)``.
         """
         check_range("angle", angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 36, angle, gripper_id)
@@ -968,7 +968,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_angle(self, gripper_angle: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, value, gripper)``.
         """
         check_range("gripper_angle", gripper_angle, 0, 100)
         return self._order(self.arm.set_pro_gripper, 11, gripper_angle, gripper_id)
@@ -977,7 +977,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_calibration(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(13, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 13, 0, gripper_id)
 
@@ -985,7 +985,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_close(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 11, 0, gripper_id)
 
@@ -993,7 +993,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_open(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(11, 100, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 11, 100, gripper_id)
 
@@ -1001,7 +1001,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_pause(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(37, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 37, 0, gripper_id)
 
@@ -1009,7 +1009,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_resume(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(38, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 38, 0, gripper_id)
 
@@ -1017,7 +1017,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_speed(self, speed: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(32, value, gripper)``.
         """
         check_range("speed", speed, 1, 100)
         return self._order(self.arm.set_pro_gripper, 32, speed, gripper_id)
@@ -1026,7 +1026,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_stop(self, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(39, 0, gripper)``.
         """
         return self._order(self.arm.set_pro_gripper, 39, 0, gripper_id)
 
@@ -1034,7 +1034,7 @@ class Pro630Client(MethodsOfPro630):
     def set_pro_gripper_torque(self, torque: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool.
 
-        Calls ``set_pro_gripper(address, value, gripper)``.
+        Calls ``set_pro_gripper(27, value, gripper)``.
         """
         check_range("torque", torque, 0, 100)
         return self._order(self.arm.set_pro_gripper, 27, torque, gripper_id)

@@ -63,6 +63,9 @@ class MotionEnds:
         for address in sorted(self._watched, key=lambda address: address or 0):
             if not self._states[address].angles.moving(now):
                 self._watched.discard(address)
+                if not self._states[address].reports_ends:
+                    self._failed.pop(address, None)
+                    continue
                 fields = completed(self._event, {}, {}, usual=1)
                 status = self._failed.pop(address, None)
                 if status is not None and self._gives_reasons:

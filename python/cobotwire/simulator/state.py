@@ -61,6 +61,9 @@ class ArmState:
     colour: tuple[int, int, int] = (0, 0, 0)
     reference_frame: int = 0
     end_type: int = 0
+    # Whether the arm reports the end of each motion, and checks its position.
+    reports_ends: bool = True
+    checks_position: bool = True
     port: int = 0
     ssid: str = ""
     password: str = ""

@@ -252,9 +252,12 @@ def our_call(method: Method) -> str:
 
 
 def native_call(method: Method) -> str:
-    """Return the call of our client."""
+    """Return the call of our client, with the numbers that no parameter gives."""
     device = f"at({method.address})." if method.address else ""
-    return f"{device}{method.command.name}({', '.join(method.command.argument_names)})"
+    ours = method.command.argument_names
+    pairs = zip_longest(ours, method.passes[: len(ours)], fillvalue="")
+    shown = [name if given in {"", *method.takes} else given for name, given in pairs]
+    return f"{device}{method.command.name}({', '.join(shown)})"
 
 
 def names(library: Library) -> list[str]:

@@ -64,7 +64,8 @@ class Rewriter(cst.CSTTransformer):
     def leave_SimpleStatementLine(
         self, original_node: cst.SimpleStatementLine, updated_node: cst.SimpleStatementLine
     ) -> cst.SimpleStatementLine | cst.FlattenSentinel[cst.SimpleStatementLine]:
-        [first, *others] = updated_node.body
+        # The names of the line as it was; those of classes are others by now.
+        [first, *others] = original_node.body
         if others or not isinstance(first, cst.ImportFrom) or not imports.is_of_library(first):
             return updated_node
         lines, left = imports.rewritten(first)

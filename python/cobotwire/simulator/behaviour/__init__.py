@@ -7,6 +7,7 @@ from cobotwire.simulator.behaviour import (  # noqa: F401  (importing them regis
     jog,
     limbs,
     mercury,
+    mercury_checks,
     mercury_drag,
     motion,
     planning,
