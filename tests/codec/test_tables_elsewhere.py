@@ -116,3 +116,17 @@ def test_angles_of_a_wide_table_are_those_of_numpy(mycobot280: Codec) -> None:
         array.tolist()
     )
     assert array.shape == (4, 6)
+
+
+@EACH_SHAPE
+@pytest.mark.parametrize("command", COMMANDS)
+def test_rows_beyond_the_offsets_of_an_array_go_into_further_arrays(
+    mycobot280: Codec, command: str, wide: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    columns = mycobot280.decode_columns(STREAM, "reply")
+    whole = columns.to_arrow(command, wide=wide)
+    monkeypatch.setattr("cobotwire.codec.arrow.LARGEST", 48)  # two rows of angles
+    pieces = columns.to_arrow(command, wide=wide)
+    assert pieces.equals(whole, check_metadata=True)
+    if command == "get_angles":
+        assert pieces["offset"].num_chunks == 2
