@@ -141,7 +141,7 @@ def test_rows_of_every_variant_keep_their_columns_without_rows(edition: str) -> 
                 )
 
 
-@settings(max_examples=100)
+@settings(max_examples=60)
 @given(data=st.data())
 def test_tables_of_random_editions_hold_the_decoded_messages(data: st.DataObject) -> None:
     table = data.draw(random_tables.tables())
