@@ -168,6 +168,12 @@ def test_older_class_becomes_class_of_its_robot(opened: str, before: str, after:
     assert found.decisions == ()
 
 
+@pytest.mark.parametrize("module", ["pymycobot", "pymycobot.myarm"])
+def test_class_with_another_name_is_imported_under_ours(module: str) -> None:
+    found = migrate(f"from {module} import MyArm\nmc = MyArm(port)\n")
+    assert found == ("from cobotwire import MyArm300\nmc = MyArm300(port)\n", ())
+
+
 def test_home_of_a_socket_class_waits() -> None:
     head = "from pymycobot import MyCobotSocket\nmc = MyCobotSocket('10.0.0.2')\n"
     found = migrate(f"{head}mc.go_home()\n").text

@@ -90,6 +90,26 @@ def test_ctrl_c_stops_the_arm_once(served: tuple[Served, str]) -> None:
     assert arm.received.count("stop") == before + 1
 
 
+def test_arm_stays_open_for_the_threads_of_a_program(
+    served: tuple[Served, str], tmp_path: Path
+) -> None:
+    arm, port = served
+    script = tmp_path / "threads.py"
+    script.write_text(
+        "import sys, threading, time\n"
+        "from pymycobot import MyCobot280\n"
+        "mc = MyCobot280(sys.argv[1])\n"
+        "def later():\n"
+        "    time.sleep(1)\n"
+        "    mc.get_angles()\n"
+        "    print('read')\n"
+        "threading.Thread(target=later).start()\n"
+    )
+    ended = run_program("run", script, port)
+    assert (ended.returncode, ended.stderr, ended.stdout) == (0, "", "read\n")
+    assert arm.received.count("get_angles") == 1
+
+
 def test_missing_program_and_missing_module_are_named(tmp_path: Path) -> None:
     ended = run_program("run", tmp_path / "none.py")
     assert ended.returncode == 2
@@ -112,3 +132,16 @@ def test_installed_library_is_the_same_before_and_after() -> None:
         assert inside.MyCobot280.__module__ == "cobotwire.pymycobot.mycobot280"
     assert sys.modules["pymycobot"] is pymycobot
     assert pymycobot.MyCobot280.__module__ == "pymycobot.mycobot280"
+
+
+def test_program_reads_why_a_name_has_no_counterpart(
+    served: tuple[Served, str], tmp_path: Path
+) -> None:
+    _, port = served
+    script = tmp_path / "absent.py"
+    script.write_text(
+        "import sys\nfrom pymycobot import MyCobot280\nMyCobot280(sys.argv[1]).crc_check([1])\n"
+    )
+    ended = run_program("run", script, port)
+    assert ended.returncode == 1
+    assert "'crc_check': They concern the library itself" in ended.stderr

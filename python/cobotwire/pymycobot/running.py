@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import runpy
 import sys
+import threading
 import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -102,8 +103,10 @@ def run_program(
 
 def _run(path: str) -> int:
     error: BaseException | None = None
+    before = set(threading.enumerate())
     try:
         runpy.run_path(path, run_name="__main__")
+        _join(set(threading.enumerate()) - before)
     except SystemExit as ended:
         return _exit_code(ended)
     except BaseException as raised:
@@ -112,6 +115,13 @@ def _run(path: str) -> int:
     finally:
         _leave(error)
     return 0
+
+
+def _join(threads: set[threading.Thread]) -> None:
+    """Wait for the program's threads, which go on using the arms after its last line."""
+    for thread in threads:
+        if not thread.daemon:
+            thread.join()
 
 
 def _exit_code(ended: SystemExit) -> int:

@@ -3,30 +3,70 @@
 from __future__ import annotations
 
 import argparse
+import shutil
 import subprocess
+import sys
 import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from fnmatch import fnmatch
 from pathlib import Path
+from typing import NamedTuple
 
 from cobotwire.pymycobot.migrate import migrate
-from demos.running import WITH_LAYER, WITH_LIBRARY, outcome
-from demos.scripts import COMMIT, DEMOS, REPOSITORY, Demo
+from demos.running import RUNS, WITH_LAYER, WITH_LIBRARY, outcome
+from demos.scripts import COMMIT, DEMOS, FOLDERS, NOT_RUN, REPOSITORY, Demo
+
+PAGE = Path(__file__).parents[3] / "docs" / "pymycobot.md"
+HEADING = (
+    "| demo | with the library | with our layer | rewritten | to decide |\n|---|---|---|---|--:|"
+)
+OTHERS = "| not run | programs | why |\n|---|--:|---|"
+
+
+class Folders(NamedTuple):
+    """Copies of the repository: one for each way to run a demo."""
+
+    library: Path
+    layer: Path
+    rewritten: Path
 
 
 def main() -> int:
-    """Fetch the demos and print the table."""
+    """Fetch the demos, and print the table or write it into the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repository", default=REPOSITORY, help="where to clone the demos from")
+    parser.add_argument("--write", action="store_true", help="write the tables into the page")
+    parser.add_argument("--only", default="*", help="a pattern of the demos to run")
     given = parser.parse_args()
     worse = 0
-    print("| demo | with the library | with our layer | rewritten | to decide |")
-    print("|---|---|---|---|--:|")
+    lines = [HEADING]
+    print(HEADING)
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name) / "maker"
-        git("clone", "--quiet", given.repository, str(folder))
-        git("-C", str(folder), "checkout", "--quiet", COMMIT)
-        for demo in DEMOS:
-            worse += row(demo, folder)
+        folders = fetched(given.repository, Path(name))
+        for demo in (each for each in DEMOS if fnmatch(each.path, given.only)):
+            line, is_worse = row(demo, folders)
+            print(line, flush=True)
+            lines.append(line)
+            worse += is_worse
+        left = [OTHERS, *not_run(folders.library)]
+    print("\n" + "\n".join(left))
+    if given.write:
+        text = PAGE.read_text("utf-8")
+        for table in (lines, left):
+            text = replaced(text, table)
+        PAGE.write_text(text, "utf-8")
     return 1 if worse else 0
+
+
+def fetched(repository: str, folder: Path) -> Folders:
+    """Return the demos, once for each way to run them."""
+    folders = Folders(folder / "library", folder / "layer", folder / "rewritten")
+    git("clone", "--quiet", repository, str(folders.library))
+    git("-C", str(folders.library), "checkout", "--quiet", COMMIT)
+    for each in folders[1:]:
+        shutil.copytree(folders.library, each)
+    return folders
 
 
 def git(*words: str) -> None:
@@ -34,23 +74,62 @@ def git(*words: str) -> None:
     subprocess.run(["git", *words], check=True)
 
 
-def row(demo: Demo, folder: Path) -> bool:
-    """Print a line of the table; return whether the demo runs with the library alone."""
-    theirs = outcome(demo, folder, WITH_LIBRARY)
-    ours = outcome(demo, folder, WITH_LAYER)
-    script = folder / demo.path
-    text = script.read_text(encoding="utf-8")
-    helpers = [(path, path.read_text("utf-8")) for path in script.parent.glob("port_setup.py")]
-    found = migrate(text, demo.path)
+def row(demo: Demo, folders: Folders) -> tuple[str, bool]:
+    """Return a line of the table, and whether the demo runs with the library alone."""
+    decisions = rewrite(folders.rewritten / demo.path)
+    ways = [
+        (folders.library, WITH_LIBRARY),
+        (folders.layer, WITH_LAYER),
+        (folders.rewritten, WITH_LIBRARY),
+    ]
+    with ThreadPoolExecutor(len(ways)) as pool:
+        theirs, ours, rewritten = pool.map(lambda way: outcome(demo, *way), ways)
+    for each in (theirs, ours, rewritten):
+        if each.detail:
+            print(f"{demo.path}: {each.detail}", file=sys.stderr, flush=True)
+    words = " | ".join(each.word for each in (theirs, ours, rewritten))
+    return f"| {demo.path} | {words} | {decisions} |", is_better(demo, theirs.word, ours.word)
+
+
+def rewrite(script: Path) -> int:
+    """Rewrite a demo and its helper; return the number of decisions."""
+    found = migrate(script.read_text(encoding="utf-8"), script.name)
     script.write_text(found.text, encoding="utf-8")
-    for path, helper in helpers:
-        path.write_text(migrate(helper).text, encoding="utf-8")
-    rewritten = outcome(demo, folder, WITH_LIBRARY)
-    for path, before in [(script, text), *helpers]:
-        path.write_text(before, encoding="utf-8")
-    decisions = len(found.decisions)
-    print(f"| {demo.path} | {theirs} | {ours} | {rewritten} | {decisions} |", flush=True)
-    return theirs.startswith("runs") and not ours.startswith("runs")
+    for helper in script.parent.glob("port_setup.py"):
+        helper.write_text(migrate(helper.read_text("utf-8")).text, encoding="utf-8")
+    return len(found.decisions)
+
+
+def is_better(demo: Demo, theirs: str, ours: str) -> bool:
+    """Return whether a demo runs better with the library than with our layer."""
+    if demo.is_test:
+        return theirs != ours
+    return theirs.startswith(RUNS) and not ours.startswith(RUNS)
+
+
+def not_run(repository: Path) -> Iterator[str]:
+    """Return a line for each pattern of programs that are not run.
+
+    Raises:
+        SystemExit: a program is neither run nor listed with a reason.
+    """
+    found = [path for folder in FOLDERS for path in (repository / folder).rglob("*.py")]
+    names = {path.relative_to(repository).as_posix() for path in found}
+    left = names - {demo.path for demo in DEMOS}
+    for pattern, why in NOT_RUN.items():
+        here = {name for name in left if fnmatch(name, pattern)}
+        left -= here
+        yield f"| {pattern} | {len(here)} | {why} |"
+    if left:
+        raise SystemExit(f"neither run nor listed: {', '.join(sorted(left))}")
+
+
+def replaced(text: str, table: list[str]) -> str:
+    """Return a page with a table instead of the one that has the same heading."""
+    before, found, after = text.partition(table[0])
+    if not found:
+        raise SystemExit(f"{PAGE} has no table with the heading {table[0].splitlines()[0]}")
+    return before + "\n".join(table) + "\n\n" + after.partition("\n\n")[2]
 
 
 if __name__ == "__main__":

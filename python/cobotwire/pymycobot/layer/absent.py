@@ -29,6 +29,7 @@ def _names(kind: type) -> list[str]:
 
 @lru_cache
 def _reasons() -> dict[str, dict[str, str]]:
-    text = files("cobotwire.pymycobot").joinpath("absent.json").read_text("utf-8")
+    # A program may have imported this package under the name of the library, without its folder.
+    text = files("cobotwire").joinpath("pymycobot", "absent.json").read_text("utf-8")
     found: dict[str, dict[str, str]] = json.loads(text)
     return found

@@ -68,7 +68,9 @@ class Rewriter(cst.CSTTransformer):
         [first, *others] = original_node.body
         if others or not isinstance(first, cst.ImportFrom) or not imports.is_of_library(first):
             return updated_node
-        lines, left = imports.rewritten(first)
+        # The names as they were: others were renamed before their line.
+        [before] = original_node.body
+        lines, left = imports.rewritten(cst.ensure_type(before, cst.ImportFrom))
         for name in left:
             self.decide(original_node, f"cobotwire has no counterpart of {name}")
         made = [updated_node.with_changes(body=[line]) for line in lines]

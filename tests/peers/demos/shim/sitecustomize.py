@@ -6,13 +6,14 @@ import time
 from typing import Any
 
 PORT, TCP, RATE = os.environ["DEMO_PORT"], int(os.environ["DEMO_TCP"]), 20.0
+_PORTS = ("/dev/ttyUSB", "/dev/ttyAMA", "/dev/ttyACM", "/dev/ttyS", "/dev/ttyTHS")
 _open, _sleep, _connect = os.open, time.sleep, socket.socket.connect
 
 
 def open_port(path: Any, *arguments: Any, **options: Any) -> int:
     """Open the simulated robot instead of a serial port that this machine does not have."""
     name = str(path)
-    is_port = name.upper().startswith("COM") or name.startswith(("/dev/ttyUSB", "/dev/ttyAMA"))
+    is_port = name.upper().startswith("COM") or name.startswith(_PORTS)
     return _open(PORT if is_port else path, *arguments, **options)
 
 
