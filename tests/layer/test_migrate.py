@@ -174,6 +174,15 @@ def test_class_with_another_name_is_imported_under_ours(module: str) -> None:
     assert found == ("from cobotwire import MyArm300\nmc = MyArm300(port)\n", ())
 
 
+def test_speed_that_may_be_a_row_is_a_decision() -> None:
+    head = "from {} import MyBuddy\nmb = MyBuddy(port)\n"
+    found = migrate(f"{head.format('pymycobot')}mb.set_encoders(1, row, 80)\n")
+    assert found.text == f"{head.format('cobotwire')}mb.left.set_encoders(row, speed=80)\n"
+    assert [each.what.partition(",")[0] for each in found.decisions] == [
+        "if this speed is a row with a number for each servo"
+    ]
+
+
 def test_home_of_a_socket_class_waits() -> None:
     head = "from pymycobot import MyCobotSocket\nmc = MyCobotSocket('10.0.0.2')\n"
     found = migrate(f"{head}mc.go_home()\n").text

@@ -537,14 +537,6 @@ class MyBuddySocket(Limbs):
         """
         return self._send(self.arm.at(id).set_encoder, joint_id, encoder, speed)
 
-    @naming(speeds="speed", address="id")
-    def set_encoders(self, id: int, encoders: Sequence[int], speed: Sequence[int]) -> Any:
-        """Send all joints to encoder positions.
-
-        Calls ``at(id).set_encoders(encoders, speeds)``.
-        """
-        return self._send(self.arm.at(id).set_encoders, encoders, speed)
-
     @naming(address="id")
     def set_encoders_drag(self, id: int, encoders: Sequence[int], speeds: Sequence[int]) -> Any:
         """Send all joints to encoder positions at individual speeds.

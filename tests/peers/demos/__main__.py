@@ -87,7 +87,8 @@ def row(demo: Demo, folders: Folders) -> tuple[str, bool]:
     for each in (theirs, ours, rewritten):
         if each.detail:
             print(f"{demo.path}: {each.detail}", file=sys.stderr, flush=True)
-    words = " | ".join(each.word for each in (theirs, ours, rewritten))
+    said = f"{ours.word}: it {demo.refused}" if demo.refused else ours.word
+    words = " | ".join((theirs.word, said, rewritten.word))
     return f"| {demo.path} | {words} | {decisions} |", is_better(demo, theirs.word, ours.word)
 
 
@@ -104,6 +105,8 @@ def is_better(demo: Demo, theirs: str, ours: str) -> bool:
     """Return whether a demo runs better with the library than with our layer."""
     if demo.is_test:
         return theirs != ours
+    if demo.refused:
+        return False
     return theirs.startswith(RUNS) and not ours.startswith(RUNS)
 
 

@@ -60,6 +60,15 @@ class Limbs(CompatibleClient):
         scale = 100 if degrees else 10
         return self._ask(lambda raw: raw / scale, self.arm.at(id).get_coord, joint_id)
 
+    @naming(address="id", speeds="speed")
+    def set_encoders(self, id: int, encoders: Sequence[int], speed: int | Sequence[int]) -> Any:
+        """Send all joints of an arm to encoder positions.
+
+        ``speed`` is one number, in percent, or a row with the speed of each servo.
+        """
+        kind = "speed" if isinstance(speed, int) else "speeds"
+        self.arm.at(id).set_encoders(encoders, **{kind: speed})
+
     @naming(address="id", angles="degrees")
     def sync_send_angles(
         self, id: int, degrees: Sequence[float], speed: int, timeout: float = 15

@@ -82,7 +82,18 @@ def _waits(timeout: str = "15", address: str = "") -> dict[str, Call]:
 # Methods of several requests that our clients have too, and those of helpers of the layer.
 _SEVERAL = {**_waits(), "close": Call("close", {}, {})}
 _OF_HELPERS = {
-    "Limbs": {**_waits(address="id"), "get_base_coords": Call("get_base_coords", {}, {})},
+    "Limbs": {
+        **_waits(address="id"),
+        "get_base_coords": Call("get_base_coords", {}, {}),
+        "set_encoders": Call(
+            "set_encoders",
+            {"id": "", "encoders": "", "speed": ""},
+            {"encoders": ("encoders", ""), "speed": ("speed", "")},
+            result="one_speed",
+            keywords=("speed",),
+            address="id",
+        ),
+    },
     "WaitingLonger": _waits("30"),
 }
 _HOMES = {

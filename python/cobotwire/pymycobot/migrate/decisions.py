@@ -47,6 +47,7 @@ RESULTS = {
     "hex_text": "our result is a number, not a text of hex digits",
     "signed": "our result has no sign",
     "solved": "our result is a row of angles where the library's is a text: there is no solution",
+    "one_speed": "if this speed is a row with a number for each servo, call our argument speeds",
     "listed": "our result is a number, not a list of one",
     "joined": "our result has one named tuple for each part, not one list of all numbers",
     "radians": "our result is not rounded to thousandths",

@@ -39,7 +39,11 @@ def send_angles_auto(arm: ArmState, now: float, request: m.SendAnglesAuto) -> No
 @LIMBS.behaviour(m.SetEncoders)
 def set_encoders(arm: ArmState, now: float, request: m.SetEncoders) -> None:
     """Move all servos; they arrive together."""
-    speed = USUAL_SPEED if any(request.speeds) else 0
+    if request.speeds is not None:
+        speed = USUAL_SPEED if any(request.speeds) else 0
+    else:
+        assert request.speed is not None, "a request has one of both"
+        speed = request.speed
     go_to_encoders(arm, dict(enumerate(request.encoders)), speed, now)
 
 

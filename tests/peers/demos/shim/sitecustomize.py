@@ -1,6 +1,7 @@
 """Lead a demo to the simulated robot, whatever port it names, and shorten its sleeps."""
 
 import os
+import signal
 import socket
 import time
 from typing import Any
@@ -28,6 +29,8 @@ def sleep(seconds: float) -> None:
     _sleep(seconds / RATE)
 
 
+# Ctrl-C ends a demo even if what started it is in the background, where it is ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 for owner, name, function in (
     (os, "open", open_port),
     (socket.socket, "connect", connect),

@@ -73,7 +73,12 @@ ROBOT = Robot(
     rulings={
         "set_encoders": [Ruling("fe fe 00 1e 3c", _ROWS)],
     },
-    driven={**DRIVEN, "send_angles": (_ANGLES, 50)},
+    driven={
+        **DRIVEN,
+        "send_angles": (_ANGLES, 50),
+        # For the whole robot, the maker's method takes speeds in a row only.
+        "set_encoders": ([2048] * 6, [100] * 6),
+    },
     kinds={"get_acceleration": list, "is_collision_on": list},
     unanswered={
         **dict.fromkeys(

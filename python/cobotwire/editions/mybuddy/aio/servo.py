@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from cobotwire.client.aio import AsyncClient
 
@@ -26,9 +26,21 @@ class AsyncServoCommands(AsyncClient):
         """Read the encoder of one joint."""
         return await self._call(messages.servo.GetEncoder(joint))
 
-    async def set_encoders(self, encoders: Sequence[int], speeds: Sequence[int]) -> None:
+    @overload
+    async def set_encoders(self, encoders: Sequence[int], *, speed: int) -> None: ...
+
+    @overload
+    async def set_encoders(self, encoders: Sequence[int], *, speeds: Sequence[int]) -> None: ...
+
+    async def set_encoders(
+        self,
+        encoders: Sequence[int],
+        *,
+        speed: int | None = None,
+        speeds: Sequence[int] | None = None,
+    ) -> None:
         """Send all joints to encoder positions."""
-        await self._send(messages.servo.SetEncoders(encoders, speeds))
+        await self._send(messages.servo.SetEncoders._of(encoders, speed, speeds))
 
     async def get_encoders(self) -> Encoders:
         """Read the encoders of all joints."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from cobotwire.client import Client
 
@@ -49,20 +49,34 @@ class ServoCommands(Client):
         """
         return self._call(messages.servo.GetEncoder(joint))
 
-    def set_encoders(self, encoders: Sequence[int], speeds: Sequence[int]) -> None:
+    @overload
+    def set_encoders(self, encoders: Sequence[int], *, speed: int) -> None: ...
+
+    @overload
+    def set_encoders(self, encoders: Sequence[int], *, speeds: Sequence[int]) -> None: ...
+
+    def set_encoders(
+        self,
+        encoders: Sequence[int],
+        *,
+        speed: int | None = None,
+        speeds: Sequence[int] | None = None,
+    ) -> None:
         """Send all joints to encoder positions.
 
-        Moves all six joints of an arm to encoder positions in ticks, each at a speed of its own.
+        Moves all six joints of an arm to encoder positions in ticks, at a speed in percent of the
+        maximum, or each at a speed of its own.
 
         Args:
             encoders: The six servo positions, base first (6 numbers (j1, j2, j3, j4, j5, j6 0..4096
                 tick)).
+            speed: Speed in percent of the maximum (0..100 percent; optional).
             speeds: The speeds of an arm's six servos, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                -32768..32767 step_per_second)).
+                -32768..32767 step_per_second); optional).
 
         Safety: motion. Command id 0x3C.
         """
-        self._send(messages.servo.SetEncoders(encoders, speeds))
+        self._send(messages.servo.SetEncoders._of(encoders, speed, speeds))
 
     def get_encoders(self) -> Encoders:
         """Read the encoders of all joints.

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, overload
 
 from cobotwire.protocol.messages import Reply, Request
 
@@ -32,11 +33,24 @@ class SetEncoder(Request[None], command="set_encoder"):
     speed: int
 
 
-class SetEncoders(Request[None], command="set_encoders"):
+class SetEncoders(
+    Request[None], command="set_encoders", variants=(("encoders", "speed"), ("encoders", "speeds"))
+):
     """Send all joints to encoder positions."""
 
     encoders: Sequence[int]
-    speeds: Sequence[int]
+    speed: int | None = None
+    speeds: Sequence[int] | None = None
+
+    if TYPE_CHECKING:
+
+        @overload
+        def __init__(self, encoders: Sequence[int], *, speed: int) -> None: ...
+
+        @overload
+        def __init__(self, encoders: Sequence[int], *, speeds: Sequence[int]) -> None: ...
+
+        def __init__(self, *arguments: Any, **named: Any) -> None: ...
 
 
 class GetEncoders(Request[Encoders], command="get_encoders"):
