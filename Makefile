@@ -122,7 +122,7 @@ layer: .venv/.tools .venv/.native ## compare every call of our classes with the 
 	PYTHONPATH=python:codegen/src:tests:tests/peers $(BIN)/python -W ignore -m layer_main
 
 demos: .venv/.tools .venv/.native ## run the maker's public demos: with the library, with our layer, rewritten
-	PYTHONPATH=python:tests:tests/peers $(BIN)/python -m demos
+	PYTHONPATH=python:tests:tests/peers $(BIN)/python -m demos $(DEMOS)
 
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py

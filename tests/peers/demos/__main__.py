@@ -89,7 +89,7 @@ def row(demo: Demo, folders: Folders) -> tuple[str, bool]:
             print(f"{demo.path}: {each.detail}", file=sys.stderr, flush=True)
     said = f"{ours.word}: it {demo.refused}" if demo.refused else ours.word
     words = " | ".join((theirs.word, said, rewritten.word))
-    return f"| {demo.path} | {words} | {decisions} |", is_better(demo, theirs.word, ours.word)
+    return f"| `{demo.path}` | {words} | {decisions} |", is_better(demo, theirs.word, ours.word)
 
 
 def rewrite(script: Path) -> int:
@@ -122,7 +122,7 @@ def not_run(repository: Path) -> Iterator[str]:
     for pattern, why in NOT_RUN.items():
         here = {name for name in left if fnmatch(name, pattern)}
         left -= here
-        yield f"| {pattern} | {len(here)} | {why} |"
+        yield f"| `{pattern}` | {len(here)} | {why} |"
     if left:
         raise SystemExit(f"neither run nor listed: {', '.join(sorted(left))}")
 

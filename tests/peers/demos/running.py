@@ -13,7 +13,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from tempfile import TemporaryFile
+from typing import IO, NamedTuple
 
 from cobotwire.editions import load
 from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm, TcpServer
@@ -22,8 +23,10 @@ from demos.scripts import Demo
 SHIM = Path(__file__).parent / "shim"
 # Demos that loop for ever are ended after so many seconds; the robot is as much faster.
 LONGEST, RATE = 14.0, 20.0
-# How long a program may take to end after Ctrl-C.
-LEAVING = 5.0
+# Tests never loop for ever.
+TESTING = 60.0
+# How long a program may take to end after Ctrl-C, before it is killed.
+LEAVING = 3.0
 # When the first key is pressed, and how long it is until the next one.
 FIRST_KEY, NEXT_KEY = 5.0, 0.7
 WITH_LIBRARY = ("-W", "ignore")
@@ -69,10 +72,9 @@ class Terminal:
         if self._demo.keys:
             threading.Thread(target=self._press, daemon=True).start()
 
-    def last_line(self) -> str:
-        """Return the last line that the demo wrote."""
-        lines = self._shown.decode(errors="replace").splitlines()
-        return next((line.strip("= ") for line in reversed(lines) if line.strip()), "")
+    def counts(self) -> str:
+        """Return how many tests passed and failed, as pytest says at the end."""
+        return ", ".join(re.findall(r"\d+ (?:failed|passed)", self._shown.decode(errors="replace")))
 
     def close(self) -> None:
         """Close both ends."""
@@ -105,44 +107,35 @@ def outcome(demo: Demo, folder: Path, how: tuple[str, ...]) -> Outcome:
     program = [str(SHIM / "tested.py"), str(script)] if demo.is_test else [str(script)]
     terminal = Terminal(demo)
     try:
-        with robot(demo.edition) as environment, subprocess.Popen(
+        with robot(demo.edition) as environment, TemporaryFile("w+") as errors, subprocess.Popen(
             [sys.executable, *how, *program], stdin=terminal.theirs, stdout=terminal.theirs,
-            stderr=subprocess.PIPE, text=True, cwd=script.parent, env=environment,
+            stderr=errors, cwd=script.parent, env=environment,
         ) as running:  # fmt: skip
             terminal.type_all()
-            found = _ended(running)
+            found = _ended(running, errors, TESTING if demo.is_test else LONGEST)
     finally:
         terminal.close()
-    return Outcome(terminal.last_line()) if demo.is_test and found.word == RUNS else found
+    return Outcome(terminal.counts()) if demo.is_test and found.word == RUNS else found
 
 
-def _ended(running: subprocess.Popen[str]) -> Outcome:
+def _ended(running: subprocess.Popen[bytes], errors: IO[str], longest: float) -> Outcome:
+    """Wait until a demo ends, or end it; what it writes after that does not count."""
     try:
-        _, errors = running.communicate(timeout=LONGEST)
+        running.wait(longest)
     except subprocess.TimeoutExpired:
+        found = _raised(errors) or Outcome(RUNS_ON)
         running.send_signal(signal.SIGINT)
         try:
-            _, errors = running.communicate(timeout=LEAVING)
+            running.wait(LEAVING)
         except subprocess.TimeoutExpired:
             running.kill()
-            _, errors = running.communicate()
-        return Outcome(RUNS_ON) if _interrupted(errors) else _last(errors)
-    well = running.returncode == 0 and not _raised(errors)
-    return Outcome(RUNS) if well else _last(errors)
+        return found
+    well = Outcome(RUNS) if running.returncode == 0 else Outcome("ends with an error")
+    return _raised(errors) or well
 
 
-def _raised(errors: str) -> bool:
-    """Return whether a thread ended with an exception."""
-    return "Traceback (most recent call last)" in errors
-
-
-def _interrupted(errors: str) -> bool:
-    return not _raised(errors) or errors.rstrip().endswith("KeyboardInterrupt")
-
-
-def _last(errors: str) -> Outcome:
-    """Return the exception of which the last line of a traceback tells."""
-    lines = [line for line in errors.splitlines() if re.match(r"[\w.]+(Error|Exception)\b", line)]
-    if not lines:
-        return Outcome("ends with an error", errors[-200:])
-    return Outcome(lines[-1].partition(":")[0].rpartition(".")[2], lines[-1])
+def _raised(errors: IO[str]) -> Outcome | None:
+    """Return the last exception of a demo or of one of its threads; None if there was none."""
+    errors.seek(0)
+    lines = [line.rstrip() for line in errors if re.match(r"[\w.]+(Error|Exception)\b", line)]
+    return Outcome(lines[-1].partition(":")[0].rpartition(".")[2], lines[-1]) if lines else None

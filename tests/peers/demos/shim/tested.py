@@ -4,4 +4,6 @@ import sys
 
 import pytest
 
-sys.exit(pytest.main(["-s", "-q", "-p", "no:cacheprovider", "--tb=line", *sys.argv[1:]]) > 1)
+OPTIONS = ["-s", "-q", "--color=no", "--tb=line", "-p", "no:cacheprovider", "-p", "no:warnings"]
+
+sys.exit(pytest.main([*OPTIONS, *sys.argv[1:]]) > 1)
