@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capture.lines import FRAMES, reader, written
@@ -69,6 +69,7 @@ def traffic(draw: st.DrawFn) -> list[Packet]:
     return packets
 
 
+@settings(max_examples=50)
 @given(traffic(), st.integers(1, 300))
 def test_columns_have_the_frames_and_times_of_the_python_reader(
     packets: list[Packet], piece: int

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from cobotwire.capture.captured_columns import DIRECTIONS, CapturedColumns, StreamColumns
+from cobotwire.capture.captured_columns import CapturedColumns, StreamColumns
+from cobotwire.capture.captured_rows import DIRECTIONS
 from cobotwire.capture.damage import damaged
 from cobotwire.capture.packet import Interface
 from cobotwire.capture.packet_parsing import decoded, interface_of

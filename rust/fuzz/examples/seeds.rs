@@ -33,6 +33,7 @@ fn main() -> io::Result<()> {
         write(&folder.join(target), &streams)?;
     }
     write(&folder.join("tables"), &dice())?;
+    write(&folder.join("captures"), &dice())?;
     println!("{} seeds", all.len());
     Ok(())
 }
@@ -45,8 +46,8 @@ fn write(folder: &Path, seeds: &[Vec<u8>]) -> io::Result<()> {
     Ok(())
 }
 
-/// Return seeds for the target that makes its own tables: random bytes, long enough for a table and
-/// a stream.
+/// Return seeds for the targets that make their own tables or recordings: random bytes, long enough
+/// for a table and a stream.
 fn dice() -> Vec<Vec<u8>> {
     let mut state = 1_u32;
     let mut byte = || {

@@ -14,9 +14,11 @@ pub mod records;
 pub mod replay;
 
 pub mod bytes;
+pub mod capture_script;
 pub mod input;
 pub mod laws;
 pub mod oracle;
+pub mod plain_capture;
 pub mod random;
 pub mod reading;
 pub mod script;

@@ -1,5 +1,6 @@
 //! Properties that hold for any bytes: one function for each target.
 
+pub mod captures;
 pub mod columns;
 pub mod decoding;
 pub mod framing;
