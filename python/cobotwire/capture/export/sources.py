@@ -16,7 +16,7 @@ from cobotwire.capture.export.inputs import Input
 from cobotwire.capture.export.opening import InputStream, Progress
 from cobotwire.capture.export.plan import ExportPlan, Message
 from cobotwire.capture.export.report import Report
-from cobotwire.capture.export.tables import MessageTables, Origin
+from cobotwire.capture.export.tables import MessageTables, Origin, occurring
 from cobotwire.capture.packet import Interface
 from cobotwire.capture.packet_parsing import OURS
 from cobotwire.capture.reader import is_capture
@@ -107,10 +107,12 @@ class Source:
     def _chosen(self, columns: Columns, origin: Origin) -> Iterator[Batch]:
         self._report.rejected += len(columns.rejected)
         edition = columns.table.edition
-        for message, table in self._tables_of(columns).tables(columns, origin):
+        tables = self._tables_of(columns)
+        for message, count in occurring(columns).items():
             if not self._plan.chooses(message):
-                self._report.not_chosen += table.num_rows
+                self._report.not_chosen += count
                 continue
+            table = tables.table(columns, message, origin)
             inside = self._inside(table)
             self._report.outside += table.num_rows - inside.num_rows
             if inside.num_rows:

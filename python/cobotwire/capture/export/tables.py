@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -44,16 +45,10 @@ class MessageTables:
         nothing = memoryview(b"").cast("Q")
         counters = Counters(0, {}, {}, 0)
         columns = Columns(self._table, [], nothing, (nothing, nothing), counters)
-        return self._arrow(columns, message, Origin("", "")).schema
+        return self.table(columns, message, Origin("", "")).schema
 
-    def tables(self, columns: Columns, origin: Origin) -> list[tuple[Message, Any]]:
-        """Return a table of each message that occurs, with its rows in the order of the stream."""
-        found = dict.fromkeys(
-            Message(rows.command.name, rows.direction) for rows in columns if len(rows)
-        )
-        return [(message, self._arrow(columns, message, origin)) for message in found]
-
-    def _arrow(self, columns: Columns, message: Message, origin: Origin) -> Any:
+    def table(self, columns: Columns, message: Message, origin: Origin) -> Any:
+        """Return the rows of a message, in the order of the stream."""
         table = columns.to_arrow(
             message.command,
             message.direction,
@@ -64,6 +59,15 @@ class MessageTables:
         place = OWN.index("time")
         schema = table.schema.set(place, pa.field("time", TIME))
         return pa.Table.from_arrays(table.columns, schema=schema)
+
+
+def occurring(columns: Columns) -> Counter[Message]:
+    """Return the messages that occur in columns, with their numbers of rows."""
+    found: Counter[Message] = Counter()
+    for rows in columns:
+        if len(rows):
+            found[Message(rows.command.name, rows.direction)] += len(rows)
+    return found
 
 
 @lru_cache
