@@ -17,7 +17,7 @@ from cobotwire.capture.export.report import OutputFile
 BLOCK_ROWS = 1 << 20
 BLOCK_BYTES = 64 << 20
 # All waiting rows together: then the largest block is written early.
-WAITING_BYTES = 256 << 20
+WAITING_BYTES = 128 << 20
 # So many files are written at the same time; the one that was not used longest is completed first.
 OPEN_FILES = 256
 

@@ -24,7 +24,7 @@ from cobotwire.codec.interface import Codec, Columns, Counters
 from cobotwire.protocol.errors import UsageError
 
 # The bytes to decode at a time. The rows of a piece take some three times as much memory.
-PIECE = 16 << 20
+PIECE = 8 << 20
 # These many bytes tell whether an input is a pcapng file.
 MAGIC = 12
 
