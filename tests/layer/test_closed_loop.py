@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 import cobotwire.pymycobot as layer
-from cobotwire.editions import load, mercury_a1, mercury_b1
+from cobotwire.editions import load, mercury_a1, mercury_b1, pro450
+from cobotwire.editions.pro450 import messages
 from cobotwire.protocol.errors import (
     ArmNotReady,
     ProtocolError,
@@ -20,11 +21,13 @@ from cobotwire.protocol.errors import (
 )
 from cobotwire.pymycobot.layer.modbus_gripper import check_of
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm
+from cobotwire.simulator.behaviour import Behaviours, Sized
+from cobotwire.simulator.behaviour.registry import Unanswerable
 from cobotwire.simulator.clock import SteppedClock
 
 HOME = [0, 0, 0, 0, 0, 90, 0]
-# The frame that reports the end of a motion: its first bytes, and its size.
-END, END_SIZE = bytes([0xFE, 0xFE, 4, 0x5B]), 7
+# The id of a request; the first bytes and the size of the frame that reports the end of a motion.
+SEND_ANGLES, END, END_SIZE = 0x22, bytes([0xFE, 0xFE, 4, 0x5B]), 7
 
 
 class Deaf:
@@ -46,6 +49,18 @@ class Deaf:
     def _without_ends(self, data: bytes) -> bytes:
         before, found, after = data.partition(END)
         return before + after[END_SIZE - len(END) :] if found else data
+
+
+class Early(Deaf):
+    """A robot that reports the end of an earlier motion after it has accepted the next one."""
+
+    def receive(self, data: bytes) -> bytes:
+        reply = super().receive(data)
+        early = _codec("mercury_a1").encode("motion_ended", "reply", (0,))
+        return reply + early if data[3] == SEND_ANGLES else reply
+
+    def _without_ends(self, data: bytes) -> bytes:
+        return data
 
 
 class Replies:
@@ -112,7 +127,7 @@ def test_motion_returns_when_the_arm_is_there(name: str, edition: str, target: l
 
 
 def test_motion_after_one_that_was_not_waited_for_waits_for_its_own_end() -> None:
-    arm, _ = made("Mercury", "mercury_a1")
+    arm, _ = made("Mercury", "mercury_a1", peer=Early)
     arm.send_angle(1, 10, 50, _async=True)
     assert arm.send_angles([40, 0, 0, 0, 0, 0, 0], 5) == 0
     assert arm.get_angle(1) == pytest.approx(40, abs=0.1)
@@ -256,6 +271,56 @@ def test_gripper_of_the_pro_450_is_read_and_written() -> None:
     assert arm.set_pro_gripper_open() == 1
     assert arm.get_pro_gripper_angle() == 50
     assert arm.get_pro_gripper_firmware_version() == 1.2
+
+
+class Gripper:
+    """A gripper of a Pro 450 at the simulated arm: it replies only at its speed and in its mode."""
+
+    def __init__(self, baud: int, modbus: bool) -> None:
+        self.baud, self.modbus, self.bus = baud, modbus, 115200
+
+    def behaviours(self) -> Any:
+        found = Behaviours()
+        found.behaviour(messages.serial.ToolSerialWriteData)(self.reply)
+        found.behaviour(messages.serial.SetToolSerialBaudRate)(self.set_speed)
+        return found
+
+    def set_speed(self, arm: Any, now: float, request: Any) -> None:
+        self.bus = request.baud
+
+    def reply(self, arm: Any, now: float, request: Any) -> Any:
+        data = bytes(request.data)
+        own = data[:2] == b"\xfe\xfe"
+        if self.bus != self.baud or own == self.modbus:
+            raise Unanswerable("the gripper does not understand it")
+        at = 3 if own else 0
+        if data[at + 3] == 47:
+            self.modbus = True
+        elif data[at + 3] == 5:
+            self.baud = 115200
+        reply = data[: at + 4] + b"\0\x01" + b"\0\0"
+        return Sized(messages.serial.ToolSerialWriteDataReply(reply), len(reply))
+
+
+@pytest.mark.parametrize(
+    ("baud", "modbus", "found"),
+    [
+        (115200, True, True),
+        (115200, False, True),
+        (1000000, True, True),
+        (1000000, False, True),
+        (9600, True, False),
+    ],
+)
+def test_gripper_is_searched_at_two_speeds(baud: int, modbus: bool, found: bool) -> None:
+    gripper = Gripper(baud, modbus)
+    clock = SteppedClock()
+    robot = SimulatedArm(pro450.TABLE, clock=clock, powered=True, behaviours=gripper.behaviours())
+    arm = object.__new__(layer.Pro450Client)
+    arm._open(partial(pro450.CLIENT, MemoryTransport(robot, clock)), False, "raise")
+    assert arm.set_pro_gripper_init() is found
+    assert gripper.modbus is (modbus or found)
+    assert gripper.baud == (115200 if found else 9600)
 
 
 def test_pro_450_jogs_only_if_targets_are_queued() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.table import Command, Variant
+from cobotwire.pymycobot.migrate.calls import library
 from layer_comparison import FAILED, REJECTED, Called, call_ours, call_theirs, class_of
 from layer_rulings import REPLIES
 from robots.arguments import corners, inside
@@ -42,7 +43,7 @@ DATA: dict[str, Any] = {
 def compare_replies(robot: Robot, stride: int = 1) -> tuple[int, set[str], list[str]]:
     """Return how many results are equal, which methods need a ruling, and the others in words.
 
-    Of the methods, every ``stride``-th is called.
+    Called are every ``stride``-th method, and those that give their result in a form of its own.
     """
     equal, needed, left = 0, set(), []
     for call, reply in _cases(robot, stride):
@@ -71,7 +72,14 @@ def _kinds(result: Any) -> Any:
 def _cases(robot: Robot, stride: int) -> Iterator[tuple[Call, bytes]]:
     """Return a call of each method with each reply."""
     codec = codecs.load(robot.table, "reference")
-    for calls in list(_by_method(robot).values())[::stride]:
+    special = {
+        name
+        for name, call in library()[class_of(robot).__name__].methods.items()
+        if call.result != "plain"
+    }
+    for at, (method, calls) in enumerate(_by_method(robot).items()):
+        if at % stride and method not in special:
+            continue
         found = None
         for index, values in _replies(robot.table.command(calls[0].command), calls[0]):
             for call in [found] if found else calls[:MOST_CALLS]:

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from struct import unpack_from
 from typing import Any
 
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.errors import ProtocolError, ReplyTimeout
+from cobotwire.pymycobot.layer.client import DONE
 from cobotwire.pymycobot.layer.closed_loop import HOME_SPEED, REPORTS_ENDS, ClosedLoop
 from cobotwire.pymycobot.layer.modbus_gripper import GRIPPER, OWN_HEAD, ModbusGripper, percent
 from cobotwire.pymycobot.layer.naming import naming
@@ -19,6 +20,11 @@ TRAJECTORY_SECONDS = 0.01
 # What the force sensor is sent.
 FORCE_SENSOR = bytes([0x01, 0x04, 0x00, 0x00, 0x00, 0x0C, 0xF0, 0x0F])
 SENSOR_REPLY = 27
+# A gripper is searched at these speeds of the bus, with a short timeout, in milliseconds.
+SEARCHED_SPEEDS = (115200, 1000000)
+SEARCH_TIMEOUT, USUAL_TIMEOUT = 250, 10000
+# How often a gripper is asked after it was switched to Modbus.
+SEARCH_TIMES = 3
 
 
 class Gripper450(ModbusGripper):
@@ -188,6 +194,40 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
     def base_external_485_control(self, data: Sequence[int]) -> Any:
         """Send bytes on the RS485 bus of the base; return its reply: 1, and the bytes."""
         return self._ask(_external, self.arm.base_external_control, data)
+
+    def set_pro_gripper_init(self, gripper_id: int = GRIPPER) -> bool:
+        """Find the gripper at two speeds of the bus, and switch it to Modbus at 115200 baud.
+
+        Returns:
+            Whether the gripper was found.
+        """
+        check_range("gripper_id", gripper_id, 1, 254)
+        self._order(self.arm.set_tool_serial_timeout, SEARCH_TIMEOUT)
+        found = self._is_there(gripper_id)
+        if found:
+            self.set_pro_gripper_modbus(1, gripper_id=gripper_id)
+        speeds = iter(SEARCHED_SPEEDS)
+        while not found and (speed := next(speeds, None)) is not None:
+            self._order(self.arm.set_tool_serial_baud_rate, speed)
+            found = self._is_there(gripper_id) or self._switches_to_modbus(gripper_id)
+        if found:
+            self.set_pro_gripper_baud(0, gripper_id)
+            self._order(self.arm.set_tool_serial_baud_rate, SEARCHED_SPEEDS[0])
+            self._order(self.arm.set_tool_serial_timeout, USUAL_TIMEOUT)
+        return found
+
+    def _is_there(self, gripper_id: int) -> bool:
+        try:
+            return self.get_pro_gripper_angle(gripper_id) >= 0
+        except (ProtocolError, ReplyTimeout):
+            return False
+
+    def _switches_to_modbus(self, gripper_id: int) -> bool:
+        try:
+            switched = self.set_pro_gripper_modbus(1, True, gripper_id) == DONE
+        except (ProtocolError, ReplyTimeout):
+            return False
+        return switched and any(self._is_there(gripper_id) for _ in range(SEARCH_TIMES))
 
     def get_force_sensor_data(self) -> Any:
         """Read the force sensor at the end: six numbers."""
