@@ -8,9 +8,11 @@ import pty
 import subprocess
 import sys
 
+import click
 import pytest
 
 from cobotwire import __version__
+from cobotwire.cli.app import VERBS, app
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
@@ -209,3 +211,26 @@ def test_unknown_edition_gets_a_suggestion() -> None:
     result = run("--edition", "mycobt", "commands")
     assert result.returncode == 2
     assert "did you mean mycobot?" in result.stderr
+
+
+def test_help_describes_each_verb_as_the_verb_does() -> None:
+    context = click.Context(app)
+    verbs = {name: app.get_command(context, name) for name in VERBS}
+    assert {name: verb.get_short_help_str(200) for name, verb in verbs.items() if verb} == VERBS
+
+
+@pytest.mark.parametrize("words", [["--version"], ["--help"], ["decode", "FE FE 02 12 FA"]])
+def test_start_imports_only_what_the_words_need(words: list[str]) -> None:
+    code = "import sys; from cobotwire.cli import main; sys.argv[1:] = {}; main()"
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-c", code.format(words)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    imported = {line.split("|")[-1].strip() for line in done.stderr.splitlines()}
+    unwanted = {"rich.console", "cobotwire.session", "cobotwire.client", "cobotwire.cli.sim"}
+    unwanted |= {"cobotwire.capture.reader", "cobotwire.codec.reference"}
+    assert not imported & unwanted
+    assert "click" in imported

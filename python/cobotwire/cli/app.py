@@ -12,25 +12,26 @@ from cobotwire.cli.shared.completers import complete_editions
 from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors
 from cobotwire.editions import DEFAULT
 
-# In the order of --help. The verb NAME is the function NAME in the module cobotwire.cli.NAME.
-VERBS = (
-    "demo",
-    "ports",
-    "identify",
-    "doctor",
-    "monitor",
-    "call",
-    "run",
-    "migrate",
-    "decode",
-    "export",
-    "sim",
-    "replay",
-    "plot",
-    "conform",
-    "commands",
-    "completion",
-)
+# In the order of --help, each with its text there: --help imports no verb. The verb NAME is the
+# function NAME in the module cobotwire.cli.NAME.
+VERBS = {
+    "demo": "Drive a simulated arm; check every reply.",
+    "ports": "List serial ports, likely ones first.",
+    "identify": "Find out which edition an arm speaks.",
+    "doctor": "Examine an arm and its port; give advice.",
+    "monitor": "Show joints, coordinates, rate, errors.",
+    "call": "Send one command; print the result.",
+    "run": "Run a program written for pymycobot.",
+    "migrate": "Rewrite a program for our clients.",
+    "decode": "Explain bytes, streams and recordings.",
+    "export": "Write captures to Parquet, CSV, Arrow and MCAP.",
+    "sim": "Serve a simulated arm.",
+    "replay": "Print a recording, or serve it as an arm.",
+    "plot": "Draw a recording.",
+    "conform": "Test an arm, a client or a codec.",
+    "commands": "List the commands, or describe one.",
+    "completion": "Print the completion script of a shell.",
+}
 
 
 class _App(click.Group):
@@ -45,6 +46,10 @@ class _App(click.Group):
         verb = getattr(import_module(f"cobotwire.cli.{name}"), name)
         assert isinstance(verb, click.Command), f"{name} is a verb"
         return verb
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(VERBS.items()))
 
     def invoke(self, context: click.Context) -> Any:
         with exit_on_errors():

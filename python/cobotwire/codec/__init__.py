@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import os
 from functools import lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Table
+
+if TYPE_CHECKING:
+    from cobotwire.codec.interface import Codec
+    from cobotwire.protocol.table import Table
 
 VARIABLE = "COBOTWIRE_CODEC"
 CodecName = Literal["reference", "native"]
@@ -47,7 +49,7 @@ def native_available() -> bool:
 def _obstacle() -> str:
     """Return why the Rust codec's binary cannot be loaded; empty if it can."""
     try:
-        import cobotwire.codec.native  # noqa: F401  (imported only to see whether it loads)
+        import cobotwire._native  # noqa: F401  (imported only to see whether it loads)
     except ModuleNotFoundError:
         return NOT_INSTALLED
     except ImportError as error:

@@ -7,7 +7,6 @@ from typing import Literal
 from cobotwire._native import NativeCaptureReader, NativeCodec, NativeFrame, NativeSurvey
 from cobotwire.codec.events import Frame
 from cobotwire.codec.interface import Codec
-from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.protocol.table import Table
 
 __all__ = ["NativeCaptureReader", "NativeCodec", "NativeSurvey", "native_codec"]
@@ -29,6 +28,8 @@ class _ReplyWithoutId:
     name: Literal["native"] = "native"
 
     def __init__(self, table: Table) -> None:
+        from cobotwire.codec.reference import ReferenceCodec
+
         native, reference = NativeCodec(table), ReferenceCodec(table)
         self.table = table
         self.encode, self.decode = native.encode, native.decode

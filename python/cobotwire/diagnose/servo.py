@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose.findings import Finding
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
-from cobotwire.diagnose.servo_bus import Instruction, servo_bus
+
+if TYPE_CHECKING:
+    from cobotwire.diagnose.servo_bus import ServoBusReader
 
 # The header, and an id, which FF is not. The table knows this too, but is loaded only where this
 # matches; see tests/diagnose/test_servo_bus.py.
@@ -86,6 +88,13 @@ class ServoPacket(Finding):
         return f", with errors: {', '.join(self.errors)}" if self.errors else ""
 
 
+def servo_bus() -> ServoBusReader:
+    """Return the reader of packets; it is imported with the reference codec, which it uses."""
+    from cobotwire.diagnose import servo_bus
+
+    return servo_bus.servo_bus()
+
+
 def packet_size(data: bytes, at: int) -> int | None:
     """Return the size of the packet at ``at``; 0 if there is none, None for too few bytes."""
     return servo_bus().size(data, at) if _START.match(data, at) else 0
@@ -113,7 +122,7 @@ class ServoBus(Recogniser):
         instruction, status = bus.instruction(packet), bus.status(servo, code)
         # A status packet with the error bits of an instruction is rare: assume an instruction.
         is_status = instruction is None and status is not None
-        said = instruction or Instruction(bus.name(code))
+        said = instruction or bus.unknown(code)
         register, count = said.register, said.size
         if is_status:
             register, expected = self._expected.get(servo, (None, -1))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.diagnose.diagnoser import REACH, Diagnoser, Item
-from cobotwire.diagnose.servo_bus import servo_bus
+from cobotwire.diagnose.servo import servo_bus
 from cobotwire.protocol.table import Command
 
 if TYPE_CHECKING:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from fractions import Fraction
 from math import inf
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from cobotwire.protocol.units import PLURALS
+
+if TYPE_CHECKING:
+    from fractions import Fraction
 
 Encoding = Literal["integer", "float"]
 # The formats of ``struct``: the float, and the signed integer of its bits.
@@ -123,6 +125,9 @@ class Number:
 
     def exact(self, raw: int) -> Fraction:
         """Return the physical value of a raw value without rounding; floats: of a finite one."""
+        # Imported here, because only checks and other encoders need exact values.
+        from fractions import Fraction
+
         if self.encoding == "float":
             return Fraction(float_of_raw(raw, self.width))
         return Fraction(raw * self.multiply, self.divide)

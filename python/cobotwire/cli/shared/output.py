@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import sys
 from enum import IntEnum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
-from rich.console import Console
 
 from cobotwire.protocol.printable import printable
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 WIDTH_OF_FILES = 200
 
@@ -35,6 +37,8 @@ def discard_output() -> None:
 
 def plain_console() -> Console:
     """Return a console that prints text as it is: ``[word]`` and ``:word:`` are not markup."""
+    from rich.console import Console
+
     console = Console(highlight=False, markup=False, emoji=False)
     if not console.is_terminal:
         # Long lines are not broken, for grep and the like.

@@ -94,6 +94,10 @@ class ServoBusReader:
         """Return the name of an instruction, whatever its parameters are."""
         return self._names.get(code, f"0x{code:02X}")
 
+    def unknown(self, code: int) -> Instruction:
+        """Return an instruction of which only the name is known."""
+        return Instruction(self.name(code))
+
     def _status(self, servo: int, code: int) -> Status | None:
         """Return what a status packet says; None if no servo sends a packet like that."""
         if servo == self.every or code & ~self._known:
