@@ -27,13 +27,13 @@ def decode_bytes(source: ByteSource, options: DecodeOptions, counts: StreamCount
     if counted_only and not source.from_arguments and StreamSurvey.reads(codec):
         _survey_bytes(codec, source, options, counts)
     else:
-        _diagnose_bytes(codec, source, options, counts)
+        diagnose_bytes(codec, source, options, counts)
 
 
 def _survey_bytes(
     codec: Codec, source: ByteSource, options: DecodeOptions, counts: StreamCounts
 ) -> None:
-    """Decode bytes, as :func:`_diagnose_bytes` does, without an object for each frame."""
+    """Decode bytes, as :func:`diagnose_bytes` does, without an object for each frame."""
     texts = None if options.quiet else line_texts(codec.table, options.file)
     survey = StreamSurvey(
         codec, options.direction, accept_unknown=options.accept_unknown, texts=texts
@@ -54,7 +54,7 @@ def _survey_bytes(
         counts.add_survey(survey)
 
 
-def _diagnose_bytes(
+def diagnose_bytes(
     codec: Codec, source: ByteSource, options: DecodeOptions, counts: StreamCounts
 ) -> None:
     """Decode bytes frame by frame."""
