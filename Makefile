@@ -79,6 +79,7 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/kinematics.py
 	$(BIN)/python bench/resync.py
 	$(BIN)/python bench/lock.py
+	$(BIN)/python bench/captures_decode.py
 	$(BIN)/python bench/speed.py
 	$(BIN)/python bench/captures.py
 	$(BIN)/python bench/imports.py

@@ -3,11 +3,26 @@
 :class:`Diagnoser` takes the events of a framer, and returns frames and findings. It does no I/O.
 """
 
-from cobotwire.diagnose import registry
-from cobotwire.diagnose.diagnoser import Diagnoser, Item
-from cobotwire.diagnose.findings import Finding, Span
-from cobotwire.diagnose.registry import *  # noqa: F403 - the registry lists the classes of noise
-from cobotwire.diagnose.summary import Summary, summarize
+from typing import TYPE_CHECKING
 
-__all__ = ["Diagnoser", "Finding", "Item", "Span", "Summary", "summarize"]
-__all__ += registry.__all__
+if TYPE_CHECKING:
+    from cobotwire.diagnose.diagnoser import Diagnoser as Diagnoser
+    from cobotwire.diagnose.diagnoser import Item as Item
+    from cobotwire.diagnose.findings import Finding as Finding
+    from cobotwire.diagnose.findings import Span as Span
+    from cobotwire.diagnose.registry import *  # noqa: F403 - it lists the classes of noise
+    from cobotwire.diagnose.summary import Summary as Summary
+    from cobotwire.diagnose.summary import summarize as summarize
+else:
+    # Imported when they are first used: reading frames takes none of them.
+    from cobotwire.protocol.lazy import lazy_names
+
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            ".diagnoser": ["Diagnoser", "Item"],
+            ".findings": ["Finding", "Span"],
+            ".summary": ["Summary", "summarize"],
+        },
+        (".registry",),
+    )

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from typing import Any, Protocol
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol
 
 from cobotwire.codec.interface import Counters, Frame
-from cobotwire.diagnose.diagnoser import Item
 from cobotwire.diagnose.explain import FrameReader
-from cobotwire.diagnose.findings import Finding
-from cobotwire.diagnose.summary import Summary
-from cobotwire.diagnose.survey import StreamSurvey, message_name
 from cobotwire.protocol.table import Command
+
+if TYPE_CHECKING:
+    from cobotwire.diagnose.diagnoser import Item
+    from cobotwire.diagnose.summary import Summary
+    from cobotwire.diagnose.survey import StreamSurvey
 
 
 class Framed(Protocol):
@@ -30,14 +32,20 @@ class StreamCounts:
     Attributes:
         framers: the framers of the counted streams; their counters are part of the result.
         frames: the number of frames by id and name of the command.
-        findings: the findings, counted by kind.
     """
 
     def __init__(self) -> None:
         self.framers: list[Framed] = []
         self.frames: Counter[str] = Counter()
-        self.findings = Summary()
         self._illegal = 0
+
+    @cached_property
+    def findings(self) -> Summary:
+        """The findings, counted by kind."""
+        # Imported here, because most bytes that are typed in are frames.
+        from cobotwire.diagnose.summary import Summary
+
+        return Summary()
 
     @property
     def only_legal(self) -> bool:
@@ -77,12 +85,13 @@ class StreamCounts:
 
     def _count(self, id: int, command: Command | None, count: int) -> None:
         self._illegal += count if command is None else 0
-        self.frames[message_name(id, command)] += count
+        name = "illegal value or unknown id" if command is None else command.name
+        self.frames[f"0x{id:02X} {name}"] += count
 
     def add_findings(self, items: Iterable[Item]) -> None:
         """Count the findings by kind, but not the frames, which :meth:`add_survey` counts."""
         for item in items:
-            if isinstance(item, Finding):
+            if not isinstance(item, Frame):
                 self.findings.add(item)
 
     def add_survey(self, survey: StreamSurvey) -> None:

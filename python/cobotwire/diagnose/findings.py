@@ -92,5 +92,5 @@ class Finding:
     @property
     def facts(self) -> dict[str, Any]:
         """Return the attributes that are specific to the kind, by name."""
-        common = {field.name for field in fields(Finding)}
-        return {f.name: getattr(self, f.name) for f in fields(self) if f.name not in common}
+        common = len(fields(Finding))
+        return {field.name: getattr(self, field.name) for field in fields(self)[common:]}

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.diagnose.diagnoser import REACH, Diagnoser, Item
 from cobotwire.diagnose.servo import servo_bus
-from cobotwire.protocol.table import Command
 
 if TYPE_CHECKING:
     from cobotwire.codec.native import NativeSurvey
@@ -97,11 +96,6 @@ class StreamSurvey:
             return Lines(offset, *rest)
         (data,) = rest
         return Frame(offset, data, self._read_id(data))
-
-
-def message_name(id: int, command: Command | None) -> str:
-    """Return how counts name a message; ``command`` is None for a frame without a legal message."""
-    return f"0x{id:02X} {'illegal value or unknown id' if command is None else command.name}"
 
 
 def _native(

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture.byte_source import ByteSource
 from cobotwire.cli.shared.item_formats import line_texts
 from cobotwire.cli.shared.stream_printer import DecodeOptions, StreamPrinter, write_text
-from cobotwire.codec.interface import Codec
-from cobotwire.diagnose import Diagnoser, Item
+from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.diagnose.counts import StreamCounts
-from cobotwire.diagnose.survey import StreamSurvey
+
+if TYPE_CHECKING:
+    from cobotwire.diagnose import Item
+    from cobotwire.diagnose.survey import StreamSurvey
 
 # Printing the frames of this many bytes takes some seconds, so a progress bar is shown.
 LONG_FILE = 4 << 20
@@ -23,27 +26,46 @@ LONG_FILE = 4 << 20
 def decode_bytes(source: ByteSource, options: DecodeOptions, counts: StreamCounts) -> None:
     """Decode bytes that have no times and one direction."""
     codec = codecs.load(editions.load(options.edition).TABLE)
-    counted_only = options.as_json or options.quiet
-    if counted_only and not source.from_arguments and StreamSurvey.reads(codec):
-        _survey_bytes(codec, source, options, counts)
-    else:
+    survey = None if source.from_arguments else _survey(codec, options)
+    if survey is None:
         diagnose_bytes(codec, source, options, counts)
+    else:
+        _survey_bytes(survey, codec, source, options, counts)
+
+
+def _survey(codec: Codec, options: DecodeOptions) -> StreamSurvey | None:
+    """Return a survey, if it can do what the options ask for."""
+    if not options.as_json and not options.quiet:
+        return None
+    from cobotwire.diagnose.survey import StreamSurvey
+
+    if not StreamSurvey.reads(codec):
+        return None
+    texts = None if options.quiet else line_texts(codec.table, options.file)
+    return StreamSurvey(
+        codec, options.direction, accept_unknown=options.accept_unknown, texts=texts
+    )
 
 
 def _survey_bytes(
-    codec: Codec, source: ByteSource, options: DecodeOptions, counts: StreamCounts
+    survey: StreamSurvey,
+    codec: Codec,
+    source: ByteSource,
+    options: DecodeOptions,
+    counts: StreamCounts,
 ) -> None:
     """Decode bytes, as :func:`diagnose_bytes` does, without an object for each frame."""
-    texts = None if options.quiet else line_texts(codec.table, options.file)
-    survey = StreamSurvey(
-        codec, options.direction, accept_unknown=options.accept_unknown, texts=texts
-    )
+    from cobotwire.diagnose.survey import Lines
+
     printer = StreamPrinter(codec, options.direction, options, StreamCounts())
+
+    def line(item: Item) -> str:
+        return item.text if isinstance(item, Lines) else printer.format(item) + "\n"
 
     def report(items: list[Item]) -> None:
         counts.add_findings(items)
         if not options.quiet:
-            write_text("".join(map(printer.line, items)))
+            write_text("".join(map(line, items)))
 
     try:
         with _progress(source, options.quiet) as blocks:
@@ -63,11 +85,33 @@ def diagnose_bytes(
     if source.from_arguments:
         options = options._replace(each_byte=True)
     printer = StreamPrinter(codec, options.direction, options, counts)
-    diagnoser = Diagnoser(codec, options.direction)
     with _progress(source, options.quiet) as blocks:
-        for block in blocks:
-            printer.print(diagnoser.feed(framer.feed(block)))
-        printer.print(diagnoser.feed(framer.flush()) + diagnoser.flush())
+
+        def events() -> Iterator[list[Event]]:
+            yield from map(framer.feed, blocks)
+            yield framer.flush()
+
+        for items in _diagnosed(codec, options, events()):
+            printer.print(items)
+
+
+def _diagnosed(
+    codec: Codec, options: DecodeOptions, blocks: Iterable[list[Event]]
+) -> Iterator[Sequence[Item]]:
+    """Yield the items of the stream; import the diagnosis when the first noise comes."""
+    rest = iter(blocks)
+    for events in rest:
+        frames = [event for event in events if not isinstance(event, Noise)]
+        if len(frames) == len(events):
+            yield frames
+            continue
+        from cobotwire.diagnose import Diagnoser
+
+        diagnoser = Diagnoser(codec, options.direction)
+        yield diagnoser.feed(events)
+        for more in rest:
+            yield diagnoser.feed(more)
+        yield diagnoser.flush()
 
 
 @contextmanager

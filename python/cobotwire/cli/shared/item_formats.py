@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from cobotwire.cli.shared.hex_colours import Paint
 from cobotwire.cli.shared.output import as_hex, as_json_value
 from cobotwire.codec.interface import Frame
-from cobotwire.diagnose import CommandError, Finding, Item, Unrecognised
 from cobotwire.diagnose.explain import (
     DIRECTIONS,
     REMEMBERED,
@@ -21,13 +20,16 @@ from cobotwire.diagnose.explain import (
     format_message,
     frame_parts,
 )
-from cobotwire.diagnose.survey import LineTexts
 from cobotwire.protocol.table import Table
+
+if TYPE_CHECKING:
+    from cobotwire.diagnose import Finding, Item
+    from cobotwire.diagnose.survey import LineTexts
 
 # Bytes of a finding that are shown on its line.
 SHOWN = 16
 
-Format = Callable[[Item], str]
+Format = Callable[["Item"], str]
 
 
 def one_line(reader: FrameReader, paint: Paint | None) -> Format:
@@ -38,6 +40,8 @@ def one_line(reader: FrameReader, paint: Paint | None) -> Format:
         if isinstance(item, Frame):
             kind, text, label_colour = "frame", meaning(item.data), "green"
         else:
+            from cobotwire.diagnose import Unrecognised
+
             kind, text = item.kind, item.describe()
             label_colour = "red" if isinstance(item, Unrecognised) else "yellow"
         label, shown = f"{kind:<14}", _first_bytes(item)
@@ -116,6 +120,9 @@ def line_texts(table: Table, file: str | None) -> LineTexts:
 
     ``file`` is the first value of each line; None: it has none.
     """
+    from cobotwire.diagnose import CommandError, Unrecognised
+    from cobotwire.diagnose.survey import LineTexts
+
     requests, replies = (
         [
             [[json.dumps(field.name) for field in variant.fields] for variant in variants]

@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import os
 import sys
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 from cobotwire.cli.shared.exit_codes import OUTPUT_CLOSED
 from cobotwire.cli.shared.hex_colours import frame_colours
 from cobotwire.cli.shared.item_formats import Format, as_object, byte_by_byte, one_line
 from cobotwire.cli.shared.output import discard_output
 from cobotwire.codec.interface import Codec, Listening
-from cobotwire.diagnose import Item
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
-from cobotwire.diagnose.survey import Lines
+
+if TYPE_CHECKING:
+    from cobotwire.diagnose import Item
 
 
 class DecodeOptions(NamedTuple):
@@ -52,7 +54,7 @@ class StreamPrinter:
             return byte_by_byte(self.reader, codec.table, paint)
         return one_line(self.reader, paint)
 
-    def print(self, items: list[Item]) -> None:
+    def print(self, items: Sequence[Item]) -> None:
         """Count and print items."""
         self._counts.add(items, self.reader)
         if items and not self._options.quiet:
@@ -61,10 +63,6 @@ class StreamPrinter:
     def format(self, item: Item) -> str:
         """Format one item."""
         return self._format(item)
-
-    def line(self, item: Item) -> str:
-        """Return the lines of an item of a survey, each with its line feed."""
-        return item.text if isinstance(item, Lines) else self.format(item) + "\n"
 
 
 def print_text(text: str) -> None:
