@@ -151,7 +151,8 @@ def _wait_until_read(pipe: int) -> None:
     time.sleep(0.5)
 
 
-def test_memory_use_does_not_depend_on_the_file_size(tmp_path: Path) -> None:
+@pytest.mark.parametrize("option", [[], ["--summary"]], ids=["lines", "summary"])
+def test_memory_use_does_not_depend_on_the_file_size(tmp_path: Path, option: list[str]) -> None:
     peaks = []
     for times in (1, 40):
         path = tmp_path / f"{times}.bin"
@@ -168,7 +169,7 @@ def test_memory_use_does_not_depend_on_the_file_size(tmp_path: Path) -> None:
             "status = dict(line.split(':') for line in open('/proc/self/status'))\n"
             "print(status['VmHWM'].removesuffix('kB\\n'), file=sys.stderr)"
         )
-        command = [sys.executable, "-c", script, "decode", str(path)]
+        command = [sys.executable, "-c", script, "decode", str(path), *option]
         with subprocess.Popen(
             command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         ) as process:

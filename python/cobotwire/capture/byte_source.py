@@ -16,7 +16,7 @@ from cobotwire.protocol.printable import printable
 ByteFormat = Literal["raw", "hex"]
 
 # Bytes to read at a time. A pipe returns what it has.
-BLOCK = 1 << 20
+BLOCK = 1 << 18
 # The number of bytes that decide between raw bytes and hex text. All of them are read, unless a
 # byte comes that cannot be text: so the result does not depend on how a pipe cuts the input.
 DETECT = 512
