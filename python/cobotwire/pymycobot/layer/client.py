@@ -28,7 +28,8 @@ class CompatibleClient:
 
     The parameters of the constructor are the maker's. ``timeout`` and ``thread_lock`` have no
     effect: our client waits for a reply as long as the edition says, and many threads may always
-    share an arm. ``debug`` logs all frames.
+    share an arm. ``debug`` logs all frames; ``save_serial_log`` has no effect, since our clients
+    record traffic themselves (``record``).
 
     With ``errors="raise"``, the default, a call that fails raises our error. With
     ``errors="return"`` it returns -1, as the library does. An argument that is not allowed raises
