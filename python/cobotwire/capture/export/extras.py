@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from cobotwire.protocol.errors import UsageError
 
-Extra = Literal["arrow", "mcap", "fsspec", "zstd"]
+Extra = Literal["arrow", "mcap", "fsspec", "zstd", "dask"]
 
 
 def needed(package: str, extra: Extra, purpose: str) -> Any:

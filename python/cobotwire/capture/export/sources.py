@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import pyarrow as pa
@@ -20,7 +20,7 @@ from cobotwire.capture.export.tables import MessageTables, Origin, occurring
 from cobotwire.capture.packet import Interface
 from cobotwire.capture.packet_parsing import OURS
 from cobotwire.capture.reader import is_capture
-from cobotwire.codec.interface import Codec, Columns, Counters
+from cobotwire.codec.interface import Codec, Columns, Counters, Listening
 from cobotwire.protocol.errors import UsageError
 
 # The bytes to decode at a time. The rows of a piece take some three times as much memory.
@@ -50,7 +50,6 @@ class Source:
             yield from read(input, stream, start)
         finally:
             stream.close()
-        self._report.inputs += 1
         if stream.truncated:
             self._report.truncated.append(f"{input.url}: {stream.truncated}")
 
@@ -58,21 +57,32 @@ class Source:
         """Return the schema of a file without rows."""
         return self._tables_of(self._plan.editions.codec("")).schema(message)
 
-    def _raw(self, input: Input, stream: InputStream, start: bytes) -> Iterator[Batch]:
+    def decoded(
+        self, input: Input, parts: Iterable[Columns], first: bool = True
+    ) -> Iterator[Batch]:
+        """Yield the chosen rows of raw bytes that were decoded elsewhere, in one or more parts.
+
+        The counters of the last part count. ``first`` is whether it is the start of the input: a
+        divided input counts once.
+
+        Raises:
+            UsageError: the plan needs times, which raw bytes do not have.
+        """
         if self._plan.needs_times:
             what = "an MCAP file" if self._plan.format == "mcap" else "a time range"
             message = f"{input.url} holds raw bytes without times, which {what} needs"
             raise UsageError("INPUT", input.url, message=message)
-        codec = self._plan.editions.codec("")
-        reader = codec.column_reader(self._plan.direction)
         origin = Origin(input.robot, input.url)
-        piece = start
-        while piece:
-            yield from self._chosen(reader.feed(piece), origin)
-            piece = stream.read(PIECE)
-        columns = reader.flush()
-        yield from self._chosen(columns, origin)
-        self._count(columns.counters)
+        counters = Counters(0, {}, {}, 0)
+        for columns in parts:
+            yield from self._chosen(columns, origin)
+            counters = columns.counters
+        self._count(counters)
+        self._report.inputs += first
+
+    def _raw(self, input: Input, stream: InputStream, start: bytes) -> Iterator[Batch]:
+        codec = self._plan.editions.codec("")
+        return self.decoded(input, _parts(codec, self._plan.direction, stream, start))
 
     def _recording(self, input: Input, stream: InputStream, start: bytes) -> Iterator[Batch]:
         reader = capture_reader(self._codec_of, self._plan.direction, name=input.url)
@@ -83,6 +93,7 @@ class Source:
             piece = stream.read(PIECE)
         last = reader.finish()
         yield from self._captured(last, input, gaps)
+        self._report.inputs += 1
         for part in last.streams:
             self._count(part.counters)
         if incomplete := _incomplete(last):
@@ -140,6 +151,18 @@ class Source:
     def _count(self, counters: Counters) -> None:
         self._report.bytes += counters.bytes
         self._report.noise.update(counters.noise)
+
+
+def _parts(
+    codec: Codec, listening: Listening, stream: InputStream, start: bytes
+) -> Iterator[Columns]:
+    """Yield the columns of raw bytes, which begin with ``start``."""
+    reader = codec.column_reader(listening)
+    piece = start
+    while piece:
+        yield reader.feed(piece)
+        piece = stream.read(PIECE)
+    yield reader.flush()
 
 
 def _incomplete(capture: CapturedColumns) -> str:

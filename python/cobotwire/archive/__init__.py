@@ -1,0 +1,105 @@
+"""Read archives of captures of any size with all processors, or with a Dask cluster.
+
+See ``docs/archives.md``. :func:`scan` returns the rows of one message for queries: a Dask
+DataFrame, delayed Arrow tables, or Arrow tables made by local threads. :func:`export` writes files,
+as :func:`cobotwire.capture.export.write` does, but one for each piece of the archive. Neither the
+rows nor the counts depend on the pieces or on the number of workers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from cobotwire.archive.dask_engine import DaskEngine
+from cobotwire.archive.engine import Engine, ThreadEngine
+from cobotwire.capture.export import ExportPlan, Inputs, Message, Report
+from cobotwire.capture.export.extras import needed
+from cobotwire.codec.interface import Listening
+from cobotwire.editions import DEFAULT
+from cobotwire.inspect.exporting import InstalledEditions
+from cobotwire.protocol.table import Direction
+
+if TYPE_CHECKING:
+    from cobotwire.archive.scanning import Scan
+
+__all__ = ["PIECE_BYTES", "DaskEngine", "Engine", "ThreadEngine", "export", "scan"]
+
+# The size of a piece. A task holds the rows of one, which take some four times as much memory.
+PIECE_BYTES = 64 << 20
+
+
+def scan(
+    urls: str | Sequence[str],
+    command: str,
+    direction: Direction = "reply",
+    *,
+    edition: str = DEFAULT,
+    listening: Listening | None = None,
+    wide: bool = True,
+    begin_ns: int | None = None,
+    end_ns: int | None = None,
+    piece_bytes: int = PIECE_BYTES,
+) -> Scan:
+    """Return the rows of one message of an archive; nothing is decoded yet.
+
+    Args:
+        urls: files, folders, patterns or fsspec URLs of recordings (pcapng) and of raw bytes.
+        command: the name of the command.
+        direction: its reply or its request.
+        edition: the edition of inputs that name none.
+        listening: what raw bytes hold; by default only messages of ``direction``.
+        wide: whether a field of several numbers becomes several columns.
+        begin_ns: the first time, in nanoseconds since 1970 (UTC); only for recordings.
+        end_ns: the time of the end.
+        piece_bytes: the size of the pieces into which raw bytes are divided.
+
+    Raises:
+        UsageError: an argument names nothing, the edition has no such message, or a package is
+            missing.
+        LinkError: a store cannot be listed, or an input cannot be read.
+    """
+    needed("pyarrow", "arrow", "reading an archive")
+    from cobotwire.archive.pieces import divide
+    from cobotwire.archive.scanning import Scan
+
+    plan = ExportPlan(
+        "",
+        InstalledEditions(edition),
+        commands=(command,),
+        direction=listening or direction,
+        begin_ns=begin_ns,
+        end_ns=end_ns,
+        wide=wide,
+    )
+    inputs = Inputs.find([urls] if isinstance(urls, str) else urls)
+    # A command of another edition, or a direction that it lacks, has no columns.
+    plan.editions.codec("").decode_columns(b"").rows(command, direction)
+    return Scan(Message(command, direction), plan, divide(inputs, piece_bytes))
+
+
+def export(
+    plan: ExportPlan,
+    inputs: Inputs,
+    engine: Engine | None = None,
+    *,
+    piece_bytes: int = PIECE_BYTES,
+    progress: Callable[[int], None] = lambda size: None,
+) -> Report:
+    """Export inputs with many workers, by default with threads; return what was read and written.
+
+    The output is a folder or an fsspec URL, and all workers must be able to write there. The files
+    are parts: ``get_angles.reply-00012.parquet``, numbered in the order of the inputs. They get
+    their names when all are complete; an exception leaves none. ``progress`` gets the number of
+    stored bytes of each piece that is complete.
+
+    Raises:
+        UsageError: the plan cannot be written, the output holds files, an input cannot be opened,
+            or a package is missing.
+        LinkError: an input cannot be read to its end, or the scheduler does not answer.
+        OutputError: a file cannot be written.
+    """
+    needed("pyarrow", "arrow", "export")
+    from cobotwire.archive import exporting
+
+    return exporting.export(plan, inputs, engine or ThreadEngine(), piece_bytes, progress)

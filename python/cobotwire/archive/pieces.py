@@ -1,0 +1,85 @@
+"""Divide inputs into pieces, each of which one task reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from typing import NamedTuple
+
+from cobotwire.archive.stored import Stored
+from cobotwire.capture.export.batch import Batch
+from cobotwire.capture.export.inputs import COMPRESSED, Input, Inputs
+from cobotwire.capture.export.opening import InputStream
+from cobotwire.capture.export.plan import ExportPlan
+from cobotwire.capture.export.sources import MAGIC, Source
+from cobotwire.capture.reader import is_capture
+from cobotwire.codec.stretches import Divider, decode_stretch, even_cuts
+from cobotwire.protocol.errors import UsageError
+
+# The bytes that a task decodes at a time.
+CHUNK = 16 << 20
+
+
+class Piece(NamedTuple):
+    """What one task reads: a part of raw bytes, or a whole input.
+
+    Attributes:
+        input: the input.
+        number: the number of the part, from 0 on.
+        size: the size of all parts but the last, in bytes; 0 if the input is not divided.
+    """
+
+    input: Input
+    number: int = 0
+    size: int = 0
+
+    @property
+    def bytes(self) -> int:
+        """The number of stored bytes; 0 if it is not known."""
+        total = self.input.size or 0
+        return min(self.size, total - self.number * self.size) if self.size else total
+
+    def batches(self, plan: ExportPlan, source: Source) -> Iterator[Batch]:
+        """Yield the chosen rows, and count them in the report of the source.
+
+        Raises:
+            UsageError, LinkError: as :meth:`Source.batches`; the input has become shorter.
+        """
+        if not self.size:
+            yield from source.batches(self.input)
+            return
+        codec = plan.editions.codec("")
+        with Stored(self.input) as stored:
+            cuts = even_cuts(stored.size, self.size)
+            stretch = Divider(codec, plan.direction, stored, cuts).stretch(self.number)
+            parts = decode_stretch(codec, plan.direction, stored, stretch, chunk=CHUNK)
+            yield from source.decoded(self.input, parts, first=self.number == 0)
+
+
+def divide(inputs: Inputs, size: int) -> tuple[Piece, ...]:
+    """Return the pieces of all inputs, in their order.
+
+    Raw bytes are divided. Recordings and compressed files are read whole, one task for each.
+
+    Raises:
+        UsageError: ``size`` is not positive, or an input cannot be opened.
+        LinkError: an input cannot be read.
+    """
+    if size < 1:
+        raise UsageError("piece_bytes", size, "1 and more")
+    return tuple(piece for input in inputs.files for piece in _pieces(input, size))
+
+
+def _pieces(input: Input, size: int) -> Iterator[Piece]:
+    if input.size is None or input.size <= size or not _is_raw(input):
+        yield Piece(input)
+        return
+    for number in range(-(-input.size // size)):
+        yield Piece(input, number, size)
+
+
+def _is_raw(input: Input) -> bool:
+    if input.url.endswith(tuple(COMPRESSED)):
+        return False
+    with closing(InputStream(input, lambda size: None)) as stream:
+        return not is_capture(stream.read(MAGIC))

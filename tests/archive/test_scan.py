@@ -1,0 +1,62 @@
+"""Queries over an archive without Dask: Arrow tables that threads make."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import duckdb
+import pytest
+
+from archive.captures import archive_in, counts, on_one_machine, rows
+from cobotwire import archive
+from cobotwire.archive import ThreadEngine
+from cobotwire.capture.export import Inputs
+from cobotwire.protocol.errors import UsageError
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Inputs:
+    return archive_in(tmp_path_factory.mktemp("captures"))
+
+
+def test_tables_hold_the_rows_of_an_export_in_their_order(inputs: Inputs, tmp_path: Path) -> None:
+    report = on_one_machine(tmp_path / "one", inputs, wide=True)
+    exported = rows(tmp_path / "one")["get_angles.reply"]
+    urls = [input.url for input in inputs.files]
+    scan = archive.scan(urls, "get_angles", piece_bytes=3001)
+    assert len(scan.pieces) > 10
+    table = scan.to_arrow(ThreadEngine(3))
+    assert table.schema == scan.schema
+    assert table.column_names == exported.column_names
+    for name in ("offset", "time", "j1", "j6"):
+        assert table.column(name).to_pylist() == exported.column(name).to_pylist()
+    assert set(table.column("robot").to_pylist()) == {"arm1", "arm2", "arm4", "arm5"}
+    scanned = counts(scan.report())
+    # A scan chooses one message; all others are counted.
+    assert scanned.pop("not_chosen") == report.rows.total() - report.rows["get_angles.reply"]
+    assert scanned["noise"] == counts(report)["noise"]
+    assert (scanned["bytes"], scanned["rejected"]) == (report.bytes, report.rejected)
+
+
+def test_table_answers_a_query(inputs: Inputs) -> None:
+    table = archive.scan(inputs.files[0].url, "get_angles", piece_bytes=10_000).to_arrow()
+    with duckdb.connect() as database:
+        database.register("angles", table)
+        found = database.sql("select count(*), max(j1) <= 160 from angles").fetchall()
+    assert found == [(2000, True)]
+
+
+def test_message_that_no_input_holds_has_an_empty_table(inputs: Inputs) -> None:
+    table = archive.scan(inputs.files[0].url, "get_encoders").to_arrow()
+    assert table.num_rows == 0
+    assert "offset" in table.column_names
+
+
+def test_message_that_the_edition_lacks_is_rejected(inputs: Inputs) -> None:
+    url = inputs.files[0].url
+    with pytest.raises(UsageError, match="did you mean get_angles"):
+        archive.scan(url, "get_angels")
+    with pytest.raises(UsageError, match="jog_stop has no reply"):
+        archive.scan(url, "jog_stop")
+    with pytest.raises(UsageError, match="no such file"):
+        archive.scan(f"{url}.bak", "get_angles")
