@@ -26,6 +26,7 @@ ROOMS = (
     "pymycobot",
     "simulator",
     "inspect",
+    "archive",
     "conformance",
     "cli",
 )
@@ -38,7 +39,7 @@ ONE_IMPORTER = {
     "matplotlib": ["inspect/plot/charts.py", "inspect/plot/pose.py"],
     "numpy": ["codec/columns.py"],
     "scipy": ["simulator/kinematics/refine.py"],
-    "pyarrow": ["codec/arrow", "capture/export/"],
+    "pyarrow": ["archive/scanning.py", "codec/arrow", "capture/export/"],
     "mcap": ["capture/export/formats/mcap_file.py"],
     "fsspec": ["capture/export/inputs.py", "capture/export/opening.py"],
     "pymycobot": ["conformance/codec/adapter/pymycobot.py"],

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from distributed import LocalCluster
+from distributed import Client, LocalCluster
 
 CREDENTIALS = {
     "AWS_ACCESS_KEY_ID": "test",
@@ -47,8 +47,16 @@ def _address(log: Path, server: subprocess.Popen[bytes]) -> str:
     return found[0]
 
 
+@pytest.fixture
+def cluster(processes: LocalCluster) -> LocalCluster:
+    """Wait until both workers run: an earlier test may have killed them."""
+    with Client(processes.scheduler_address) as client:
+        client.wait_for_workers(2, timeout=120)
+    return processes
+
+
 @pytest.fixture(scope="package")
-def cluster(bucket: str) -> Iterator[LocalCluster]:
+def processes(bucket: str) -> Iterator[LocalCluster]:
     """Start a Dask scheduler and two worker processes, which are reached over TCP."""
     with LocalCluster(
         n_workers=2,

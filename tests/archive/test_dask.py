@@ -52,6 +52,31 @@ def test_killed_workers_change_nothing_in_the_result(cluster: LocalCluster, tmp_
     assert len(many.files) == len([file for file in out.rglob("*") if file.is_file()])
 
 
+def test_task_that_kills_each_worker_is_an_error(cluster: LocalCluster, tmp_path: Path) -> None:
+    path = tmp_path / "arm.bin"
+    path.write_bytes(noisy_stream(1500))
+
+    def kill(size: int) -> None:
+        """Kill a worker; the scheduler gives up on the tasks that it had."""
+        if cluster.scheduler.allowed_failures:
+            cluster.scheduler.allowed_failures = 0
+            os.kill(next(iter(cluster.workers.values())).process.pid, signal.SIGKILL)
+
+    engine = DaskEngine(cluster.scheduler_address)
+    usual = cluster.scheduler.allowed_failures
+    inputs = Inputs.find([str(path)])
+    try:
+        with pytest.raises(LinkError, match="every worker that had this task died"):
+            archive.export(plan(tmp_path / "out"), inputs, engine, piece_bytes=2000, progress=kill)
+    finally:
+        cluster.scheduler.allowed_failures = usual
+    # The other worker removes what it was still writing.
+    deadline = time.monotonic() + 60
+    while list((tmp_path / "out").rglob("*.parquet")):
+        assert time.monotonic() < deadline, "files of a failed export remain"
+        time.sleep(0.05)
+
+
 def _signal(pids: set[int], number: int) -> None:
     for pid in pids:
         os.kill(pid, number)

@@ -9,7 +9,7 @@ rows nor the counts depend on the pieces or on the number of workers.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, get_args
 
 from cobotwire.archive.dask_engine import DaskEngine
 from cobotwire.archive.engine import Engine, ThreadEngine
@@ -18,12 +18,26 @@ from cobotwire.capture.export.extras import needed
 from cobotwire.codec.interface import Listening
 from cobotwire.editions import DEFAULT
 from cobotwire.inspect.exporting import InstalledEditions
+from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Direction
 
 if TYPE_CHECKING:
     from cobotwire.archive.scanning import Scan
 
-__all__ = ["PIECE_BYTES", "DaskEngine", "Engine", "ThreadEngine", "export", "scan"]
+__all__ = [
+    "ENGINES",
+    "PIECE_BYTES",
+    "DaskEngine",
+    "Engine",
+    "EngineName",
+    "ThreadEngine",
+    "choose_engine",
+    "export",
+    "scan",
+]
+
+EngineName = Literal["threads", "dask"]
+ENGINES: tuple[EngineName, ...] = get_args(EngineName)
 
 # The size of a piece. A task holds the rows of one, which take some four times as much memory.
 PIECE_BYTES = 64 << 20
@@ -103,3 +117,25 @@ def export(
     from cobotwire.archive import exporting
 
     return exporting.export(plan, inputs, engine or ThreadEngine(), piece_bytes, progress)
+
+
+def choose_engine(
+    name: EngineName | None, scheduler: str | None = None, workers: int | None = None
+) -> Engine | None:
+    """Return the engine of a name; None without a name.
+
+    Raises:
+        UsageError: a scheduler or a number of workers is given to an engine that takes none, or
+            Dask is not installed.
+    """
+    if scheduler is not None and name != "dask":
+        message = "a scheduler is that of a Dask cluster: --engine dask uses it"
+        raise UsageError("scheduler", scheduler, message=message)
+    if workers is not None and (name is None or scheduler is not None):
+        message = "the cluster has its own workers: leave out --workers"
+        if name is None:
+            message = "--workers needs --engine threads or --engine dask"
+        raise UsageError("workers", workers, message=message)
+    if name is None:
+        return None
+    return ThreadEngine(workers) if name == "threads" else DaskEngine(scheduler, workers)

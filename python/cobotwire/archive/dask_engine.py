@@ -42,7 +42,7 @@ class DaskEngine:
         """Yield the results.
 
         Raises:
-            LinkError: the scheduler does not answer.
+            LinkError: the scheduler does not answer, or a task kills each worker that gets it.
         """
         with self._client() as client:
             # The tasks write files, so that a second call must run them again.
@@ -50,10 +50,17 @@ class DaskEngine:
             numbers = {future.key: number for number, future in enumerate(futures)}
             try:
                 for future in self._distributed.as_completed(futures):
-                    yield numbers[future.key], future.result()
+                    yield numbers[future.key], self._result(future)
                     future.release()
             finally:
                 client.cancel(futures)
+
+    def _result(self, future: Any) -> Any:
+        try:
+            return future.result()
+        except self._distributed.KilledWorker as error:
+            detail = "every worker that had this task died: is their memory too small for a piece?"
+            raise LinkError(self._scheduler or "the Dask cluster", detail) from error
 
     @contextmanager
     def _client(self) -> Iterator[Any]:

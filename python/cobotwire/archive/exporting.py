@@ -26,6 +26,9 @@ from cobotwire.capture.export.report import Report
 from cobotwire.capture.export.sources import Source
 from cobotwire.protocol.errors import UsageError
 
+# The name of the file that is in the hidden folder while the export runs.
+RUNNING = "running"
+
 
 class Attempted(NamedTuple):
     """What an attempt wrote: its folder in the store, and its report with paths from there."""
@@ -46,13 +49,17 @@ class PieceExport(NamedTuple):
         # Another attempt may still be writing.
         folder = f"{self.folder}/{uuid4().hex}"
         report = Report()
-        with store_at(self.plan.output).filled(folder) as local:
+        store = store_at(self.plan.output)
+        with store.filled(folder) as local:
             plan = replace(self.plan, output=local)
             source = Source(plan, report, lambda size: None)
             with Output(plan) as output:
                 for batch in self.piece.batches(plan, source):
                     output.write(batch)
                 files = output.publish()
+        if not store.has(f"{self.folder}/{RUNNING}"):
+            # The export failed meanwhile, and removed the hidden folder before this was in it.
+            store.remove(self.folder)
         report.files = [
             file._replace(path=Path(file.path).relative_to(local).as_posix()) for file in files
         ]
@@ -110,6 +117,7 @@ def _hidden_folder(plan: ExportPlan, store: Store) -> Iterator[str]:
         )
         raise UsageError("output", plan.output, message=message)
     folder = f".cobotwire-{uuid4().hex[:12]}"
+    store.mark(f"{folder}/{RUNNING}")
     try:
         yield folder
     finally:

@@ -27,6 +27,18 @@ class Store(Protocol):
         """
         ...
 
+    def mark(self, name: str) -> None:
+        """Write an empty file.
+
+        Raises:
+            OutputError: the store does not take it.
+        """
+        ...
+
+    def has(self, name: str) -> bool:
+        """Return whether a file exists."""
+        ...
+
     def names(self) -> list[str]:
         """Return the names of all files except hidden ones."""
         ...
@@ -60,6 +72,17 @@ class _Folder:
     @contextmanager
     def filled(self, name: str) -> Iterator[str]:
         yield str(self._path / name)
+
+    def mark(self, name: str) -> None:
+        path = self._path / name
+        try:
+            path.parent.mkdir(parents=True)
+            path.touch()
+        except OSError as error:
+            raise output_error(path, error) from error
+
+    def has(self, name: str) -> bool:
+        return (self._path / name).exists()
 
     def names(self) -> list[str]:
         found = []
@@ -106,6 +129,17 @@ class _Objects:
                 except OSError as error:
                     raise self._failed(target, error) from error
 
+    def mark(self, name: str) -> None:
+        try:
+            self._store.makedirs(f"{self._path}/{name}".rpartition("/")[0], exist_ok=True)
+            self._store.pipe_file(f"{self._path}/{name}", b"")
+        except OSError as error:
+            raise self._failed(name, error) from error
+
+    def has(self, name: str) -> bool:
+        self._store.invalidate_cache()
+        return bool(self._store.exists(f"{self._path}/{name}"))
+
     def names(self) -> list[str]:
         # What another process wrote must be seen.
         self._store.invalidate_cache()
@@ -121,8 +155,7 @@ class _Objects:
             raise self._failed(to, error) from error
 
     def remove(self, name: str) -> None:
-        self._store.invalidate_cache()
-        if self._store.exists(f"{self._path}/{name}"):
+        if self.has(name):
             self._store.rm(f"{self._path}/{name}", recursive=True)
 
     def _failed(self, name: str, error: OSError) -> OutputError:

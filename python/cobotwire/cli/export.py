@@ -12,6 +12,8 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn
 
+from cobotwire import archive
+from cobotwire.archive import ENGINES, EngineName, choose_engine
 from cobotwire.capture.export import ExportPlan, FormatName, Inputs, write
 from cobotwire.capture.export.formats import format_of
 from cobotwire.capture.export.plan import Compression, Key
@@ -87,6 +89,22 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     show_default=True,
     help="How Parquet and Arrow files are compressed.",
 )
+@click.option(
+    "--engine",
+    type=click.Choice(ENGINES),
+    help="Export with many workers: threads, or the processes of a Dask cluster.",
+)
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="The scheduler of the Dask cluster; without it, a cluster is started here.",
+)
+@click.option(
+    "--workers",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="How many threads or processes to start; by default one for each processor.",
+)
 @click.option("--overwrite", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no report and no progress.")
@@ -104,6 +122,9 @@ def export(
     gap: float,
     partition: tuple[Key, ...],
     compression: Compression,
+    engine: EngineName | None,
+    scheduler: str | None,
+    workers: int | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -122,6 +143,12 @@ def export(
       cobotwire export captures/ -o angles.parquet --command get_angles --direction reply
       cobotwire export 'captures/*.pcapng.zst' -o lake/ --partition robot,command,day
       cobotwire export arm.pcapng -o arm.mcap --from 2026-11-23T14:00 --to 2026-11-23T15:00
+
+    With --engine, OUT is a folder or an fsspec URL, and the file of a message becomes one for each
+    64 MiB of raw bytes and one for each recording: get_angles.reply-00012.parquet.
+
+    \b
+      cobotwire export s3://lab/raw/ -o s3://lab/lake/ --engine dask --scheduler tcp://head:8786
 
     The report counts rows, noise, rejected frames, gaps, and inputs that end too early. An export
     that is interrupted leaves no file under its final name.
@@ -144,9 +171,13 @@ def export(
         compression,
         overwrite,
     )
+    chosen = choose_engine(engine, scheduler, workers)
     inputs = Inputs.find(input)
     with _progress(inputs, quiet) as advance:
-        report = write(plan, inputs, advance)
+        if chosen is None:
+            report = write(plan, inputs, advance)
+        else:
+            report = archive.export(plan, inputs, chosen, progress=advance)
     if as_json:
         print_line(json.dumps(report.as_dict()))
     elif not quiet:

@@ -9,9 +9,11 @@ from typing import Any, Self
 from cobotwire.capture.export.atomic_file import AtomicFile, output_error, sync_folder
 from cobotwire.capture.export.batch import Batch
 from cobotwire.capture.export.formats import FORMATS, Format, Sink
+from cobotwire.capture.export.inputs import is_url
 from cobotwire.capture.export.layout import Layout, empty_table
 from cobotwire.capture.export.plan import ExportPlan
 from cobotwire.capture.export.report import OutputFile
+from cobotwire.protocol.errors import UsageError
 
 # Rows wait in memory until they make a block of this size, so that files are read fast.
 BLOCK_ROWS = 1 << 20
@@ -77,6 +79,9 @@ class Output:
         Raises:
             UsageError: the plan cannot be written: see :class:`Layout`; a package is missing.
         """
+        if is_url(plan.output):
+            message = f"{plan.output} is a URL: only an export with --engine can write there"
+            raise UsageError("output", plan.output, message=message)
         self._plan, self._format = plan, FORMATS[plan.format]
         self._format.check_installed()
         self.layout = Layout(plan, self._format)

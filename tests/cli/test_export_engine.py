@@ -1,0 +1,61 @@
+"""``cobotwire export --engine``: threads and a Dask cluster, as a user starts them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+
+from archive.captures import noisy_stream
+from command_line import run_program
+
+
+@pytest.fixture
+def capture(tmp_path: Path) -> str:
+    path = tmp_path / "arm.bin"
+    path.write_bytes(noisy_stream(300))
+    return str(path)
+
+
+@pytest.mark.parametrize("engine", [["threads"], ["dask", "--workers", "1"]])
+def test_engine_writes_parts_and_reports_the_same(
+    capture: str, tmp_path: Path, engine: list[str]
+) -> None:
+    one = run_program("export", capture, "-o", str(tmp_path / "one"), "--json")
+    many = run_program(
+        "export", capture, "-o", str(tmp_path / "many"), "--json", "--engine", *engine
+    )
+    assert (many.returncode, many.stderr) == (one.returncode, one.stderr) == (1, "")
+    expected, found = _counts(one.stdout), _counts(many.stdout)
+    assert found == expected
+    part = tmp_path / "many" / "get_angles.reply-00000.parquet"
+    assert pq.ParquetFile(part).metadata.num_rows == 300
+
+
+def _counts(report: str) -> dict[str, Any]:
+    return {key: value for key, value in json.loads(report).items() if key != "files"}
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--scheduler", "tcp://127.0.0.1:1"], "a scheduler is that of a Dask cluster"),
+        (["--workers", "2"], "--workers needs --engine threads or --engine dask"),
+        (
+            ["--engine", "dask", "--scheduler", "tcp://127.0.0.1:1", "--workers", "2"],
+            "the cluster has its own workers",
+        ),
+        (["--output", "memory://out"], "only an export with --engine can write there"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(
+    capture: str, tmp_path: Path, words: list[str], sentence: str
+) -> None:
+    output = [] if "--output" in words else ["-o", str(tmp_path / "out")]
+    found = run_program("export", capture, *output, *words)
+    assert found.returncode == 2
+    assert sentence in found.stderr
+    assert not (tmp_path / "out").exists()
