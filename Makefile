@@ -14,7 +14,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots answers table fuzz figures clean faults conform attack robots layer demos
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -88,6 +88,9 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/pymycobot_session.py
 	$(BIN)/python bench/stepped_client.py
 
+bench-archive: .venv/.tools .venv/.native ## compare one and two workers on a raw file of 2 GB; takes minutes
+	$(BIN)/python bench/archive.py
+
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench
 	mkdir -p target
@@ -115,6 +118,9 @@ conform: .venv/.tools .venv/.native ## break subjects on purpose; count how many
 
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(ATTACK)
+
+archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
+	$(BIN)/python -m pytest tests/archive -o python_files='test_*.py on_*.py'
 
 robots: .venv/.tools .venv/.native ## compare every request of the maker's classes with ours
 	PYTHONPATH=tests:tests/peers $(BIN)/python -W ignore -m robots $(ROBOTS)

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from distributed import Client, LocalCluster
+
+from archive.dask_processes import DaskProcesses
 
 CREDENTIALS = {
     "AWS_ACCESS_KEY_ID": "test",
@@ -47,23 +48,18 @@ def _address(log: Path, server: subprocess.Popen[bytes]) -> str:
     return found[0]
 
 
-@pytest.fixture
-def cluster(processes: LocalCluster) -> LocalCluster:
-    """Wait until both workers run: an earlier test may have killed them."""
-    with Client(processes.scheduler_address) as client:
-        client.wait_for_workers(2, timeout=120)
-    return processes
-
-
 @pytest.fixture(scope="package")
-def processes(bucket: str) -> Iterator[LocalCluster]:
-    """Start a Dask scheduler and two worker processes, which are reached over TCP."""
-    with LocalCluster(
-        n_workers=2,
-        threads_per_worker=1,
-        processes=True,
-        host="127.0.0.1",
-        dashboard_address=None,
-        worker_dashboard_address=None,
-    ) as started:
+def processes(bucket: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskProcesses]:
+    """Start a Dask scheduler, which is reached over TCP."""
+    started = DaskProcesses(tmp_path_factory.mktemp("dask"))
+    try:
         yield started
+    finally:
+        started.stop()
+
+
+@pytest.fixture
+def cluster(processes: DaskProcesses) -> DaskProcesses:
+    """Start the workers, or those that an earlier test has killed."""
+    processes.replace_killed_workers()
+    return processes

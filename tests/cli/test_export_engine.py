@@ -1,4 +1,4 @@
-"""``cobotwire export --engine``: threads and a Dask cluster, as a user starts them."""
+"""``cobotwire export --engine``, as a user starts it; tests/archive/on_a_cluster.py has Dask."""
 
 from __future__ import annotations
 
@@ -20,13 +20,10 @@ def capture(tmp_path: Path) -> str:
     return str(path)
 
 
-@pytest.mark.parametrize("engine", [["threads"], ["dask", "--workers", "1"]])
-def test_engine_writes_parts_and_reports_the_same(
-    capture: str, tmp_path: Path, engine: list[str]
-) -> None:
+def test_threads_write_parts_and_report_the_same(capture: str, tmp_path: Path) -> None:
     one = run_program("export", capture, "-o", str(tmp_path / "one"), "--json")
     many = run_program(
-        "export", capture, "-o", str(tmp_path / "many"), "--json", "--engine", *engine
+        "export", capture, "-o", str(tmp_path / "many"), "--json", "--engine", "threads"
     )
     assert (many.returncode, many.stderr) == (one.returncode, one.stderr) == (1, "")
     expected, found = _counts(one.stdout), _counts(many.stdout)

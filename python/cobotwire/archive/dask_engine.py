@@ -79,7 +79,7 @@ class DaskEngine:
                 self._workers,
                 threads_per_worker=1,
                 processes=True,
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",
                 # An error is raised here; the workers need not print it, too.
                 silence_logs=logging.CRITICAL,
             ) as cluster,

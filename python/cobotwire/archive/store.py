@@ -40,7 +40,11 @@ class Store(Protocol):
         ...
 
     def names(self) -> list[str]:
-        """Return the names of all files except hidden ones."""
+        """Return the names of all files except hidden ones.
+
+        Raises:
+            OutputError: the store does not list them.
+        """
         ...
 
     def move(self, name: str, to: str) -> None:
@@ -144,7 +148,12 @@ class _Objects:
         # What another process wrote must be seen.
         self._store.invalidate_cache()
         start = len(self._path) + 1
-        found = (str(name)[start:] for name in self._store.find(self._path))
+        try:
+            found = [str(name)[start:] for name in self._store.find(self._path)]
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            raise self._failed("", error) from error
         return sorted(name for name in found if "/." not in f"/{name}")
 
     def move(self, name: str, to: str) -> None:
@@ -159,4 +168,4 @@ class _Objects:
             self._store.rm(f"{self._path}/{name}", recursive=True)
 
     def _failed(self, name: str, error: OSError) -> OutputError:
-        return OutputError(f"{self._url}/{name}", error.strerror or str(error))
+        return OutputError(f"{self._url}/{name}".rstrip("/"), error.strerror or str(error))
