@@ -89,7 +89,7 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/stepped_client.py
 
 bench-archive: .venv/.tools .venv/.native ## compare one and two workers on a raw file of 2 GB; takes minutes
-	$(BIN)/python bench/archive.py
+	$(BIN)/python bench/archive_workers.py
 
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench

@@ -134,6 +134,10 @@ class _Objects:
                     raise self._failed(target, error) from error
 
     def mark(self, name: str) -> None:
+        bucket = self._path.partition("/")[0]
+        if bucket and not self._store.exists(bucket):
+            # The store would create it, although its name is probably wrong.
+            raise OutputError(self._url, f"there is no bucket {bucket}")
         try:
             self._store.makedirs(f"{self._path}/{name}".rpartition("/")[0], exist_ok=True)
             self._store.pipe_file(f"{self._path}/{name}", b"")

@@ -4,7 +4,7 @@ Each run starts its own processes. The runs of one and two workers take turns, b
 machine would favour either. For each it prints the time from the first task to the last file, and
 the peak memory of the workers.
 
-    python bench/archive.py [--megabytes 2000] [--rounds 3]
+    python bench/archive_workers.py [--megabytes 2000] [--rounds 3]
 """
 
 from __future__ import annotations
@@ -41,6 +41,13 @@ def peak() -> int:
     return int(status.partition("VmHWM:")[2].split()[0]) * 1024
 
 
+def prepare() -> None:
+    """Import and load what an export needs."""
+    import cobotwire.archive.exporting  # noqa: F401
+
+    InstalledEditions("mycobot280").codec("")
+
+
 def measure(inputs: Inputs, workers: int, folder: Path, piece_bytes: int) -> Run:
     """Export with new worker processes; remove what they wrote."""
     plan = ExportPlan(str(folder / "out"), InstalledEditions("mycobot280"), direction="reply")
@@ -51,7 +58,7 @@ def measure(inputs: Inputs, workers: int, folder: Path, piece_bytes: int) -> Run
         Client(cluster) as client,
     ):
         # Importing is no part of the work.
-        client.run(InstalledEditions("mycobot280").codec, "")
+        client.run(prepare)
         engine = DaskEngine(cluster.scheduler_address)
         started = time.perf_counter()
         report = archive.export(plan, inputs, engine, piece_bytes=piece_bytes)
