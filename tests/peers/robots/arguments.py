@@ -11,6 +11,12 @@ Arguments = tuple[Any, ...]
 TEXTS = ("home", "secret words")
 
 
+class Named(tuple[Any, ...]):
+    """Arguments with the names that our method has for them; some can be given by name only."""
+
+    names: tuple[str, ...]
+
+
 def arguments_of(command: Command) -> Iterator[Arguments]:
     """Return arguments of a command, for each variant of its request, as a program gives them."""
     if command.request_text is not None:
@@ -27,7 +33,9 @@ def as_called(command: Command, variant: Variant, values: Arguments) -> Argument
     fields = {f.name: value for f, value in pairs if f.const is None and not f.counts}
     request = command.request_type.from_fields(fields)
     names = [name for name in command.argument_names if name in fields]
-    return tuple(plain(getattr(request, name)) for name in names)
+    found = Named(plain(getattr(request, name)) for name in names)
+    found.names = tuple(names)
+    return found
 
 
 def plain(value: Any) -> Any:

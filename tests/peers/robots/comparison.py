@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
+from inspect import Parameter
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
@@ -13,7 +15,7 @@ from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Command
 from pymycobot_classes import CLASSES, REJECTIONS, recording_client, written
 from pymycobot_ports import RecordingPort, ReplyingPort
-from robots.arguments import arguments_of
+from robots.arguments import Named, arguments_of
 from robots.robot import Call, Robot
 
 REJECTED = "rejected: "
@@ -132,9 +134,19 @@ def sent_by_us(robot: Robot, call: Call) -> bytes | str:
         client = recording_client("reference", edition.CLIENT)
         if call.address is not None:
             client = client.at(call.address)
-        return written(client, call.command, call.ours)
+        given = partial(getattr(client, call.command), **_by_name(client, call))
+        return written(given, "__call__", call.ours[: len(call.ours) - len(given.keywords)])
     except (UsageError, TypeError) as error:
         return f"{REJECTED}{error}"
+
+
+def _by_name(client: Any, call: Call) -> dict[str, Any]:
+    """Return the last arguments of a call, which our method takes by their names only."""
+    if not isinstance(call.ours, Named):
+        return {}
+    taken = inspect.signature(getattr(client, call.command)).parameters
+    pairs = zip(call.ours.names, call.ours, strict=True)
+    return {name: value for name, value in pairs if taken[name].kind is Parameter.KEYWORD_ONLY}
 
 
 def _edition_of(robot: Robot, command: str) -> str:

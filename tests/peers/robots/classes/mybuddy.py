@@ -17,6 +17,7 @@ _COORDS = [100, -50.5, 200, 90, -45.25, 10]
 _FIRST = "the first argument becomes the address, by a mistake of the maker; no robot has it"
 _NONE = "it fails before it sends: the maker's class takes the address from arguments that lack"
 _ROWS = "for the whole robot, the maker sends 14 positions and 14 speeds for 13 joints"
+_ONE_SPEED = "for the whole robot, the maker takes the speeds in a row only"
 _BYTE = "a word of the range is sent as one byte; the maker fails beyond 0..255"
 _FORM = "a variant of is_in_position in the maker's class"
 _WHOLE_ROBOT = frozenset(
@@ -71,12 +72,15 @@ ROBOT = Robot(
         Call("sync_send_coords", (2, _ZERO, 50), "send_coords", (_ZERO, 50, 0), "RIGHT"),
     ],
     rulings={
-        "set_encoders": [Ruling("fe fe 00 1e 3c", _ROWS)],
+        "set_encoders": [
+            Ruling("fe fe 00 1e 3c", _ROWS),
+            Ruling("'int' object is not subscriptable", _ONE_SPEED),
+        ],
     },
     driven={
         **DRIVEN,
         "send_angles": (_ANGLES, 50),
-        # For the whole robot, the maker's method takes speeds in a row only.
+        # One speed cannot be sent to the whole robot.
         "set_encoders": ([2048] * 6, [100] * 6),
     },
     kinds={"get_acceleration": list, "is_collision_on": list},
