@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import pyarrow.parquet as pq
 import pytest
 
-from capture.export.exporting import START, polled, recording, reply
+from capture.export.exporting import CODEC, START, polled, recording, reply
 from cli.test_missing_packages import run_without
 from cobotwire.capture import Packet
+from cobotwire.capture.export import OutputFile, Report
 from cobotwire.cli.app import app
+from cobotwire.cli.shared.export_report import report_lines
 from in_process import Ended, run
 from terminal import Terminal
 
@@ -46,6 +49,17 @@ def test_report_counts_what_was_written_and_what_was_lost(arm: Path, tmp_path: P
     assert "4 bytes of noise: 4 no-header" in lines
     assert "1 pause: 1 arm" in lines
     assert any(line.startswith(f"wrote {out}/is_power_on.reply.parquet: ") for line in lines)
+
+
+def test_report_of_many_messages_is_short(tmp_path: Path) -> None:
+    commands = [each.name for each in CODEC.table.commands if each.variants("request")][:30]
+    report = Report(rows=Counter({f"{name}.request": 2 for name in commands}))
+    report.files = [OutputFile(f"out/{name}.request.parquet", 2, 100) for name in commands]
+    lines = [*report_lines(report)]
+    assert lines[0] == "0 inputs, 0 bytes: 60 rows in 30 files"
+    assert len([line for line in lines if " x " in line]) == 20
+    assert "             and 10 other messages; --json counts each" in lines
+    assert lines[-1] == "wrote 10 other files: 1000 bytes; --json lists each"
 
 
 def test_json_report_is_on_standard_output(arm: Path, tmp_path: Path) -> None:
