@@ -38,9 +38,7 @@ def test_archive_in_an_object_store_is_read_and_written_there(bucket: str, tmp_p
 
 def test_bucket_that_does_not_exist_is_an_error(bucket: str, tmp_path: Path) -> None:
     inputs = archive_in(tmp_path)
-    with pytest.raises(
-        OutputError, match="s3://no-such-bucket/out: there is no bucket no-such-bucket"
-    ):
+    with pytest.raises(OutputError, match="there is no bucket no-such-bucket"):
         archive.export(plan("s3://no-such-bucket/out"), inputs)
 
 
