@@ -183,6 +183,30 @@ def test_speed_that_may_be_a_row_is_a_decision() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (
+            "from pymycobot import MyArmSocket as Arm\nmc = Arm(host)",
+            'from cobotwire import MyArm300 as Arm\nmc = Arm(f"socket://{host}:9000")',
+        ),
+        (
+            "from pymycobot import MyArm\nkind = MyArm\nmc = kind(port, '115200')",
+            "from cobotwire import MyArm300\nkind = MyArm300\nmc = kind(port, 115200)",
+        ),
+    ],
+)
+def test_name_that_the_program_gives_a_class_stays(before: str, after: str) -> None:
+    found = migrate(f"{before}\nmc.focus_servo(servo_id=1)\n")
+    assert found == (f"{after}\nmc.focus_servo(joint=1)\n", ())
+
+
+def test_name_of_several_classes_is_a_decision() -> None:
+    head = "from pymycobot import MyArm, MyCobot280\nkind = MyArm\nif old:\n    kind = MyCobot280\n"
+    [decision] = migrate(f"{head}mc = kind(port, '115200')\n").decisions
+    assert str(decision).startswith("5:6: kind stands for several classes")
+
+
 def test_home_of_a_socket_class_waits() -> None:
     head = "from pymycobot import MyCobotSocket\nmc = MyCobotSocket('10.0.0.2')\n"
     found = migrate(f"{head}mc.go_home()\n").text

@@ -181,10 +181,14 @@ def _ended_alike(theirs: Any, mine: Any) -> bool:
 
 
 def _sample(robot: Robot, stride: int, every: int) -> Iterator[Call]:
+    """Return calls of a robot: of a method at least one for each part that it can address."""
     offered = set(dir(class_of(robot)))
-    counts: dict[str, int] = {}
+    methods: dict[str, int] = {}
+    counts: dict[tuple[str, str | None], int] = {}
     for call in calls_of(robot):
-        count = counts[call.method] = counts.get(call.method, -1) + 1
-        chosen = count % stride == 0 and len(counts) % every == 0
+        index = methods.setdefault(call.method, len(methods) + 1)
+        place = (call.method, call.address)
+        count = counts[place] = counts.get(place, -1) + 1
+        chosen = count % stride == 0 and index % every == 0
         if call.method in offered and chosen and not call.why:
             yield call

@@ -62,5 +62,6 @@ NEVER_FAILED = (
 )
 HOME = "go_home waits, and its pose and speed depend on its arguments; use move_angles"
 OTHER_ROBOT = "the class is {} here; if the port is that of an arm on a body, write {} ({})"
+SEVERAL = "{} stands for several classes; write the port and the speed as our classes take them"
 TIMEOUT = "timeout was the time of one read of the port; ours limits the whole wait for a reply"
 UNKNOWN = "{name} may be an arm, whose class is not known here; the call is left as it is"

@@ -16,7 +16,8 @@ class Names(cst.CSTVisitor):
     """What the names of a program are.
 
     Attributes:
-        classes: classes of the library by the names that the program imports them as.
+        classes: classes of the library by the names that the program gives them.
+        several: names that stand for different classes.
         arms: variables and attributes (``self.mc``) that are assigned an arm, with its class.
         results: variables that are assigned the result of a call of an arm.
         lists: those of ``results`` that are used in a way that only a list allows.
@@ -24,6 +25,7 @@ class Names(cst.CSTVisitor):
 
     def __init__(self) -> None:
         self.classes: dict[str, str] = {}
+        self.several: set[str] = set()
         self.arms: dict[str, LibraryClass] = {}
         self.results: set[str] = set()
         self.lists: set[str] = set()
@@ -87,6 +89,8 @@ class Names(cst.CSTVisitor):
         other = get_full_name_for_node(value)
         if name and isinstance(value, cst.Name | cst.Attribute) and other in self.arms:
             self.arms[name] = self.arms[other]
+        if name and isinstance(value, cst.Name) and other in self.classes:
+            self._named(name, self.classes[other])
         if name is None or not isinstance(value, cst.Call):
             return
         called = get_full_name_for_node(value.func) or ""
@@ -94,6 +98,11 @@ class Names(cst.CSTVisitor):
             self.arms[name] = library()[self.classes[called]]
         elif called.rpartition(".")[0] in self.arms:
             self.results.add(name)
+
+    def _named(self, name: str, kind: str) -> None:
+        """Note a name that a program gives to a class."""
+        if self.classes.setdefault(name, kind) != kind:
+            self.several.add(name)
 
     def _changed(self, target: cst.CSTNode) -> None:
         if isinstance(target, cst.Subscript):

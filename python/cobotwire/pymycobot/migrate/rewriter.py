@@ -21,6 +21,7 @@ from cobotwire.pymycobot.migrate.decisions import (
     NO_COUNTERPART,
     OTHER_ROBOT,
     RESULTS,
+    SEVERAL,
     TIMEOUT,
     UNKNOWN,
     Decision,
@@ -115,6 +116,9 @@ class Rewriter(cst.CSTTransformer):
 
     def leave_Call(self, original_node: cst.Call, updated_node: cst.Call) -> cst.BaseExpression:
         name = get_full_name_for_node(original_node.func) or ""
+        if name in self.names.several:
+            self.decide(original_node, SEVERAL.format(name))
+            return updated_node
         if name in self.names.classes:
             return self._constructed(original_node, updated_node, self.names.classes[name])
         arm, _, method = name.rpartition(".")
@@ -162,7 +166,8 @@ class Rewriter(cst.CSTTransformer):
             self.decide(original, f"{kind.native} needs the port")
             return updated
         opened = socket_arguments if kind.opens == "socket" else serial_arguments
-        return updated.with_changes(func=cst.Name(kind.native), args=opened(place, speed))
+        # The name was changed where the library gave it; one that the program gives stays.
+        return updated.with_changes(args=opened(place, speed))
 
     def sleep(
         self, original: cst.Call, updated: cst.Call, kind: LibraryClass
