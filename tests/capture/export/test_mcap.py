@@ -8,12 +8,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import jsonschema
+import pyarrow as pa
 import pytest
 from mcap.reader import make_reader
 
 from capture.export.exporting import START, export, polled, recording, reply
 from cobotwire.capture import Packet
+from cobotwire.capture.export import ExportPlan, Message
+from cobotwire.capture.export.batch import Batch
+from cobotwire.capture.export.formats.mcap_file import open_sink
+from cobotwire.capture.export.tables import TIME
 from cobotwire.editions import load
+from cobotwire.inspect.exporting import InstalledEditions
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator.kinematics import flange, geometry_of
 
@@ -109,6 +115,19 @@ def test_arm_without_a_known_geometry_has_joint_states_only(tmp_path: Path) -> N
     export(tmp_path / "arm.mcap", path, format="mcap")
     topics = [each.topic for each in written(tmp_path / "arm.mcap")]
     assert sorted(topics) == ["/a/get_angles/reply", "/a/joint_states"]
+
+
+def test_values_that_json_lacks_are_hex_or_null(tmp_path: Path) -> None:
+    values = {"data": [b"\xfe\x01"], "force": [1.5, math.nan, -math.inf]}
+    table = pa.table({"time": pa.array([START], TIME), **{k: [v] for k, v in values.items()}})
+    plan = ExportPlan(str(tmp_path), InstalledEditions(), format="mcap")
+    with (tmp_path / "a.mcap").open("wb") as file:
+        sink = open_sink(file, None, plan)
+        sink.write([Batch(Message("measure", "reply"), "mycobot280", "arm", table)])
+        sink.close()
+    with (tmp_path / "a.mcap").open("rb") as file:
+        (message,) = [message for _, _, message in make_reader(file).iter_messages()]
+    assert json.loads(message.data) == {"data": ["fe01"], "force": [1.5, None, None]}
 
 
 def test_raw_bytes_have_no_times_for_an_mcap_file(tmp_path: Path) -> None:

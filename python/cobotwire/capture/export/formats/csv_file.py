@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from typing import Any, BinaryIO
 
 import pyarrow as pa
@@ -46,7 +47,7 @@ def _as_cells(column: Any) -> Any:
     if pa.types.is_binary(kind) or pa.types.is_large_binary(kind):
         return _texts(column, bytes.hex)
     if pa.types.is_nested(kind):
-        return _texts(column, json.dumps)
+        return _texts(column, partial(json.dumps, default=bytes.hex))
     return column
 
 

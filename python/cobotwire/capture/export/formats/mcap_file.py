@@ -7,6 +7,7 @@ Each message of each robot is a channel with JSON objects. The angles of the joi
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from heapq import merge
 from typing import Any, BinaryIO, NamedTuple
@@ -94,4 +95,17 @@ def open_sink(file: BinaryIO, schema: Any, plan: ExportPlan) -> McapSink:
 
 
 def _json(value: Any) -> bytes:
-    return json.dumps(value, default=bytes.hex).encode()
+    """Return a value as JSON; bytes are hex, and numbers that JSON lacks are null."""
+    try:
+        return json.dumps(value, default=bytes.hex, allow_nan=False).encode()
+    except ValueError:
+        return json.dumps(_finite(value), default=bytes.hex).encode()
+
+
+def _finite(value: Any) -> Any:
+    """Return a value with None for each number that is infinite or not a number."""
+    if isinstance(value, dict):
+        return {name: _finite(each) for name, each in value.items()}
+    if isinstance(value, list):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
