@@ -50,7 +50,8 @@ class Result:
 
     ``command`` is empty if the test case is about the line as a whole. ``case`` is the id of the
     test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
-    ``reason`` a sentence that states what was expected and what came.
+    ``reason`` a sentence that states what was expected and what came. ``further`` states the same
+    of the next failures of the test case on the command; ``reason`` counts them all.
     """
 
     case: str
@@ -60,6 +61,7 @@ class Result:
     evidence: tuple[Exchange, ...] = ()
     source: str = ""
     cause: Cause = Cause.NONE
+    further: tuple[str, ...] = ()
 
     @property
     def outcome(self) -> str:

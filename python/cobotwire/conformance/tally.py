@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from cobotwire.conformance.report import Cause, Exchange, Result, Verdict
@@ -23,6 +23,8 @@ class Observation(NamedTuple):
     command: str | None = None
 
 
+# How many failures after the first a result describes; it counts all of them.
+FURTHER = 7
 NOTHING_OBSERVED = "nothing was observed that could be judged"
 
 
@@ -30,13 +32,14 @@ NOTHING_OBSERVED = "nothing was observed that could be judged"
 class _Count:
     """What was observed of one test case on one command.
 
-    ``reason`` and ``evidence`` are those of the first failure.
+    ``reason`` and ``evidence`` are those of the first failure, ``further`` the next reasons.
     """
 
     observed: int = 0
     failed: int = 0
     reason: str = ""
     evidence: Evidence = ()
+    further: list[str] = field(default_factory=list)
     note: str = ""
     # Why there is no verdict, if nothing is observed.
     otherwise: str = ""
@@ -86,6 +89,9 @@ class Tally:
             count.failed += 1
             if count.failed == 1:
                 count.reason, count.evidence = complaint, evidence
+            elif len(count.further) < FURTHER:
+                at = f"at {evidence[-1].at:.3f} s: " if evidence else ""
+                count.further.append(at + complaint)
         return count.failed
 
     def note(self, case: TestCase, command: str, text: str) -> None:
@@ -117,8 +123,13 @@ class Tally:
         result = Result(case.id, command, Verdict.INCONCLUSIVE, count.excuse, (), source)
         if count.failed:
             often = f" ({count.failed} of {count.observed} failed)" if count.observed > 1 else ""
-            reason = count.reason + often
-            return replace(result, verdict=Verdict.FAIL, reason=reason, evidence=count.evidence)
+            return replace(
+                result,
+                verdict=Verdict.FAIL,
+                reason=count.reason + often,
+                evidence=count.evidence,
+                further=tuple(count.further),
+            )
         if count.excuse:
             verdict = Verdict.FAIL if count.cause is Cause.UNSTABLE else Verdict.INCONCLUSIVE
             return replace(result, verdict=verdict, cause=count.cause)

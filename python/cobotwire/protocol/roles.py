@@ -139,3 +139,21 @@ def gripper_request(table: Table, label: str, speed: int) -> Request[Any]:
 def place_role(label: str) -> Role:
     """Return the role of the query that reports where the arm is, in targets of a kind."""
     return "joints" if label == ANGLES else "coordinates"
+
+
+def starts_motion(table: Table, command: Command) -> bool:
+    """Return whether a command of the class motion may set the arm or its gripper in motion.
+
+    A stop, a pause and what discards targets never do; to resume continues only what was paused.
+    """
+    if command.safety != "motion" or command.role in ("stop", "halt"):
+        return False
+    back = command.read_by
+    return back is None or table.command(back.query).role != "paused"
+
+
+def is_of_gripper(table: Table, command: Command) -> bool:
+    """Return whether a command concerns a gripper, which has a servo of its own."""
+    gripper = table.find_role("gripper")
+    fields = {field.name for variant in command.request for field in variant.fields}
+    return (gripper is not None and command.family == gripper.family) or "gripper_id" in fields

@@ -67,6 +67,8 @@ Role = Literal[
     "version",
     "gripper",
     "motion ended",
+    "halt",
+    "light",
 ]
 
 

@@ -11,6 +11,9 @@ from cobotwire.protocol.table import Command, Table
 from mutation.client.mutant import PAUSE, ClientMutant, Sent
 from mutation.client.sessions import Session
 
+# Of the class motion, but a client may send them at any time: they start no motion.
+NO_MOTION = ("stop", "pause", "resume", "clear_queue", "jog_stop")
+
 
 def wrong_frames(session: Session) -> Iterator[ClientMutant]:
     """Yield requests with a wrong header, LEN, id or footer, or with a wrong size."""
@@ -93,9 +96,18 @@ def _echoes(command: Command) -> bool:
 
 
 def _unpowered(table: Table, sessions: list[Session]) -> Iterator[ClientMutant]:
-    off = next((s for s in sessions if s.command.name == "power_off"), None)
-    for session in sessions:
-        if off is not None and session.command.safety == "motion":
+    """Yield motions after a power-off, and motions of joints after all joints were released."""
+    moves = [
+        s for s in sessions if s.command.safety == "motion" and s.command.name not in NO_MOTION
+    ]
+    joints = [session for session in moves if "gripper" not in session.command.name]
+    for kind, name, after in (
+        ("unpowered", "power_off", moves),
+        ("released", "release_all_servos", joints),
+    ):
+        off = next((session for session in sessions if session.command.name == name), None)
+        for session in after if off else ():
+            assert off is not None
             script: tuple[ScriptLine, ...] = (off.script()[1], session.script()[1])
             writes = (Sent(PAUSE, off.frame), Sent(PAUSE, session.frame + session.text))
-            yield ClientMutant("unpowered", f"unpowered: {session.place}", script, writes)
+            yield ClientMutant(kind, f"{kind}: {session.place}", script, writes)

@@ -163,6 +163,8 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
         ),
         "gripper": ("it must take first a state, OPEN or CLOSE, then a speed", _grips),
         "stop": ("it must need no arguments", lambda command: () in command.requests),
+        "halt": ("its safety class must be motion", lambda command: command.safety == "motion"),
+        "light": ("its safety class must be setting", lambda command: command.safety == "setting"),
     }
 
 

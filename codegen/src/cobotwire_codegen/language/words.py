@@ -40,6 +40,8 @@ ROLES = {
     "error": "Reports why the arm did not move; 0 is no error.",
     "version": "Reports the version of the firmware.",
     "gripper": "Opens or closes the gripper, at a speed.",
+    "halt": "Ends a motion or discards targets, and starts no motion.",
+    "light": "Sets the colour of a light; nothing moves, and nothing need be restored.",
 }
 CONFIDENCE = ("high", "medium", "low")
 VERDICTS = ("consistent", "erratum", "label only", "text and byte disagree")

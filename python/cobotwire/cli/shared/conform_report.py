@@ -113,6 +113,8 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
     for result in report.failures:
         echo(f"{result.outcome.upper():8} {result.case:20} {result.command:24}")
         echo(f"         {printable(result.reason)}")
+        for also in result.further:
+            echo(f"         also, {printable(also)}")
         for exchange in result.evidence:
             data = printable(shown(report.kind, exchange)[:SHOWN])
             echo(f"         {exchange.at:9.4f} {exchange.direction} {data}")

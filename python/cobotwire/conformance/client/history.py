@@ -83,12 +83,14 @@ class Received:
 class History:
     """Everything that was received; ``powered`` is whether the arm has power.
 
+    ``released`` is whether none of its joints is held, although it has power.
     ``patience`` is in seconds: by the field notes, a reply that takes longer never comes.
     """
 
     codec: Codec
     patience: float = 0.03
     powered: bool = True
+    released: bool = False
     entries: deque[Received] = field(default_factory=lambda: deque(maxlen=REMEMBERED))
 
     @property

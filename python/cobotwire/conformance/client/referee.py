@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from cobotwire import codec as codecs
+from cobotwire.conformance.client.broken_frames import joined
 from cobotwire.conformance.client.delivery import Delivery, faulty_replies, require_possible
 from cobotwire.conformance.client.groups.frames import missing_text
 from cobotwire.conformance.client.history import History, Received
@@ -56,14 +57,17 @@ class Referee:
         require_possible(scenario, table)
         self._clock = clock
         self._started = clock()
-        self._arm = SimulatedArm(table, clock=clock, on_event=self._receive, acks=acks)
-        self._arm.state.powered = True
+        self._arm = SimulatedArm(
+            table, clock=clock, on_event=self._receive, acks=acks, powered=True
+        )
         codec = codecs.load(table)
         self._history = History(codec, patience)
         self._delivery = Delivery(scenario, codec, self._now)
         self._due = b""
         self._script = None if script is None else Script(codec, script)
         self._tally = Tally(sources)
+        # Noise that is not judged yet, because a frame in pieces may not be complete.
+        self._pieces: list[Received] = []
         self._last_byte: float | None = None
         self._arrival = 0.0
         self.requests = 0
@@ -100,6 +104,7 @@ class Referee:
         """Judge what is left after the client has disconnected, and close the report."""
         self._arrival = self._now()
         self._arm.flush()
+        self._judge_noise()
         if self._script is not None:
             for observation in self._script.end():
                 self._observe(observation)
@@ -120,6 +125,20 @@ class Referee:
     def _receive(self, event: DeviceEvent, reply: bytes) -> None:
         # Dated by arrival: the time that the arm takes to compute a reply must not count.
         now = Received(self._arrival, event, reply)
+        if now.noise is not None:
+            self._pieces.append(now)
+        else:
+            self._judge_noise()
+            self._judge(now)
+        self._due += self._delivery.plan(now)
+
+    def _judge_noise(self) -> None:
+        """Judge the noise so far, as whole broken frames."""
+        pieces, self._pieces = self._pieces, []
+        for whole in joined(pieces):
+            self._judge(whole)
+
+    def _judge(self, now: Received) -> None:
         for group in WITHOUT_SCRIPT:
             for observation in group.body(self._history, now):
                 self._observe(observation, now)
@@ -127,10 +146,11 @@ class Referee:
             for observation in self._script.judge(now):
                 self._observe(observation, now)
         self._history.entries.append(now)
-        self._history.powered = self._arm.state.powered
+        state = self._arm.state
+        self._history.powered = state.powered
+        self._history.released = state.powered and not any(state.enabled)
         if now.command is not None:
             self.requests += 1
-        self._due += self._delivery.plan(now)
 
     def _observe(self, observation: Observation, now: Received | None = None) -> None:
         case, complaint, command = observation

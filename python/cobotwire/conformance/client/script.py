@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.client.history import Received
+from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
@@ -68,6 +69,7 @@ class Script:
     def judge(self, now: Received) -> Iterator[Observation]:
         """Judge a frame by the line that is due; anything else is not judged."""
         if not now.is_frame:
+            yield from self._broken(now)
             return
         data = now.data
         if self._at < len(self._frames) and data == self._frames[self._at]:
@@ -77,9 +79,10 @@ class Script:
             return
         elif self._at < len(self._frames) and self._same_id(data):
             line = self._lines[self._at]
-            case, reason = difference(self._codec, line, self._frames[self._at], data)
+            found = differences(self._codec, line, self._frames[self._at], data)
             self._at += 1
-            yield Observation(case, f"{line.place}: {reason}", line.command.name)
+            for case, reason in found:
+                yield Observation(case, f"{line.place}: {reason}", line.command.name)
         else:
             yield from self._out_of_turn(now)
         self._taken = data
@@ -88,6 +91,26 @@ class Script:
         """Judge what was never sent."""
         yield from self._missing(len(self._lines))
         self._at = len(self._lines)
+
+    def _broken(self, now: Received) -> Iterator[Observation]:
+        """Judge a broken frame that is meant as the line that is due."""
+        if self._at == len(self._frames) or not self._is_meant(now.data):
+            return
+        line, right = self._lines[self._at], self._frames[self._at]
+        self._at += 1
+        self._taken = now.data
+        sent = f"expected {shown(right)}, got the broken frame {shown(now.data)}"
+        yield Observation(VARIANT, f"{line.place}: {sent}", line.command.name)
+
+    def _is_meant(self, data: bytes) -> bool:
+        """Return whether a broken frame has the id of the line that is due, or all but its id."""
+        frame, right = self._codec.table.frame, self._frames[self._at]
+        if len(data) < frame.head_size or not data.startswith(frame.header):
+            return False
+        id = frame.read_id(right)
+        return frame.read_id(data) == id or (
+            frame.check is None and frame.with_id(data, id) == right
+        )
 
     def _same_id(self, data: bytes) -> bool:
         read_id = self._codec.table.frame.read_id
@@ -108,42 +131,66 @@ class Script:
             yield from self._missing(later)
             self._at = later + 1
         else:
-            yield Observation(
-                NOTHING_ELSE, f"{now.data.hex(' ').upper()} is not in the script", now.name
-            )
+            yield Observation(NOTHING_ELSE, f"{shown(now.data)} is not in the script", now.name)
 
     def _missing(self, end: int) -> Iterator[Observation]:
         for line in self._lines[self._at : end]:
             yield Observation(ALL, f"{line.place}: never sent", line.command.name)
 
 
-def difference(codec: Codec, line: ScriptLine, right: bytes, given: bytes) -> tuple[TestCase, str]:
-    """Return the test case that a frame of the right command fails, and how."""
-    frames = f"expected {right.hex(' ').upper()}, got {given.hex(' ').upper()}"
+def differences(
+    codec: Codec, line: ScriptLine, right: bytes, given: bytes
+) -> list[tuple[TestCase, str]]:
+    """Return the test cases that a frame of the right command fails, each with all its values."""
+    frames = f"expected {shown(right)}, got {shown(given)}"
     if len(right) != len(given):
-        return VARIANT, frames
+        return [(VARIANT, frames)]
     data, sent = codec.table.frame.data(right), codec.table.frame.data(given)
     wrong = [
-        (place, place.bytes_of(data), place.bytes_of(sent))
+        _Wrong(place, place.bytes_of(data), place.bytes_of(sent))
         for place in _places(codec, line, right)
         if place.bytes_of(data) != place.bytes_of(sent)
     ]
     if not wrong:
-        return VALUE, frames
-    place, a, b = wrong[0]
-    expected, got = place.number.unpack(a), place.number.unpack(b)
-    words = f"{place.name}: expected {_shown(place, expected)}, got {_shown(place, got)}"
-    if all(theirs == ours[::-1] for _, ours, theirs in wrong):
-        return BYTE_ORDER, f"{words}, with its bytes swapped"
-    if len(wrong) > 1 and sorted(ours for _, ours, _ in wrong) == sorted(w[2] for w in wrong):
-        return ORDER, f"{words}, which belongs to another field"
-    return _of_number(expected, got), words
+        return [(VALUE, frames)]
+    values = "; ".join(map(str, wrong))
+    if all(each.given == each.right[::-1] for each in wrong):
+        return [(BYTE_ORDER, f"{values}: with the bytes swapped")]
+    if len(wrong) > 1 and sorted(w.right for w in wrong) == sorted(w.given for w in wrong):
+        return [(ORDER, f"{values}: the right values in another order")]
+    found: dict[TestCase, list[str]] = {}
+    for each in wrong:
+        found.setdefault(each.case, []).append(str(each))
+    return [(case, "; ".join(texts)) for case, texts in found.items()]
 
 
-def _of_number(expected: int, got: int) -> TestCase:
+class _Wrong(NamedTuple):
+    """A number that was sent with a wrong value."""
+
+    place: Place
+    right: bytes
+    given: bytes
+
+    @property
+    def case(self) -> TestCase:
+        """The test case that names the mistake."""
+        number = self.place.number
+        # A number without unit and scale selects something: a joint, a pin, a mode.
+        if not number.unit and not number.real:
+            return VALUE
+        return _of_number(number.unpack(self.right), number.unpack(self.given), number.real)
+
+    def __str__(self) -> str:
+        number = self.place.number
+        expected, got = (_shown(self.place, number.unpack(raw)) for raw in (self.right, self.given))
+        return f"{self.place.name}: expected {expected}, got {got}"
+
+
+def _of_number(expected: int, got: int, rounds: bool) -> TestCase:
+    """Return the test case for a wrong raw value; only a value with a scale is rounded."""
     if got == -expected:
         return SIGN
-    if abs(got - expected) == 1:
+    if rounds and abs(got - expected) == 1:
         return ROUNDED
     for scale in _SCALES:
         for factor in (scale, 1 / scale, -scale, -1 / scale):

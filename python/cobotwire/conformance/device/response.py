@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cobotwire.codec.interface import DecodedMessage, Frame
+from cobotwire.conformance.hex_text import shown
 from cobotwire.diagnose import DamagedFrame, Finding
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Reply
@@ -83,9 +84,3 @@ class Response:
         parts = [shown(reply.data) for reply in self.replies] + self.unexpected
         parts += [f"noise {shown(finding.data)}" for finding in self.noise]
         return "; ".join(parts) or "nothing"
-
-
-def shown(data: bytes, most: int = 40) -> str:
-    """Return bytes as hex, shortened if they are many."""
-    text = data[:most].hex(" ").upper()
-    return text if len(data) <= most else f"{text} ... ({len(data)} bytes)"

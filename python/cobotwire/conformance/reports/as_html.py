@@ -143,6 +143,8 @@ def _details(report: Report, cell: Cell) -> Element:
 
 def _result(report: Report, result: Result) -> Iterator[Element]:
     yield element("p", result.reason, class_="reason")
+    for also in result.further:
+        yield element("p", f"also, {also}", class_="faint")
     if result.source:
         yield element("p", "required by ", element("code", result.source), class_="faint")
     rows = [

@@ -72,6 +72,7 @@ def _result(result: Result) -> dict[str, Any]:
         "cause": result.cause.value,
         "reason": result.reason,
         "source": result.source,
+        "further": list(result.further),
         "evidence": [
             {"at": round(e.at, 6), "direction": e.direction, "data": e.data.hex(), "note": e.note}
             for e in result.evidence
@@ -92,7 +93,9 @@ def _read_result(item: dict[str, Any]) -> Result:
     verdict, cause = Verdict(item["verdict"]), Cause(item["cause"])
     names = ("case", "command", "reason", "source")
     case, command, reason, source = (_checked(item[name], str) for name in names)
-    return Result(case, command, verdict, reason, evidence, source, cause)
+    # Reports of earlier releases lack it.
+    further = tuple(_checked(each, str) for each in _checked(item.get("further", []), list))
+    return Result(case, command, verdict, reason, evidence, source, cause, further)
 
 
 def _seconds(value: Any) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from cobotwire.codec.interface import Codec, NoiseReason
+from cobotwire.conformance.client.broken_frames import described, meant
 from cobotwire.conformance.client.history import History, Received
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
@@ -25,25 +26,27 @@ TEXT_FOLLOWS = TestCase(
     "text-follows", "The text of a request follows it at once.", "spec: request text"
 )
 
-# For each reason of noise: the test case that the bytes fail, and a description of them.
-BY_REASON: Mapping[NoiseReason, tuple[TestCase, str]] = {
-    "bad-length": (LENGTH, "a header with a LEN that its command cannot have"),
-    "unknown-id": (ID, "a header with an id that the edition lacks"),
-    "bad-check": (FOOTER, "a frame with a wrong footer or check"),
-    "bad-address": (ADDRESS, "a header with an address that the edition lacks"),
-    "truncated": (WHOLE, "a frame that broke off"),
-    "no-header": (STRAY, "bytes outside any frame"),
+# For each reason of noise: the test case that the bytes fail.
+BY_REASON: Mapping[NoiseReason, TestCase] = {
+    "bad-length": LENGTH,
+    "unknown-id": ID,
+    "bad-check": FOOTER,
+    "bad-address": ADDRESS,
+    "truncated": WHOLE,
+    "no-header": STRAY,
 }
 
 
 def _framing(history: History, now: Received) -> Iterator[Observation]:
     """Judge noise by the reason why its bytes are not a frame."""
     if now.noise is None:
-        yield from (Observation(case) for case, _ in BY_REASON.values())
+        yield from (Observation(case) for case in BY_REASON.values())
         return
-    case, what = BY_REASON[now.noise.reason]
+    case = BY_REASON[now.noise.reason]
     if case is not STRAY or not _explained(history):
-        yield Observation(case, f"{what}: {now.data.hex(' ').upper()}")
+        commands = [] if case is STRAY else meant(history.codec.table, now.data)
+        name = commands[0].name if commands else ""
+        yield Observation(case, described(history.codec.table, now.noise), name)
 
 
 def _explained(history: History) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from cobotwire.conformance.client.history import History, Received
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
+from cobotwire.protocol.roles import is_of_gripper, starts_motion
 
 # Libraries that repeat a request do so within this time; people take longer.
 AGAIN_SECONDS = 2.0
@@ -15,7 +16,9 @@ SAFETY = "safety class: only a query may be sent twice"
 MOTION_RESENT = TestCase("motion-resent", "A motion is sent once.", SAFETY)
 CHANGE_RESENT = TestCase("change-resent", "Any other change is sent once.", SAFETY)
 POWERED = TestCase(
-    "motion-powered", "No motion is sent to an arm that is switched off.", "safety class: power"
+    "motion-powered",
+    "No motion is sent to an arm that is switched off, or with all its joints released.",
+    "safety class: power",
 )
 
 
@@ -35,10 +38,16 @@ def _resending(history: History, now: Received) -> Iterator[Observation]:
 
 
 def _power(history: History, now: Received) -> Iterator[Observation]:
-    """Judge a motion after the client itself has switched the arm off."""
-    if now.command is not None and now.command.safety == "motion":
-        off = "the arm was switched off and not on again"
-        yield Observation(POWERED, "" if history.powered else off)
+    """Judge a motion after the client itself has switched the arm off or released its joints."""
+    table = history.codec.table
+    if now.command is None or not starts_motion(table, now.command):
+        return
+    complaint = ""
+    if not history.powered:
+        complaint = "the arm was switched off and not on again"
+    elif history.released and not is_of_gripper(table, now.command):
+        complaint = "all joints were released, and none is held again"
+    yield Observation(POWERED, complaint)
 
 
 RESENDING = Group("resending", (MOTION_RESENT, CHANGE_RESENT), _resending)

@@ -11,7 +11,8 @@ from random import Random
 from cobotwire.conformance.device.groups.queries import is_query
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import requests
-from cobotwire.conformance.device.response import Response, shown
+from cobotwire.conformance.device.response import Response
+from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, FrameFormat, Table

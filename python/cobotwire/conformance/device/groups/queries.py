@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, requests
-from cobotwire.conformance.device.response import ReceivedReply, Response, shown
+from cobotwire.conformance.device.response import ReceivedReply, Response
+from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Field, Table
 

@@ -1,0 +1,119 @@
+"""Put the pieces of a broken frame together, and describe it: command, LEN, bytes.
+
+A framer refutes a broken frame byte by byte, so its bytes arrive as several pieces of noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from cobotwire.codec.interface import Noise
+from cobotwire.conformance.client.history import Received
+from cobotwire.conformance.hex_text import shown
+from cobotwire.protocol.table import Command, FrameFormat, Table
+from cobotwire.simulator.peer import IDLE_SECONDS
+
+# The bytes of a frame that are shown; the longest of most editions has fewer.
+MOST = 40
+
+
+def joined(pieces: Sequence[Received]) -> Iterator[Received]:
+    """Yield the broken frames and the stray bytes that consecutive pieces of noise make up."""
+    whole: Received | None = None
+    for piece in pieces:
+        if whole is not None and _continues(piece, whole):
+            whole = _longer(whole, piece.data)
+            continue
+        if whole is not None:
+            yield whole
+        whole = piece
+    if whole is not None:
+        yield whole
+
+
+def _continues(piece: Received, whole: Received) -> bool:
+    """Return whether noise belongs to the frame before it: it begins none, and comes at once."""
+    begins = piece.noise is None or piece.noise.reason != "no-header"
+    return not begins and piece.at - whole.at < IDLE_SECONDS
+
+
+def _longer(whole: Received, more: bytes) -> Received:
+    assert isinstance(whole.event, Noise), "only noise is joined"
+    return replace(whole, event=whole.event._replace(data=whole.event.data + more))
+
+
+def meant(table: Table, data: bytes) -> list[Command]:
+    """Return the commands that have the id of a broken frame."""
+    if len(data) < table.frame.head_size:
+        return []
+    id = table.frame.read_id(data)
+    return [command for command in table.commands if command.id == id and command.request]
+
+
+def described(table: Table, noise: Noise) -> str:
+    """Say what is wrong with a broken frame or stray bytes, and show all of the bytes."""
+    frame, data = table.frame, noise.data
+    commands = meant(table, data)
+    name = names(commands) or "the request"
+    text = marked(frame, data, end=noise.reason == "bad-check")
+    if noise.reason == "no-header":
+        return f"bytes outside any frame: {shown(data)}"
+    if len(data) < frame.head_size:
+        return f"a frame that breaks off, or bytes outside any frame: {shown(data)}"
+    length, id = frame.read_length(data), frame.read_id(data)
+    if noise.reason == "bad-length":
+        allowed = f"{name} has LEN {lengths(table, commands)}"
+        return f"LEN is {length:02X}, but {allowed}: {text}"
+    if noise.reason == "unknown-id":
+        return f"{table.edition} has no command with the id {id:02X}: {text}"
+    if noise.reason == "bad-address":
+        allowed = ", ".join(f"{address:02X}" for address in frame.addresses)
+        return f"{name}: {table.edition} has no such address (it has {allowed}): {text}"
+    if noise.reason == "truncated":
+        missing = length + frame.overhead - len(data)
+        return f"{name} breaks off: {missing} more bytes follow LEN {length:02X}: {text}"
+    return f"{name} does not end with {_right_end(frame, data)}: {text}"
+
+
+def _right_end(frame: FrameFormat, data: bytes) -> str:
+    """Return what must be at the place where LEN says that a frame ends, in words."""
+    total = frame.read_length(data) + frame.overhead
+    word = "the check" if frame.check else "the footer"
+    right = frame.end(data[: total - frame.check_size])
+    return f"{word} {shown(right)} after {total - frame.check_size} bytes"
+
+
+def lengths(table: Table, commands: Sequence[Command]) -> str:
+    """Return each LEN that requests of the commands may have, in words."""
+    allowed = {table.frame.length(v.size) for command in commands for v in command.request}
+    return " or ".join(f"{length:02X}" for length in sorted(allowed))
+
+
+def names(commands: Sequence[Command]) -> str:
+    """Return the names of commands that share an id, in words."""
+    return " or ".join(command.name for command in commands)
+
+
+def marked(frame: FrameFormat, data: bytes, *, end: bool = False) -> str:
+    """Return a frame in hex with LEN and id named; with ``end``, check and footer too."""
+    if len(data) < frame.head_size:
+        return shown(data)
+    marks = {
+        frame.length_at: (frame.length_number.width, "LEN"),
+        frame.id_at: (frame.id_number.width, "id"),
+    }
+    if frame.address_at is not None:
+        marks[frame.address_at] = (1, "address")
+    if end:
+        word = "check" if frame.check else "footer"
+        ends = frame.read_length(data) + frame.overhead
+        marks[max(frame.head_size, ends - frame.check_size)] = (frame.check_size, word)
+    parts, at = [], 0
+    while at < min(len(data), MOST):
+        width, word = marks.get(at, (1, ""))
+        text = shown(data[at : at + width])
+        parts.append(f"[{word} {text}]" if word else text)
+        at += width
+    more = f" ... ({len(data)} bytes)" if at < len(data) else ""
+    return " ".join(parts) + more

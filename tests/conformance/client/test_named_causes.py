@@ -1,0 +1,126 @@
+"""A failure of a client names its cause: the command, LEN, every wrong value, each occurrence.
+
+All bytes are written by hand, from the document and the list of today's firmware.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from cobotwire.conformance.report import Report, Result
+from conformance.client.test_cases import judged, line, spaced
+
+POWER_OFF, RELEASE_ALL = bytes.fromhex("FEFE0211FA"), bytes.fromhex("FEFE0213FA")
+# jog_increment: joint 1, 10 degrees, speed 50. set_gripper_value: 60 percent, speed 80.
+STEP, GRIP = bytes.fromhex("FEFE06330103E832FA"), bytes.fromhex("FEFE04673C50FA")
+
+
+def only(report: Report, case: str) -> Result:
+    [found] = [result for result in report.failures if result.case == case]
+    return found
+
+
+def test_wrong_len_names_command_allowed_len_and_whole_frame() -> None:
+    found = only(judged(spaced(bytes.fromhex("FEFE032000FA"))), "frame-length")
+    assert found.command == "get_angles"
+    assert "LEN is 03, but get_angles or get_radians has LEN 02" in found.reason
+    assert "FE FE [LEN 03] [id 20] 00 FA" in found.reason
+    assert found.evidence[-1].data == bytes.fromhex("FEFE032000FA")
+
+
+def test_unknown_id_is_shown_with_its_whole_frame() -> None:
+    found = only(judged(spaced(bytes.fromhex("FEFE049A0102FA"))), "frame-id")
+    assert "no command with the id 9A: FE FE [LEN 04] [id 9A] 01 02 FA" in found.reason
+
+
+@pytest.mark.parametrize(
+    ("sent", "case", "words"),
+    [
+        ("FEFE0220FB", "frame-footer", "the footer FA after 4 bytes: FE FE [LEN 02] [id 20] [foo"),
+        ("FEFE062101", "frame-whole", "send_angle breaks off: 4 more bytes follow LEN 06"),
+        ("010203", "stray-bytes", "bytes outside any frame: 01 02 03"),
+    ],
+)
+def test_other_broken_frames_are_shown_whole(sent: str, case: str, words: str) -> None:
+    assert words in only(judged(spaced(bytes.fromhex(sent))), case).reason
+
+
+def test_frame_in_pieces_is_one_occurrence_and_shown_whole() -> None:
+    pieces = [(1.2, bytes.fromhex("FEFE03")), (0.05, bytes.fromhex("2000")), (0.05, b"\xfa")]
+    found = only(judged(pieces), "frame-length")
+    assert "FE FE [LEN 03] [id 20] 00 FA" in found.reason
+    assert "of" not in found.reason.rpartition("FA")[2]
+
+
+def test_each_occurrence_is_described_and_all_are_counted() -> None:
+    frames = [bytes.fromhex(f"FEFE03200{at}FA") for at in range(9)]
+    found = only(judged(spaced(*frames)), "frame-length")
+    assert found.reason.endswith("00 FA (9 of 9 failed)")
+    assert len(found.further) == 7
+    assert "at 2.400 s: LEN is 03" in found.further[0]
+    assert found.further[0].endswith("01 FA")
+
+
+def test_scripted_call_with_a_wrong_len_is_not_called_missing() -> None:
+    script = [line("get_angles"), line("is_power_on")]
+    report = judged(spaced(bytes.fromhex("FEFE032000FA"), bytes.fromhex("FEFE0212FA")), script)
+    assert {result.case for result in report.failures} == {"frame-length", "sent-variant"}
+    found = only(report, "sent-variant")
+    assert (found.command, found.reason) == (
+        "get_angles",
+        "line 1: expected FE FE 02 20 FA, got the broken frame FE FE 03 20 00 FA",
+    )
+
+
+def test_scripted_call_with_an_unknown_id_is_found_by_the_rest_of_its_frame() -> None:
+    sent = bytes.fromhex("FEFE059A010203FA")
+    report = judged(spaced(sent), [line("set_color", 1, 2, 3)])
+    assert {result.case for result in report.failures} == {"frame-id", "sent-variant"}
+    assert only(report, "sent-variant").command == "set_color"
+
+
+def test_all_wrong_values_of_a_call_are_named() -> None:
+    # 1, 2, 3, 4, 5, 7 degrees at 31 percent, in place of 1, 2, 30, 4, 5, 6 at 30.
+    sent = bytes.fromhex("FEFE0F22006400C8012C019001F402BC1FFA")
+    report = judged(spaced(sent), [line("send_angles", [1, 2, 30, 4, 5, 6], 30)])
+    assert "angles.j3: expected 30 degrees, got 3 degrees" in only(report, "sent-scale").reason
+    others = only(report, "sent-value").reason
+    assert "angles.j6: expected 6 degrees, got 7 degrees" in others
+    assert "speed: expected 30 percent, got 31 percent" in others
+
+
+@pytest.mark.parametrize(
+    ("right", "sent"),
+    [
+        (line("send_angle", 1, 9.5, 40), "FEFE06210103B629FA"),  # speed 41
+        (line("send_angle", 3, 9.5, 40), "FEFE06210403B628FA"),  # joint 4
+        (line("set_fresh_mode", 1), "FEFE031600FA"),  # mode 0
+    ],
+)
+def test_wrong_number_without_a_scale_is_not_called_rounding(right: object, sent: str) -> None:
+    report = judged(spaced(bytes.fromhex(sent)), [right])  # type: ignore[list-item]
+    assert {result.case for result in report.failures} == {"sent-value"}
+
+
+@pytest.mark.parametrize("frame", ["29", "26", "28", "05"])
+@pytest.mark.parametrize("off", [POWER_OFF, RELEASE_ALL])
+def test_stop_pause_resume_and_clear_queue_are_legal_without_power(off: bytes, frame: str) -> None:
+    assert judged(spaced(off, bytes.fromhex(f"FEFE02{frame}FA"))).conforms
+
+
+@pytest.mark.parametrize("motion", [STEP, bytes.fromhex("FEFE02D4FA")])
+def test_motion_without_power_or_with_released_joints_fails(motion: bytes) -> None:
+    assert "switched off" in only(judged(spaced(POWER_OFF, motion)), "motion-powered").reason
+    assert "released" in only(judged(spaced(RELEASE_ALL, motion)), "motion-powered").reason
+
+
+def test_gripper_and_joints_that_are_held_again_may_move_after_a_release() -> None:
+    assert judged(spaced(RELEASE_ALL, GRIP)).conforms
+    focus = bytes.fromhex("FEFE035701FA")
+    assert judged(spaced(RELEASE_ALL, focus, STEP)).conforms
+
+
+@pytest.mark.parametrize("mode", range(3))
+def test_send_coords_accepts_each_mode_that_clients_send(mode: int) -> None:
+    sent = bytes.fromhex("FEFE102503E8000007D00000000000001E") + bytes([mode, 0xFA])
+    assert judged(spaced(sent)).conforms
