@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.device.connection import DeviceConnection
@@ -16,6 +16,9 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request, Result
 from cobotwire.protocol.table import Address, Command, Role, Table
 from cobotwire.session.request import EncodedRequest
+
+if TYPE_CHECKING:
+    from cobotwire.conformance.device.kept_state import KeptState
 
 Restore = Callable[[], object]
 
@@ -56,6 +59,12 @@ class Device:
         self.retried: set[str] = set()
         # For each command that may be acknowledged: whether it was.
         self.acknowledged: dict[str, bool] = {}
+        # The state before the first malformed request, while such requests are sent.
+        self.kept: KeptState | None = None
+        # Whether the device finds the next frame after a malformed request without a pause, as far
+        # as is known; and the kinds of malformed requests that were sent with pauses.
+        self.resyncs = True
+        self.tried_with_pauses: set[str] = set()
         # What to restore after a body, and what at the end of the run.
         self.restore_after_body: dict[str, Restore] = {}
         self.restore_at_end: dict[str, Restore] = {}

@@ -86,7 +86,9 @@ class Requester:
         if request.command.text is not None:
             self._await_text(response, request.command.text, start)
         elif request.command.requires_reply:
-            self._await_reply(response, start)
+            self._await_reply(response, start, request.command.deadline_ms / 1000)
+        elif request.command.ack:
+            self._await_reply(response, start, self._timing.silence)
         self.listen(response, start, self._after(response))
         return response
 
@@ -109,13 +111,15 @@ class Requester:
 
     def _after(self, response: Response) -> float:
         """Return how long to listen for a second reply, a late one, or one that is not due."""
-        if response.replies:
-            return self._timing.linger
-        replies = response.request.command.requires_reply
-        return self._timing.grace if replies else self._timing.silence
+        command = response.request.command
+        if command.requires_reply and not response.replies:
+            return self._timing.grace
+        # Without an acknowledgement, the silence is over by now.
+        waited = bool(response.replies) or command.ack
+        return self._timing.linger if waited else self._timing.silence
 
-    def _await_reply(self, response: Response, start: float) -> None:
-        end = start + response.request.command.deadline_ms / 1000
+    def _await_reply(self, response: Response, start: float, seconds: float) -> None:
+        end = start + seconds
         while not response.replies and (left := end - self._connection.now) > 0:
             self._sort(response, self._framer.feed(self._connection.receive(left)), start)
 

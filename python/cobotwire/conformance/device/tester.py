@@ -169,8 +169,9 @@ class Tester:
         return [self._excused(result) for result in probe.results(unsupported)]
 
     def _halt(self) -> None:
-        """Stop the arm. An arm that has not come to rest is not sent back."""
-        self.device.restore_at_end.clear()
+        """Stop the arm. An arm that has not come to rest is not sent back, and keeps its power."""
+        for name in ("pose", "power"):
+            self.device.restore_at_end.pop(name, None)
         stop = self.device.command("stop")
         if stop is not None and self.device.permissions.workspace:
             self.device.request(stop.request_type())

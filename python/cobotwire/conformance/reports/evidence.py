@@ -16,7 +16,7 @@ def shown(kind: Kind, exchange: Exchange) -> str:
 
 
 def evidence_lines(kind: Kind, result: Result) -> Iterator[str]:
-    """Yield a line for each further failure, and for each exchange: time, direction, bytes, note."""
+    """Yield a line for each further failure, then for each exchange: time, bytes, note."""
     for also in result.further:
         yield f"also, {printable(also)}"
     for exchange in result.evidence:

@@ -9,9 +9,14 @@ from collections.abc import Iterator
 from random import Random
 
 from cobotwire.conformance.device.groups.queries import is_query
+from cobotwire.conformance.device.malformed_sender import (
+    KEPT,
+    RECOVERS,
+    MalformedSender,
+    expect_one_reply,
+)
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import requests
-from cobotwire.conformance.device.response import Response
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
@@ -33,7 +38,6 @@ TOGETHER = TestCase("two-in-one-write", "Requests in one write are all replied t
 PIECES = TestCase(
     "request-in-pieces", "A request in pieces with pauses is replied to like a whole one."
 )
-RECOVERS = TestCase("recovers", "After a malformed request, the next good one is replied to.")
 
 
 def _is_framed_query(table: Table, command: Command) -> bool:
@@ -43,9 +47,9 @@ def _is_framed_query(table: Table, command: Command) -> bool:
 def _damaged(probe: Probe) -> None:
     """Send requests with a wrong LEN or footer, and requests that break off."""
     request = _sample(probe)
+    sender = MalformedSender(probe, request)
     for case, what, data in _damages(probe.device.table.frame, request.frame):
-        _expect_no_reply(probe, case, request, what, data)
-        _expect_recovery(probe, request, what)
+        sender.send(case, what, data)
 
 
 def _sample(probe: Probe) -> EncodedRequest:
@@ -69,29 +73,6 @@ def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, b
     yield CUT, "broken off after LEN", data[: frame.length_at + frame.length_number.width]
 
 
-def _expect_no_reply(
-    probe: Probe, case: TestCase, request: EncodedRequest, what: str, data: bytes
-) -> None:
-    """Send a malformed request; the firmware may send an error text, but no reply."""
-    device = probe.device
-    frame = device.table.frame
-    half = frame.read_length(data) + frame.overhead > len(data)
-    seconds = device.timing.idle if half else device.timing.silence
-    response = device.requester.send_bytes(request, data, what, seconds)
-    silent = not response.replies and not response.unexpected
-    probe.expect(case, silent, f"{what}: expected no reply; came {response.summary}")
-
-
-def _expect_recovery(probe: Probe, request: EncodedRequest, what: str) -> None:
-    response = probe.device.count(probe.device.requester.send(request))
-    _expect_one_reply(probe, RECOVERS, response, f"the good request after {what}")
-
-
-def _expect_one_reply(probe: Probe, case: TestCase, response: Response, what: str) -> None:
-    reason = f"{what}: expected one legal reply; came {response.summary}"
-    probe.expect(case, response.only_valid, reason)
-
-
 def _can_be_out_of_range(table: Table, command: Command) -> bool:
     """Return whether bytes can express arguments that the edition does not allow."""
     return _is_framed_query(table, command) and any(map(_forbidden, places(command.request[0])))
@@ -100,12 +81,11 @@ def _can_be_out_of_range(table: Table, command: Command) -> bool:
 def _out_of_range(probe: Probe) -> None:
     """Send arguments that the edition does not allow."""
     request = _sample(probe)
+    sender = MalformedSender(probe, request)
     for what, data in _wrong_values(probe.device.table, probe.command, request.frame):
         # Another constant may mean another command.
-        if probe.device.requester.is_legal(data):
-            continue
-        _expect_no_reply(probe, OUT_OF_RANGE, request, what, data)
-        _expect_recovery(probe, request, what)
+        if not probe.device.requester.is_legal(data):
+            sender.send(OUT_OF_RANGE, what, data)
 
 
 def _wrong_values(table: Table, command: Command, data: bytes) -> Iterator[tuple[str, bytes]]:
@@ -132,12 +112,14 @@ def _forbidden(place: Place) -> list[int]:
 def _crowded(probe: Probe) -> None:
     """Send legal requests after noise, in pieces, and several at once."""
     device, request = probe.device, _sample(probe)
+    sender = MalformedSender(probe, request)
     for name in NOISES:
         # The same pieces in each run, so that reports can be compared.
         noise = NOISE[name].draw(Random(name), device.table)  # noqa: S311
         data, what = noise + request.frame, "noise and a request"
         response = device.count(device.requester.send_instead(request, data, what))
-        _expect_one_reply(probe, NOISE_BEFORE, response, f"the request after {shown(noise)}")
+        expect_one_reply(probe, NOISE_BEFORE, response, f"the request after {shown(noise)}")
+        sender.expect_kept(what, data)
     _in_pieces(probe, request)
     _together(probe, request)
 
@@ -150,7 +132,7 @@ def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
         response = device.requester.send_bytes(request, piece, "a piece", pause)
         probe.expect(PIECES, not response.replies, f"half a request: came {response.summary}")
     response = device.count(device.requester.send_instead(request, frame[-1:], "the last piece"))
-    _expect_one_reply(probe, PIECES, response, "the request in pieces")
+    expect_one_reply(probe, PIECES, response, "the request in pieces")
 
 
 def _together(probe: Probe, request: EncodedRequest) -> None:
@@ -177,11 +159,11 @@ def _unknown_ids(probe: Probe) -> None:
     request = probe.device.requester.prepare(carrier.request_type())
     if table.frame.check is not None:
         return
+    sender = MalformedSender(probe, request)
     for id in _free_ids(table):
         for data in (b"", b"\x01"):
-            frame = table.frame.enclose(id, data)
-            _expect_no_reply(probe, UNKNOWN_ID, request, f"the unknown id {id:02X}", frame)
-    _expect_recovery(probe, request, "unknown ids")
+            sender.send(UNKNOWN_ID, f"the unknown id {id:02X}", table.frame.enclose(id, data))
+    sender.expect_all_kept()
 
 
 def _free_ids(table: Table) -> list[int]:
@@ -193,15 +175,23 @@ def _free_ids(table: Table) -> list[int]:
 
 DAMAGED = Group(
     "damaged requests",
-    (WRONG_LENGTH, WRONG_FOOTER, CUT, RECOVERS),
+    (WRONG_LENGTH, WRONG_FOOTER, CUT, RECOVERS, KEPT),
     _damaged,
     _is_framed_query,
     MALFORMED,
 )
 FORBIDDEN = Group(
-    "forbidden values", (OUT_OF_RANGE, RECOVERS), _out_of_range, _can_be_out_of_range, MALFORMED
+    "forbidden values",
+    (OUT_OF_RANGE, RECOVERS, KEPT),
+    _out_of_range,
+    _can_be_out_of_range,
+    MALFORMED,
 )
 CROWDED = Group(
-    "crowded requests", (NOISE_BEFORE, TOGETHER, PIECES), _crowded, _is_framed_query, MALFORMED
+    "crowded requests",
+    (NOISE_BEFORE, TOGETHER, PIECES, KEPT),
+    _crowded,
+    _is_framed_query,
+    MALFORMED,
 )
-UNKNOWN_IDS = Group("unknown ids", (UNKNOWN_ID, RECOVERS), _unknown_ids, permission=MALFORMED)
+UNKNOWN_IDS = Group("unknown ids", (UNKNOWN_ID, RECOVERS, KEPT), _unknown_ids, permission=MALFORMED)

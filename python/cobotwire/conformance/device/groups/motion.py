@@ -10,7 +10,7 @@ from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import Setting, settings_of
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.suite import Group, Selects, TestCase
-from cobotwire.protocol.messages import Request
+from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.roles import ANGLES, reached_query
 from cobotwire.protocol.table import Command, Role, Table
 
@@ -69,19 +69,20 @@ def _replays(probe: Probe) -> None:
     """Send what was read at another pose: the arm returns there, and reads the same."""
     mover = Mover(probe)
     for motion in settings_of(probe.device.table, probe.command):
+        # All parts, such as joints, are read at each pose: going there takes the most time.
+        mover.go(mover.pose(0))
+        first = {query: probe.device.require(query) for query in motion.queries}
+        mover.go(mover.pose(1))
+        second = {query: probe.device.require(query) for query in motion.queries}
         for query in motion.queries:
-            for target in _targets(probe, mover, motion, query):
+            for target in _targets(mover, motion, query, first[query], second[query]):
                 _replay(probe, mover, motion, query, target)
 
 
 def _targets(
-    probe: Probe, mover: Mover, motion: Setting, query: Request[Any]
+    mover: Mover, motion: Setting, query: Request[Any], first: Reply[Any], second: Reply[Any]
 ) -> list[Request[Any]]:
     """Return the request for the first pose; or samples, if the second is read as the same."""
-    mover.go(mover.pose(0))
-    first = probe.device.require(query)
-    mover.go(mover.pose(1))
-    second = probe.device.require(query)
     target = motion.again(query, first, mover.speed)
     if target != motion.again(query, second, mover.speed):
         return [target]

@@ -1,0 +1,196 @@
+"""The state that queries read, compared after each malformed request: nothing may change it.
+
+Reading everything each time would take minutes. So one value is read after each malformed request,
+in turns, and all values at the end. If one has changed, the requests since it was read last are
+sent again, one by one, to find the one that changes it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import zip_longest
+from typing import Any
+
+from cobotwire.conformance.device.device import Device
+from cobotwire.conformance.device.mover import give_power
+from cobotwire.conformance.device.read_back import Setting, has_fixed_effect, settings_of
+from cobotwire.conformance.device.requests import arguments_of
+from cobotwire.conformance.hex_text import shown
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.messages import Reply, Request
+from cobotwire.protocol.table import Command, Table
+
+
+@dataclass(frozen=True, slots=True)
+class Malformed:
+    """A malformed request that was sent: what it is, its bytes, and what sends it again."""
+
+    what: str
+    data: bytes
+    again: Callable[[], object]
+
+    def __str__(self) -> str:
+        return f"{self.what} ({shown(self.data)})"
+
+
+@dataclass(slots=True)
+class _Spot:
+    """A value that a query reads; ``set`` is the request that gives it that value, if any does.
+
+    ``since`` holds the malformed requests that were sent since it was read last.
+    """
+
+    query: Request[Any]
+    value: Reply[Any]
+    set: Request[Any] | None = None
+    since: list[Malformed] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        return f"{self.query.command}({arguments_of(self.query)})"
+
+
+class KeptState:
+    """Everything that is set and can be read, in the order in which it is compared."""
+
+    def __init__(self, device: Device) -> None:
+        """Read the state. What the run may set gets another value first, until the run ends.
+
+        A value that has its default would hide that the device returned to its defaults.
+        """
+        self._device = device
+        self._marked: list[str] = []
+        if "power" in device.permissions.classes:
+            give_power(device)
+        self._spots = [spot for query in _queries(device.table) for spot in self._read(query)]
+        self._turn = 0
+
+    def close(self) -> None:
+        """Restore what was set; the next malformed request begins a new comparison."""
+        for name in reversed(self._marked):
+            restore = self._device.restore_at_end.pop(name, None)
+            if restore is not None:
+                restore()
+        self._device.kept = None
+
+    def check(self, sent: Malformed) -> str:
+        """Compare the value whose turn it is; return what has changed, empty if nothing has."""
+        for spot in self._spots:
+            spot.since.append(sent)
+        if not self._spots:
+            return ""
+        self._turn = (self._turn + 1) % len(self._spots)
+        return self._compare(self._spots[self._turn])
+
+    def check_all(self) -> Iterator[str]:
+        """Compare all values; yield what has changed."""
+        for spot in self._spots:
+            changed = self._compare(spot)
+            if changed:
+                yield changed
+
+    def _read(self, queries: list[tuple[Setting | None, Request[Any]]]) -> Iterator[_Spot]:
+        for setting, query in queries:
+            before = self._device.read(query)
+            if before is None:
+                continue
+            mark = None if setting is None else self._mark(setting, query, before)
+            value = before if mark is None else self._device.read(query)
+            if value is not None:
+                yield _Spot(query, value, mark)
+
+    def _mark(
+        self, setting: Setting, query: Request[Any], before: Reply[Any]
+    ) -> Request[Any] | None:
+        """Give a value that the run may set another one; return the request that did it."""
+        if setting.command.safety != "setting" or "setting" not in self._device.permissions.classes:
+            return None
+        old = setting.again(query, before)
+        try:
+            # The last sample is the nearest to zero.
+            marks: list[Request[Any]] = [
+                sample for sample in reversed(setting.samples(query, before)) if sample != old
+            ]
+            self._device.requester.prepare(old)
+        except UsageError:
+            return None
+        if not marks:
+            return None
+        name = f"{setting.command.name}({arguments_of(query)})"
+        self._device.restore_at_end[name] = partial(self._device.request, old)
+        self._marked.append(name)
+        self._device.request(marks[0])
+        return marks[0]
+
+    def _compare(self, spot: _Spot) -> str:
+        now = self._device.read(spot.query)
+        sent, spot.since = spot.since, []
+        if now is None or now == spot.value:
+            return ""
+        change = f"expected {spot} to stay {_plain(spot.value)}; came {_plain(now)}"
+        cause = self._find(spot, sent)
+        if cause is None:
+            first, last = sent[0], sent[-1]
+            cause_text = f"after one of {len(sent)} requests from {first} to {last}"
+        else:
+            cause_text = f"after {cause}"
+        self._set_again(spot)
+        return f"{cause_text}: {change}"
+
+    def _find(self, spot: _Spot, sent: list[Malformed]) -> Malformed | None:
+        """Send requests again, the last one first, until one changes the value."""
+        for each in reversed(sent):
+            if not self._set_again(spot):
+                return sent[-1] if len(sent) == 1 else None
+            each.again()
+            if self._device.read(spot.query) != spot.value:
+                return each
+        return None
+
+    def _set_again(self, spot: _Spot) -> bool:
+        """Give a value back what the run has set; return whether it has it."""
+        if spot.set is not None:
+            self._device.request(spot.set)
+        now = self._device.read(spot.query)
+        if now == spot.value:
+            return True
+        if now is not None and spot.set is None:
+            # It is reported once; what comes later is compared with the new value.
+            spot.value = now
+        return False
+
+
+def _plain(reply: Reply[Any]) -> str:
+    return ", ".join(f"{name} {value}" for name, value in reply.fields.items())
+
+
+def _queries(table: Table) -> list[list[tuple[Setting | None, Request[Any]]]]:
+    """Return what to read: the first joint, pin or register of each query, then the second ones.
+
+    What a motion changes is left out, and the error register: a malformed request may set it.
+    """
+    found: dict[Request[Any], Setting | None] = {}
+    rows: dict[str, list[tuple[Setting | None, Request[Any]]]] = {}
+    for command in table.commands:
+        for setting, query in _read_by(table, command):
+            if found.setdefault(query, setting) is setting:
+                rows.setdefault(query.command, []).append((setting, query))
+    turns = zip_longest(*rows.values())
+    return [[each for each in turn if each is not None] for turn in turns]
+
+
+def _read_by(table: Table, command: Command) -> Iterator[tuple[Setting | None, Request[Any]]]:
+    back = command.read_by
+    if back is None:
+        return
+    query = table.command(back.query)
+    if query.role == "error" or query.text is not None:
+        return
+    if has_fixed_effect(command):
+        if command.safety != "persistent write" and not query.request[0].fields:
+            yield None, query.request_type()
+    elif command.safety != "motion":
+        for setting in settings_of(table, command):
+            for each in setting.queries:
+                yield setting, each

@@ -1,0 +1,110 @@
+"""Sends malformed requests, and judges that they get no reply and do no harm."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from cobotwire.conformance.device.kept_state import KeptState, Malformed
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.response import Response
+from cobotwire.conformance.suite import TestCase
+from cobotwire.protocol.table import Command
+from cobotwire.session.request import EncodedRequest
+
+RECOVERS = TestCase("recovers", "After a malformed request, the next good one is replied to.")
+KEPT = TestCase("state-kept", "A malformed request changes nothing that a query reads.")
+
+# Test cases with many values that are malformed in the same way.
+ONE_KIND = ("unknown-id", "out-of-range")
+
+
+class MalformedSender:
+    """Sends malformed requests that are made from one good request.
+
+    A correct device that finds the next frame at once needs no pauses. So a good query of another
+    command follows at once; if its reply is all that comes, nothing is wrong. Otherwise, and the
+    first time that something is wrong with a request in some way, the tester waits until the device
+    must have given up, as the test cases say.
+    """
+
+    def __init__(self, probe: Probe, request: EncodedRequest) -> None:
+        self._probe = probe
+        self._device = probe.device
+        self._request = request
+        if self._device.kept is None:
+            self._device.kept = KeptState(self._device)
+        self._kept = self._device.kept
+
+    def send(self, case: TestCase, what: str, data: bytes) -> None:
+        """Send a malformed request; the firmware may send an error text, but no reply."""
+        kind = case.id if case.id in ONE_KIND else what
+        known = kind in self._device.tried_with_pauses
+        if known and self._device.resyncs and self._harmless(what, data):
+            self._probe.expect(case, True, "")
+            self._probe.expect(RECOVERS, True, "")
+        else:
+            self._device.tried_with_pauses.add(kind)
+            passed = self._send_and_wait(case, what, data)
+            self._device.resyncs = self._device.resyncs and (not known or not passed)
+        self.expect_kept(what, data)
+
+    def _harmless(self, what: str, data: bytes) -> bool:
+        """Return whether all that comes is the reply to the next request."""
+        carrier = self._carrier()
+        if carrier is None:
+            return False
+        requester, linger = self._device.requester, self._device.timing.linger
+        response = requester.send_bytes(self._request, data, what, linger)
+        if response.replies or response.unexpected:
+            return False
+        return self._device.count(requester.send(carrier)).only_valid
+
+    def _send_and_wait(self, case: TestCase, what: str, data: bytes) -> bool:
+        """Send it alone, then the good request; return whether both pass."""
+        response = self._send_alone(what, data)
+        silent = not response.replies and not response.unexpected
+        self._probe.expect(case, silent, f"{what}: expected no reply; came {response.summary}")
+        good = self._device.count(self._device.requester.send(self._request))
+        expect_one_reply(self._probe, RECOVERS, good, f"the good request after {what}")
+        return silent and good.only_valid
+
+    def _send_alone(self, what: str, data: bytes) -> Response:
+        device, frame = self._device, self._device.table.frame
+        half = frame.read_length(data) + frame.overhead > len(data)
+        seconds = device.timing.idle if half else device.timing.silence
+        return device.requester.send_bytes(self._request, data, what, seconds)
+
+    def expect_kept(self, what: str, data: bytes) -> None:
+        """Compare one value of the state with what it was."""
+        sent = Malformed(what, data, partial(self._again, what, data))
+        changed = self._kept.check(sent)
+        self._probe.expect(KEPT, not changed, changed)
+
+    def expect_all_kept(self) -> None:
+        """Compare all values of the state; then restore what was set for the comparison."""
+        for changed in self._kept.check_all():
+            self._probe.expect(KEPT, False, changed)
+        self._probe.expect(KEPT, True, "")
+        self._kept.close()
+
+    def _again(self, what: str, data: bytes) -> None:
+        self._send_alone(what, data)
+        self._device.requester.send(self._request)
+
+    def _carrier(self) -> EncodedRequest | None:
+        """Return a query of another command, without arguments."""
+        for command in self._device.table.commands:
+            if _is_plain_query(command) and command.id != self._request.command.id:
+                return self._device.requester.prepare(command.request_type())
+        return None
+
+
+def _is_plain_query(command: Command) -> bool:
+    plain = command.safety == "query" and command.requires_reply and bool(command.reply)
+    return plain and not command.event and not command.request[0].fields
+
+
+def expect_one_reply(probe: Probe, case: TestCase, response: Response, what: str) -> None:
+    """Expect one legal reply, and nothing else."""
+    reason = f"{what}: expected one legal reply; came {response.summary}"
+    probe.expect(case, response.only_valid, reason)
