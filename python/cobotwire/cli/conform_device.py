@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import click
 from rich.console import Console
 from rich.progress import Progress
 
 from cobotwire import editions
-from cobotwire.cli.shared.arm_options import address_option, baudrate_option, parse_address
+from cobotwire.capture.file_errors import unusable_file
+from cobotwire.cli.shared.arm_options import address_option, baudrate_option
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.conform_report import (
     ReportFiles,
@@ -18,16 +20,16 @@ from cobotwire.cli.shared.conform_report import (
     exit_if_not_testable,
     report_options,
 )
+from cobotwire.conformance import Report
 from cobotwire.conformance.device import (
     PERMISSIONS,
     DeviceConnection,
-    Permissions,
+    Plan,
+    RunOptions,
     Step,
     Tester,
-    Timing,
-    parse_workspace,
-    words,
 )
+from cobotwire.conformance.reports import from_json
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Table
@@ -73,6 +75,18 @@ IN_MEMORY = "simulated arm in memory"
 @address_option
 @click.option("--linger", type=float, help="Milliseconds to listen after a reply [default: 4].")
 @click.option("--simulated", is_flag=True, help="Test a simulated arm instead of URL.")
+@click.option(
+    "--resume",
+    type=click.Path(),
+    metavar="REPORT",
+    help="Continue the run of a JSON report: run what it did not run, with its options.",
+)
+@click.option(
+    "--again",
+    type=click.Path(),
+    metavar="REPORT",
+    help="Repeat the run of a JSON report, with its options and in its order.",
+)
 @report_options
 @click.pass_obj
 def device(
@@ -88,6 +102,8 @@ def device(
     address: str | None,
     linger: float | None,
     simulated: bool,
+    resume: str | None,
+    again: str | None,
     files: ReportFiles,
 ) -> None:
     """Test the arm at URL against an edition.
@@ -99,38 +115,49 @@ def device(
     """
     with exit_if_not_testable():
         table = editions.load(edition).TABLE
-        for name, value, least in (("repeat", repeat, 1), ("retries", retries, 0)):
-            if value < least:
-                raise UsageError(name, value, f"a whole number from {least}")
-        permissions = Permissions.of(
-            words(allow),
-            joints=table.joints,
-            max_speed=max_speed,
-            workspace=None if workspace is None else parse_workspace(workspace, table.joints),
+        options = RunOptions(
+            allow, max_speed, workspace, repeat, retries, optional, address, linger, baudrate
         )
-        names = frozenset(table.command(name).name for name in words(optional))
-        timing = Timing() if linger is None else Timing(linger=linger / 1000)
-        with _connection(table, port, simulated, baudrate) as connection:
-            tester = Tester(
-                connection,
-                table,
-                permissions=permissions,
-                sources=spec_lines(edition),
-                timing=timing,
-                repeat=repeat,
-                retries=retries,
-                optional=names,
-                address=None if address is None else parse_address(address),
-            )
-            _run(tester)
+        plan = Plan()
+        if resume is not None or again is not None:
+            earlier = _earlier(resume, again, options, edition)
+            options = RunOptions.of_report(earlier.options)
+            plan = Plan(earlier, resume=resume is not None)
+        options.validate(table)
+        with _connection(table, port, simulated, options.baudrate) as connection:
+            tester = options.tester(connection, table, spec_lines(edition))
+            _run(tester, plan)
     conclude(tester.report, files)
 
 
-def _run(tester: Tester) -> None:
+def _earlier(resume: str | None, again: str | None, given: RunOptions, edition: str) -> Report:
+    """Return the report to continue or to repeat.
+
+    Raises:
+        UsageError: its file is no report of the edition, or options are given in addition.
+    """
+    name = "--again" if resume is None else "--resume"
+    path = again if resume is None else resume
+    if path is None or (resume is not None and again is not None):
+        raise UsageError("again", again, message="give either --resume or --again, not both")
+    if given != RunOptions():
+        names = ", ".join(f"--{each.replace('_', '-')}" for each in given.for_report())
+        raise UsageError("options", message=f"{name} uses the options of the report: omit {names}")
+    try:
+        report = from_json(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeError) as error:
+        raise unusable_file(name.removeprefix("--"), path, error) from error
+    if report.edition != edition:
+        message = f"{path} is about the edition {report.edition}; add --edition {report.edition}"
+        raise UsageError("edition", edition, message=message)
+    return report
+
+
+def _run(tester: Tester, plan: Plan) -> None:
     """Run with a progress bar; if the run is interrupted, the report holds what was tested."""
     try:
         with _progress() as show_step:
-            tester.run(show_step)
+            tester.run(show_step, plan)
     except KeyboardInterrupt:
         click.echo("interrupted: the arm was stopped, and its settings were restored", err=True)
     except LinkError as error:

@@ -27,6 +27,8 @@ class Cause(StrEnum):
     NOT_PERMITTED = "not permitted"
     # Inconclusive: the subject lacks what the test case is about, or is in the wrong state.
     NOT_SUPPORTED = "not supported"
+    # Inconclusive: the run ended before.
+    NOT_RUN = "not run"
     # Fail: repetitions of the same test case differ.
     UNSTABLE = "unstable"
 
@@ -51,7 +53,8 @@ class Result:
     ``command`` is empty if the test case is about the line as a whole. ``case`` is the id of the
     test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
     ``reason`` a sentence that states what was expected and what came. ``further`` states the same
-    of the next failures of the test case on the command; ``reason`` counts them all.
+    of the next failures of the test case on the command; ``reason`` counts them all. ``group`` is
+    the group of test cases that was run; empty if the subject's groups are judged together.
     """
 
     case: str
@@ -62,6 +65,7 @@ class Result:
     source: str = ""
     cause: Cause = Cause.NONE
     further: tuple[str, ...] = ()
+    group: str = ""
 
     @property
     def outcome(self) -> str:
@@ -75,7 +79,11 @@ def _now() -> str:
 
 @dataclass(slots=True)
 class Report:
-    """The results of a run. ``finished`` is False until the run has reached its end."""
+    """The results of a run, in the order in which they were found.
+
+    ``finished`` is False until the run has reached its end; ``stopped`` says why it ended before.
+    ``options`` are those of the command line, without the subject: a run is repeated with them.
+    """
 
     kind: Kind
     edition: str
@@ -83,6 +91,8 @@ class Report:
     started: str = field(default_factory=_now)
     firmware: str = ""
     finished: bool = False
+    stopped: str = ""
+    options: dict[str, str] = field(default_factory=dict)
     results: list[Result] = field(default_factory=list)
     reply_seconds: dict[str, list[float]] = field(default_factory=dict)
     deadline_seconds: dict[str, float] = field(default_factory=dict)

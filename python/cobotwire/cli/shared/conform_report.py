@@ -124,4 +124,5 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
         f"{printable(report.subject)}, edition {report.edition}: {summary or 'nothing was tested'}"
     )
     if not report.finished:
-        echo("The run was interrupted before its end.")
+        why = f": {printable(report.stopped)}" if report.stopped else ""
+        echo(f"The run ended before its end{why}.")

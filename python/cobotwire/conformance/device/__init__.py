@@ -1,6 +1,7 @@
 """Test whether a device conforms to an edition: test cases for its commands, over a transport."""
 
 from cobotwire.conformance.device.connection import DeviceConnection
+from cobotwire.conformance.device.options import RunOptions
 from cobotwire.conformance.device.permissions import (
     ALL_PERMISSIONS,
     PERMISSIONS,
@@ -8,9 +9,10 @@ from cobotwire.conformance.device.permissions import (
     parse_workspace,
     words,
 )
+from cobotwire.conformance.device.plan import Plan, Step
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
-from cobotwire.conformance.device.tester import Step, Tester
+from cobotwire.conformance.device.tester import Tester
 
 __all__ = [
     "ALL_PERMISSIONS",
@@ -18,6 +20,8 @@ __all__ = [
     "SUITE",
     "DeviceConnection",
     "Permissions",
+    "Plan",
+    "RunOptions",
     "Step",
     "Tester",
     "Timing",

@@ -22,12 +22,19 @@ if TYPE_CHECKING:
 
 Restore = Callable[[], object]
 
+# After so many queries in a row without any reply, another query shows whether the device is there;
+# it is sent so often.
+SILENT, PINGS = 3, 2
 # How often a text is requested at most, until two replies are the same.
 TEXT_ATTEMPTS = 5
 
 
 class EnoughFailures(Exception):
     """A body has failed so often that the rest of it would show nothing new."""
+
+
+class NoMoreReplies(Exception):
+    """The device has stopped replying to queries that it replied to before, or never replied."""
 
 
 class NotSupported(Exception):
@@ -55,6 +62,9 @@ class Device:
         self.retries = retries
         # Reply times in seconds, by command.
         self.reply_seconds: dict[str, list[float]] = {}
+        # How many queries in a row had no reply, and the last query that had one.
+        self._silent = 0
+        self._replied: EncodedRequest | None = None
         # Commands that were replied to only when they were sent again.
         self.retried: set[str] = set()
         # For each command that may be acknowledged: whether it was.
@@ -65,6 +75,8 @@ class Device:
         # as is known; and the kinds of malformed requests that were sent with pauses.
         self.resyncs = True
         self.tried_with_pauses: set[str] = set()
+        # The poses from which the arm has moved when it was sent a little way, by their index.
+        self.preferred_poses: list[int] = []
         # What to restore after a body, and what at the end of the run.
         self.restore_after_body: dict[str, Restore] = {}
         self.restore_at_end: dict[str, Restore] = {}
@@ -102,7 +114,31 @@ class Device:
         command = response.request.command
         if command.requires_reply and response.valid is not None:
             self.reply_seconds.setdefault(command.name, []).append(response.valid.seconds)
+        if response.replies or response.others or response.findings:
+            self._silent = 0
+            plain = command.safety == "query" and command.text is None
+            self._replied = response.request if plain and response.valid else self._replied
+        elif command.requires_reply:
+            self._silent += 1
+            if self._silent >= SILENT:
+                self._expect_alive(response.request)
         return response
+
+    def _expect_alive(self, request: EncodedRequest) -> None:
+        """Repeat the last query that was replied to, or this one if none was.
+
+        Raises:
+            NoMoreReplies: nothing comes.
+        """
+        query = self._replied or request
+        for _ in range(PINGS):
+            response = self.requester.send(query)
+            if response.replies or response.others or response.findings:
+                self._silent = 0
+                return
+        calls = f"{SILENT} queries in a row, nor to {self.requester.describe(query)}"
+        since = "which it replied to before" if self._replied else "sent again"
+        raise NoMoreReplies(f"the device does not reply to {calls}, {since}")
 
     def read(self, query: Request[Result]) -> Reply[Result] | None:
         """Return the valid reply to a query; None if none came."""
@@ -154,7 +190,7 @@ class Device:
         while what:
             name = next(reversed(what))
             # The old value may be one that cannot be sent; the body may have failed too often.
-            with suppress(UsageError, EnoughFailures):
+            with suppress(UsageError, EnoughFailures, NoMoreReplies):
                 what[name]()
             what.pop(name, None)
 

@@ -65,9 +65,15 @@ class Probe:
 
     def not_permitted(self, missing: str) -> list[Result]:
         """Return the results of a body that was not run for lack of permission."""
+        return self._without_verdict(Cause.NOT_PERMITTED, f"It needs permission: {missing}.")
+
+    def not_run(self, reason: str) -> list[Result]:
+        """Return the results of a body that was not run, because the run ended before."""
+        return self._without_verdict(Cause.NOT_RUN, reason)
+
+    def _without_verdict(self, cause: Cause, reason: str) -> list[Result]:
         for case in self._tally.cases:
-            reason = f"It needs permission: {missing}."
-            self._tally.excuse(case, self._name, Cause.NOT_PERMITTED, reason)
+            self._tally.excuse(case, self._name, cause, reason)
         return self._tally.results()
 
     def _evidence(self) -> Evidence:

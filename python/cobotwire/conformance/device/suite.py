@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cobotwire.conformance.device.groups import (
     agreement,
+    at_rest,
     calibration,
     changes,
     gripping,
@@ -13,6 +14,7 @@ from cobotwire.conformance.device.groups import (
     motion,
     queries,
     queueing,
+    references,
     settings,
     switching,
 )
@@ -23,11 +25,16 @@ SUITE: Suite[Body] = Suite(
     "device",
     (
         queries.QUERIES,
+        at_rest.GEOMETRIES,
+        at_rest.REACHED_AT_REST,
+        at_rest.JOINT_LIMITS,
         malformed.DAMAGED,
         malformed.FORBIDDEN,
         malformed.CROWDED,
         malformed.UNKNOWN_IDS,
         settings.SETTINGS,
+        references.REFERENCES,
+        switching.LIGHTS,
         motion.POSES,
         motion.JOINTS,
         motion.REPLAYS,

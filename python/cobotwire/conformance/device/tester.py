@@ -4,35 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.conformance.device.connection import DeviceConnection
-from cobotwire.conformance.device.device import Device, EnoughFailures, NotSupported
+from cobotwire.conformance.device.device import (
+    Device,
+    EnoughFailures,
+    NoMoreReplies,
+    NotSupported,
+)
 from cobotwire.conformance.device.permissions import Permissions
-from cobotwire.conformance.device.probe import Body, Probe, needed
+from cobotwire.conformance.device.plan import Plan, Step
+from cobotwire.conformance.device.probe import Probe, needed
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.report import Cause, Report, Result, Verdict
-from cobotwire.conformance.suite import Group
 from cobotwire.conformance.tally import Tally, merged
 from cobotwire.protocol.addresses import find_address
-from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Command, Table
+from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.protocol.table import Table
 
-Progress = Callable[["Step", int, int], None]
-
-
-class Step(NamedTuple):
-    """A group and the command that it runs for; None: the line as a whole."""
-
-    group: Group[Body]
-    command: Command | None
-
-    @property
-    def name(self) -> str:
-        """The command and the group, for people."""
-        return f"{self.command.name if self.command else 'the line'}: {self.group.name}"
+Progress = Callable[[Step, int, int], None]
 
 
 class Tester:
@@ -78,6 +70,8 @@ class Tester:
         self._repeat = repeat
         self._optional = optional
         self._sources = sources
+        # Why the run ends before its end; empty: it does not.
+        self._ended = ""
         self.device = Device(
             connection,
             codecs.load(table),
@@ -102,26 +96,47 @@ class Tester:
                 if not command.event and group.selects(self.table, command):
                     yield Step(group, command)
 
-    def run(self, progress: Progress | None = None) -> Report:
+    def run(self, progress: Progress | None = None, plan: Plan | None = None) -> Report:
         """Run everything that is permitted; restore all changes, however the run ends.
+
+        What is not run, because the run ends before, is reported as such. ``plan`` takes the order,
+        and perhaps results, from an earlier report; left out: everything is run.
 
         Raises:
             LinkError: the connection is lost; the report holds what was found until then.
         """
-        steps = list(self.steps())
+        plan = plan or Plan()
+        steps = plan.ordered(list(self.steps()))
+        done = 0
         try:
             self._read_version()
-            for index, step in enumerate(steps):
+            for step in steps:
                 if progress is not None:
-                    progress(step, index, len(steps))
-                self.report.results += self.results(step)
+                    progress(step, done, len(steps))
+                self.report.results += plan.results(step) or self.results(step)
+                done += 1
+                if self._ended:
+                    break
         except KeyboardInterrupt:
+            self._ended = "the run was interrupted"
             self._halt()
             raise
+        except LinkError as error:
+            self._ended = str(error)
+            raise
         finally:
-            self.end()
-        self.report.finished = True
+            self._close(steps[done:])
+        self.report.finished = not self._ended
         return self.report
+
+    def _close(self, left: list[Step]) -> None:
+        """Restore what was changed, and report what was not run."""
+        try:
+            self.end()
+        finally:
+            self.report.stopped = self._ended
+            for step in left:
+                self.report.results += self.results_without_run(step)
 
     def end(self) -> None:
         """Restore what is still changed; then what was changed for the whole run: power and pose.
@@ -143,9 +158,16 @@ class Tester:
     def results(self, step: Step) -> list[Result]:
         """Run one step as often as the run repeats steps."""
         missing = self.missing(step)
-        if missing:
-            return self._probe(step).not_permitted(missing)
-        return merged([self._run_once(step) for _ in range(self._repeat)])
+        if missing or self._ended:
+            return self.results_without_run(step)
+        found = merged([self._run_once(step) for _ in range(self._repeat)])
+        return [replace(result, group=step.group.name) for result in found]
+
+    def results_without_run(self, step: Step) -> list[Result]:
+        """Return the results of a step that is not permitted, or that the run did not reach."""
+        missing, probe = self.missing(step), self._probe(step)
+        found = probe.not_permitted(missing) if missing else probe.not_run(f"{self._ended}.")
+        return [replace(result, group=step.group.name) for result in found]
 
     def _probe(self, step: Step) -> Probe:
         return Probe(self.device, step.group, step.command, Tally(self._sources))
@@ -159,6 +181,8 @@ class Tester:
             pass
         except NotSupported as reason:
             unsupported = str(reason)
+        except NoMoreReplies as reason:
+            unsupported = self._ended = str(reason)
         except UsageError as error:
             unsupported = f"the device reported a value that cannot be sent to it: {error}"
         except KeyboardInterrupt:

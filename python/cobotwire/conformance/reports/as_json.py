@@ -22,6 +22,8 @@ PLAIN = {
     "reply_seconds": dict,
     "deadline_seconds": dict,
 }
+# What reports of earlier releases lack, with the value that they are read with.
+ADDED: dict[str, tuple[type, Any]] = {"stopped": (str, ""), "options": (dict, {})}
 
 
 def to_json(report: Report) -> str:
@@ -30,7 +32,7 @@ def to_json(report: Report) -> str:
         "format": FORMAT,
         "version": VERSION,
         "conforms": report.conforms,
-        **{name: getattr(report, name) for name in PLAIN},
+        **{name: getattr(report, name) for name in (*PLAIN, *ADDED)},
         "results": [_result(result) for result in report.results],
     }
     return json.dumps(data, indent=1) + "\n"
@@ -57,6 +59,8 @@ def from_json(text: str) -> Report:
         plain["deadline_seconds"] = {
             command: _seconds(each) for command, each in plain["deadline_seconds"].items()
         }
+        for name, (kind, without) in ADDED.items():
+            plain[name] = _checked(data.get(name, without), kind)
         return Report(**plain, results=results)
     except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
         if isinstance(error, UsageError):
@@ -73,6 +77,7 @@ def _result(result: Result) -> dict[str, Any]:
         "reason": result.reason,
         "source": result.source,
         "further": list(result.further),
+        "group": result.group,
         "evidence": [
             {"at": round(e.at, 6), "direction": e.direction, "data": e.data.hex(), "note": e.note}
             for e in result.evidence
@@ -95,7 +100,8 @@ def _read_result(item: dict[str, Any]) -> Result:
     case, command, reason, source = (_checked(item[name], str) for name in names)
     # Reports of earlier releases lack it.
     further = tuple(_checked(each, str) for each in _checked(item.get("further", []), list))
-    return Result(case, command, verdict, reason, evidence, source, cause, further)
+    group = _checked(item.get("group", ""), str)
+    return Result(case, command, verdict, reason, evidence, source, cause, further, group)
 
 
 def _seconds(value: Any) -> float:

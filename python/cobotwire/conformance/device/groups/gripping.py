@@ -38,10 +38,12 @@ def _reports_moving(probe: Probe) -> None:
 
 
 def _ends(probe: Probe, motion: Setting, position: Request[Any], speed: int) -> list[Request[Any]]:
-    """Return requests for two values far from each other, the more distant one first."""
+    """Return requests for two values apart from each other, the one further away first."""
     old = probe.device.require(position)
-    ends = motion.samples(position, old, speed)[2:4]
-    return ends if ends[0] != motion.again(position, old, speed) else ends[::-1]
+    reported, argument = motion.pairs[0]
+    now = old.fields[reported]
+    between = motion.samples(position, old, speed)[:2]
+    return sorted(between, key=lambda sample: -abs(sample.fields[argument] - now))
 
 
 def _moving(table: Table, command: Command) -> Command | None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.groups.motion import ARRIVES, STOPS, UNDER_WAY, resume
-from cobotwire.conformance.device.mover import POSES, Mover
+from cobotwire.conformance.device.mover import POLL, POSES, Mover
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.suite import Group
@@ -20,6 +20,8 @@ DISTANCES = {"degree": 4.0, "millimetre": 8.0}
 STRAYS = {"degree": 0.6, "millimetre": 2.5}
 # Slow enough to be stopped near the start, in percent of the fastest.
 SLOW = 20
+# A jog is stopped when it has moved something by so many times what is allowed to stray.
+SHOWS = 3.0
 
 
 def _shape(command: Command) -> tuple[Field, Field] | None:
@@ -82,8 +84,8 @@ def _stays(
     probe: Probe, mover: Mover, part: Field, chosen: int, sign: int, *, absolute: bool
 ) -> bool:
     """Move a part one way, from pose to pose, until it moves; return whether it never does."""
-    for which in range(len(POSES)):
-        mover.go(mover.pose(which))
+    for which in mover.poses:
+        mover.go_near(which)
         before, numbers = _where(probe, part)
         at = _place(part, chosen, numbers)
         distance = sign * DISTANCES[numbers[at].unit]
@@ -97,6 +99,7 @@ def _stays(
         mover.wait()
         after, _ = _where(probe, part)
         if _off(numbers, before, after):
+            mover.prefer(which)
             wrong = _off(numbers, [*before[:at], target, *before[at + 1 :]], after)
             call = f"{probe.command.name}({part.name}={chosen}), {distance} {numbers[at].units}"
             probe.expect(ARRIVES, not wrong, f"{call} from there: {'; '.join(wrong)}")
@@ -118,15 +121,17 @@ def _jogs(probe: Probe) -> None:
 
 def _jog(probe: Probe, mover: Mover, part: Field, chosen: int, direction: int) -> bool:
     """Jog a part in a direction, from pose to pose, until it moves; return whether it does."""
-    for which in range(len(POSES)):
-        mover.go(mover.pose(which))
+    for which in mover.poses:
+        mover.go_near(which)
         before, numbers = _where(probe, part)
         speed = min(SLOW, mover.speed)
         request_change(probe, request_of(probe.command, chosen, direction, speed))
-        mover.rest(4 * UNDER_WAY)
-        after = _stopped(probe, mover, part)
+        began = probe.device.connection.now
+        _under_way(probe, mover, part, before)
+        after = _stopped(probe, mover, part, probe.device.connection.now - began)
         moved = [now - then for now, then in zip(after, before)]
         if any(abs(by) > STRAYS[number.unit] for by, number in zip(moved, numbers)):
+            mover.prefer(which)
             way = probe.command.request[0].fields[1]
             wrong = _not_so(part, chosen, way, direction, numbers, moved)
             call = f"{probe.command.name}({part.name}={chosen}, {direction})"
@@ -136,8 +141,21 @@ def _jog(probe: Probe, mover: Mover, part: Field, chosen: int, direction: int) -
     return False
 
 
-def _stopped(probe: Probe, mover: Mover, part: Field) -> Sequence[float]:
-    """Stop, and return where the arm is then; expect that it stays there."""
+def _under_way(probe: Probe, mover: Mover, part: Field, before: Sequence[float]) -> None:
+    """Wait until a jog shows clearly, but not for long: it may be out of reach."""
+    until = probe.device.connection.now + 4 * UNDER_WAY
+    while probe.device.connection.now < until:
+        mover.rest(POLL)
+        now, numbers = _where(probe, part)
+        if any(abs(a - b) > SHOWS * STRAYS[n.unit] for a, b, n in zip(now, before, numbers)):
+            return
+
+
+def _stopped(probe: Probe, mover: Mover, part: Field, seconds: float) -> Sequence[float]:
+    """Stop, and return where the arm is then; expect that it stays there.
+
+    In ``seconds`` it would move on by more than what is allowed to stray.
+    """
     bare = (
         c for c in probe.device.table.commands if c.safety == "motion" and not c.request[0].fields
     )
@@ -148,7 +166,7 @@ def _stopped(probe: Probe, mover: Mover, part: Field) -> Sequence[float]:
         probe.device.request(ending.request_type())
     mover.rest(2 * UNDER_WAY)
     stopped, numbers = _where(probe, part)
-    mover.rest(4 * UNDER_WAY)
+    mover.rest(max(seconds, UNDER_WAY))
     later, _ = _where(probe, part)
     moved = any(abs(a - b) > STRAYS[n.unit] for a, b, n in zip(stopped, later, numbers))
     _halt(probe)

@@ -11,6 +11,7 @@ from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import has_fixed_effect, settings_of
 from cobotwire.conformance.device.requests import gentle, harmless
+from cobotwire.conformance.samples import ordinary, physical_values
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 
@@ -71,7 +72,7 @@ def _is_unread(table: Table, command: Command) -> bool:
     """Return whether no query reads back what a command does, and no command restores it."""
     return (
         command.safety != "query"
-        and not command.role
+        and command.role in ("", "halt")
         and not _is_switch(table, command)
         and not settings_of(table, command)
         and not (command.read_by is not None and command.safety == "persistent write")
@@ -87,7 +88,22 @@ def _send_unread(probe: Probe) -> None:
         resume(probe)
 
 
+def _is_light(table: Table, command: Command) -> bool:
+    """Return whether a command only sets the colour of a light, which need not be restored."""
+    return command.role == "light"
+
+
+def _send_colours(probe: Probe) -> None:
+    """Send colours that differ in each part, the darkest last, and judge what comes."""
+    variant = probe.command.request[0]
+    for turn in (0, 7):
+        values = physical_values(variant, ordinary(variant, turn=turn))
+        request_change(probe, probe.command.request_type.from_fields(values))
+    request_change(probe, gentle(probe.command))
+
+
 SWITCHES = Group("switches", (EFFECT, *AFTER_CHANGE_OR_REPLY), _switch, _is_switch)
 UNREAD = Group(
     "unread commands", AFTER_CHANGE_OR_REPLY, _send_unread, _is_unread, frozenset({"irreversible"})
 )
+LIGHTS = Group("lights", AFTER_CHANGE_OR_REPLY, _send_colours, _is_light)

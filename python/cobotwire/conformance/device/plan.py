@@ -1,0 +1,63 @@
+"""The steps of a run, and how an earlier report continues or repeats it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cobotwire.conformance.device.probe import Body
+from cobotwire.conformance.report import Cause, Report, Result
+from cobotwire.conformance.suite import Group
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command
+
+
+class Step(NamedTuple):
+    """A group and the command that it runs for; None: the line as a whole."""
+
+    group: Group[Body]
+    command: Command | None
+
+    @property
+    def name(self) -> str:
+        """The command and the group, for people."""
+        return f"{self.command.name if self.command else 'the line'}: {self.group.name}"
+
+    @property
+    def place(self) -> tuple[str, str]:
+        """The group and the command, as results name them."""
+        return self.group.name, self.command.name if self.command else ""
+
+
+class Plan:
+    """Which steps to run, in which order, and which results to take from an earlier report."""
+
+    def __init__(self, earlier: Report | None = None, *, resume: bool = False) -> None:
+        """Plan to run everything; or what a report has, in its order.
+
+        Args:
+            earlier: the report of a run on a device.
+            resume: whether its results count; only what it did not run is run.
+
+        Raises:
+            UsageError: the report does not say in which steps its results were found.
+        """
+        self._found: dict[tuple[str, str], list[Result]] = {}
+        for result in earlier.results if earlier else ():
+            self._found.setdefault((result.group, result.command), []).append(result)
+        if earlier is not None and (earlier.kind != "device" or any(not g for g, _ in self._found)):
+            message = "this is not the report of a run on a device, or of an earlier release"
+            raise UsageError("report", message=message)
+        self._resume = resume
+
+    def ordered(self, steps: Sequence[Step]) -> list[Step]:
+        """Return the steps in the order of the report."""
+        if not self._found:
+            return list(steps)
+        by_place = {step.place: step for step in steps}
+        return [by_place[place] for place in self._found if place in by_place]
+
+    def results(self, step: Step) -> list[Result]:
+        """Return the results that count; empty: the step is to be run."""
+        found = self._found.get(step.place, []) if self._resume else []
+        return [] if any(result.cause is Cause.NOT_RUN for result in found) else found
