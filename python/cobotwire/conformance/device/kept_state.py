@@ -22,6 +22,11 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Table
 
+# How many other values are named.
+MOST_NAMES = 12
+# How often a run looks for the request that has changed something, which takes seconds.
+SEARCHES = 3
+
 
 @dataclass(frozen=True, slots=True)
 class Malformed:
@@ -61,6 +66,7 @@ class KeptState:
         """
         self._device = device
         self._marked: list[str] = []
+        self._searches = 0
         if "power" in device.permissions.classes:
             give_power(device)
         self._spots = [spot for query in _queries(device.table) for spot in self._read(query)]
@@ -81,7 +87,22 @@ class KeptState:
         if not self._spots:
             return ""
         self._turn = (self._turn + 1) % len(self._spots)
-        return self._compare(self._spots[self._turn])
+        spot = self._spots[self._turn]
+        changed = self._compare(spot)
+        return changed and changed + self._also_changed(spot)
+
+    def _also_changed(self, known: _Spot) -> str:
+        """Compare the other values, which may have changed with the known one; name them."""
+        names = []
+        for spot in self._spots:
+            if spot is known:
+                continue
+            now = self._device.read(spot.query)
+            if now is not None and now != spot.value:
+                names.append(str(spot))
+                self._set_again(spot)
+            spot.since = []
+        return f"; also changed: {', '.join(names[:MOST_NAMES])}" if names else ""
 
     def check_all(self) -> Iterator[str]:
         """Compare all values; yield what has changed."""
@@ -129,14 +150,12 @@ class KeptState:
         if now is None or now == spot.value:
             return ""
         change = f"expected {spot} to stay {_plain(spot.value)}; came {_plain(now)}"
-        cause = self._find(spot, sent)
-        if cause is None:
-            first, last = sent[0], sent[-1]
-            cause_text = f"after one of {len(sent)} requests from {first} to {last}"
-        else:
-            cause_text = f"after {cause}"
+        cause = self._find(spot, sent) if self._searches < SEARCHES else None
+        self._searches += 1
         self._set_again(spot)
-        return f"{cause_text}: {change}"
+        if cause is not None:
+            return f"after {cause}: {change}"
+        return f"after one of {len(sent)} requests, from {sent[0]} to {sent[-1]}: {change}"
 
     def _find(self, spot: _Spot, sent: list[Malformed]) -> Malformed | None:
         """Send requests again, the last one first, until one changes the value."""

@@ -125,7 +125,14 @@ class Mover:
         if response.valid is None and response.replies:
             return [f"{self.joints.name}: expected legal values; {response.replies[0].error}"]
         pose = self.angles() if response.valid is None else _pose(response.valid)
-        return off_by(pose, wanted, self.tolerance)
+        wrong = off_by(pose, wanted, self.tolerance)
+        again = self.angles() if wrong else pose
+        if wrong and not off_by(again, wanted, self.tolerance):
+            return [
+                f"the reply of {self.joints.name} is stale: at rest, it reported first {pose}, and "
+                f"when it was sent again {again}, which is where the arm was sent"
+            ]
+        return wrong
 
     def _in_role(self, role: Role) -> Command:
         command = self.device.command(role)

@@ -190,7 +190,9 @@ class Tester:
             raise
         finally:
             self.device.restore(self.device.restore_after_body)
-        return [self._excused(result) for result in probe.results(unsupported)]
+        found = [self._excused(result) for result in probe.results(unsupported)]
+        # What passed until the device fell silent may not have been observed to its end.
+        return [_cut_short(result, self._ended) for result in found] if self._ended else found
 
     def _halt(self) -> None:
         """Stop the arm. An arm that has not come to rest is not sent back, and keeps its power."""
@@ -213,3 +215,12 @@ class Tester:
         if self.device.reply_seconds.get(result.command):
             return result
         return replace(result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_SUPPORTED)
+
+
+def _cut_short(result: Result, why: str) -> Result:
+    """Return a failure as it is, and anything else as not run."""
+    if result.verdict is Verdict.FAIL:
+        return result
+    return replace(
+        result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_RUN, reason=f"{why}.", evidence=()
+    )

@@ -6,6 +6,7 @@ Only queries are damaged: whatever the firmware makes of them, nothing changes.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from random import Random
 
 from cobotwire.conformance.device.groups.queries import is_query
@@ -119,7 +120,8 @@ def _crowded(probe: Probe) -> None:
         data, what = noise + request.frame, "noise and a request"
         response = device.count(device.requester.send_instead(request, data, what))
         expect_one_reply(probe, NOISE_BEFORE, response, f"the request after {shown(noise)}")
-        sender.expect_kept(what, data)
+        again = partial(device.requester.send_instead, request, data, what)
+        sender.expect_kept(f"noise {name!r}", data, again)
     _in_pieces(probe, request)
     _together(probe, request)
 
