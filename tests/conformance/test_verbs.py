@@ -158,3 +158,43 @@ def test_client_tester_on_a_public_address_warns(host: str, warns: bool) -> None
     ended = _run(*words)
     warning = f"cobotwire: anyone who can reach {host} can connect, and is judged as the client\n"
     assert ended.stderr == (warning if warns else "")
+
+
+def test_interrupted_run_is_resumed_and_a_run_is_repeated_from_its_report(tmp_path: Path) -> None:
+    first, second, third = (str(tmp_path / f"{name}.json") for name in ("first", "second", "third"))
+    options = ("--allow", "setting", "--retries", "1")
+    assert _run("device", "--simulated", *options, "--json", first).returncode == 0
+    report = json.loads(Path(first).read_text())
+    assert report["options"] == {"allow": "setting", "retries": "1"}
+    # As a run leaves it that ended before the settings.
+    settings = [r for r in report["results"] if r["group"] == "settings"]
+    for result in settings:
+        result |= {"cause": "not run", "verdict": "inconclusive"}
+    report |= {"finished": False, "stopped": "the run was interrupted"}
+    Path(second).write_text(json.dumps(report))
+    ended = _run("device", "--simulated", "--resume", second, "--json", third)
+    assert ended.returncode == 0, ended.stdout
+    resumed, again = (from_json(Path(name).read_text()) for name in (third, first))
+    order = [(r.group, r.case, r.command, r.verdict) for r in again.results]
+    assert [(r.group, r.case, r.command, r.verdict) for r in resumed.results] == order
+    assert _run("device", "--simulated", "--again", third, "--json", first).returncode == 0
+    repeated = from_json(Path(first).read_text())
+    assert [(r.group, r.case, r.command, r.verdict) for r in repeated.results] == order
+    assert repeated.options == again.options
+
+
+def test_options_beside_those_of_a_report_are_a_usage_error(tmp_path: Path) -> None:
+    file = tmp_path / "report.json"
+    assert _run("device", "--simulated", "--json", str(file)).returncode == 0
+    refused = _run("device", "--simulated", "--resume", str(file), "--allow", "setting")
+    assert refused.returncode == 2
+    assert "omit --allow" in refused.stderr
+    both = _run("device", "--simulated", "--resume", str(file), "--again", str(file))
+    assert (both.returncode, "not both" in both.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("edition", ["mypalletizer260", "myarm_c650"])
+def test_simulated_arm_of_unknown_geometry_conforms_without_coordinates(edition: str) -> None:
+    words = ("--edition", edition, "conform", "device", "--simulated")
+    ended = in_process.run(app, "cobotwire", *words, folder=vectors.ROOT)
+    assert ended.returncode == 0, ended.stdout

@@ -34,6 +34,7 @@ from cobotwire.conformance.sources import spec_lines
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.arm import Note
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.memory import MemoryTransport
 from cobotwire.transport import open_transport
@@ -124,8 +125,9 @@ def device(
             options = RunOptions.of_report(earlier.options)
             plan = Plan(earlier, resume=resume is not None)
         options.validate(table)
-        with _connection(table, port, simulated, options.baudrate) as connection:
-            tester = options.tester(connection, table, spec_lines(edition))
+        statement = _Statement(table)
+        with _connection(table, port, simulated, options.baudrate, statement) as connection:
+            tester = options.tester(connection, table, spec_lines(edition), statement.reasons)
             _run(tester, plan)
     conclude(tester.report, files)
 
@@ -177,17 +179,32 @@ def _progress() -> Iterator[Callable[[Step, int, int], None]]:
         yield show_step
 
 
+class _Statement:
+    """What a simulated arm states that it does not support: coordinates of an unknown geometry."""
+
+    def __init__(self, table: Table) -> None:
+        self.reasons: dict[str, str] = {}
+        self._table = table
+        self._why = table.robot.why_no_geometry
+
+    def note(self, note: Note) -> None:
+        """Keep a note of the arm if it says so."""
+        if note.text.endswith(self._why):
+            id = self._table.command(note.command).id
+            same = [command.name for command in self._table.commands if command.id == id]
+            self.reasons |= dict.fromkeys(same, self._why)
+
+
 @contextmanager
 def _connection(
-    table: Table, port: str | None, simulated: bool, baudrate: int | None
+    table: Table, port: str | None, simulated: bool, baudrate: int | None, statement: _Statement
 ) -> Iterator[DeviceConnection]:
     if simulated == (port is not None):
         raise UsageError("URL", port, message="give either the URL of an arm or --simulated")
     if port is None:
         clock = SteppedClock()
-        yield DeviceConnection(
-            MemoryTransport(SimulatedArm(table, clock=clock), clock), clock, IN_MEMORY
-        )
+        arm = SimulatedArm(table, clock=clock, on_note=statement.note)
+        yield DeviceConnection(MemoryTransport(arm, clock), clock, IN_MEMORY)
         return
     opened = open_transport(port, table.baudrate if baudrate is None else baudrate)
     try:

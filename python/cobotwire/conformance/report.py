@@ -91,11 +91,11 @@ class Report:
     started: str = field(default_factory=_now)
     firmware: str = ""
     finished: bool = False
-    stopped: str = ""
-    options: dict[str, str] = field(default_factory=dict)
     results: list[Result] = field(default_factory=list)
     reply_seconds: dict[str, list[float]] = field(default_factory=dict)
     deadline_seconds: dict[str, float] = field(default_factory=dict)
+    stopped: str = ""
+    options: dict[str, str] = field(default_factory=dict)
 
     @property
     def failures(self) -> list[Result]:

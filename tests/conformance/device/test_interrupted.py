@@ -7,6 +7,7 @@ from itertools import count
 import pytest
 
 from cobotwire import editions
+from cobotwire.conformance import Cause
 from cobotwire.conformance.device import DeviceConnection, Tester
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
@@ -68,8 +69,14 @@ def _is_as_before(arm: SimulatedArm, transport: CutShort) -> None:
 def test_interrupt_anywhere_restores_the_arm(writes: int, share: float) -> None:
     arm, transport, tester = _run(int(writes * share))
     _is_as_before(arm, transport)
-    assert not tester.report.finished
-    assert tester.report.results
+    report = tester.report
+    assert not report.finished
+    assert report.stopped == "the run was interrupted"
+    left = [result for result in report.results if result.cause is Cause.NOT_RUN]
+    assert left[-1].case == "acknowledgements-alike"
+    # Every step of a whole run has its results.
+    places = {(result.group, result.command) for result in report.results}
+    assert places == {step.place for step in tester.steps()}
 
 
 def test_interrupt_while_the_arm_returns_restores_the_arm(writes: int) -> None:

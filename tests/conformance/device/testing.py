@@ -60,8 +60,12 @@ class Altered:
 
 # An interrupted run does not restore the power, since an arm without power would fall.
 HELD = ("powered",)
-# Not settings: where the arm is, what has happened to it, and what it is.
-NOT_SET = ("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry", "record_at")
+# Not settings: where the arm is, what has happened to it, and what it is; and the colour of the
+# light, which no query reports.
+NOT_SET = (
+    *("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry", "record_at"),
+    "colour",
+)
 
 
 def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> dict[str, object]:

@@ -80,7 +80,11 @@ class RunOptions:
         self._optional(table)
 
     def tester(
-        self, connection: DeviceConnection, table: Table, sources: Mapping[str, str] | None = None
+        self,
+        connection: DeviceConnection,
+        table: Table,
+        sources: Mapping[str, str] | None = None,
+        statement: Mapping[str, str] | None = None,
     ) -> Tester:
         """Return the tester for a connection; nothing is sent.
 
@@ -98,6 +102,7 @@ class RunOptions:
             repeat=self.repeat,
             retries=self.retries,
             optional=self._optional(table),
+            statement=statement,
             address=int(self.address) if number and self.address else self.address,
         )
         tester.report.options = self.for_report()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from cobotwire.conformance.device.probe import Body
-from cobotwire.conformance.report import Cause, Report, Result
+from cobotwire.conformance.report import Cause, Report, Result, Verdict
 from cobotwire.conformance.suite import Group
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command
@@ -27,6 +27,14 @@ class Step(NamedTuple):
     def place(self) -> tuple[str, str]:
         """The group and the command, as results name them."""
         return self.group.name, self.command.name if self.command else ""
+
+
+# The verdicts of what was run.
+RAN = (Verdict.PASS, Verdict.FAIL)
+
+
+def _was_not_run(result: Result) -> bool:
+    return result.cause is Cause.NOT_RUN
 
 
 class Plan:
@@ -59,5 +67,12 @@ class Plan:
 
     def results(self, step: Step) -> list[Result]:
         """Return the results that count; empty: the step is to be run."""
-        found = self._found.get(step.place, []) if self._resume else []
-        return [] if any(result.cause is Cause.NOT_RUN for result in found) else found
+        return self._found.get(step.place, []) if step.place in self._complete() else []
+
+    def _complete(self) -> set[tuple[str, str]]:
+        """Return where results count: before the step at whose end the device may have failed."""
+        whole = [place for place, found in self._found.items() if not any(map(_was_not_run, found))]
+        if not self._resume:
+            return set()
+        ran = [place for place in whole if any(r.verdict in RAN for r in self._found[place])]
+        return set(whole) - set(ran[-1:] if len(whole) < len(self._found) else ())

@@ -45,6 +45,7 @@ class Tester:
         retries: int = 0,
         optional: frozenset[str] = frozenset(),
         address: int | str | None = None,
+        statement: Mapping[str, str] | None = None,
     ) -> None:
         """Prepare a run; nothing is sent.
 
@@ -57,6 +58,8 @@ class Tester:
             repeat: how often each body is run; if the runs differ, the verdict is unstable.
             retries: how often a query is repeated if nothing comes.
             optional: commands that the device may lack: if it is silent, they are not supported.
+            statement: what the device states that it does not support: by command, the reason. It
+                may grow during the run. Silence of such a command is no failure.
             address: the device's address, by number or name; left out: the edition's first one.
 
         Raises:
@@ -69,6 +72,7 @@ class Tester:
         self.table = table
         self._repeat = repeat
         self._optional = optional
+        self._statement: Mapping[str, str] = {} if statement is None else statement
         self._sources = sources
         # Why the run ends before its end; empty: it does not.
         self._ended = ""
@@ -210,11 +214,17 @@ class Tester:
 
     def _excused(self, result: Result) -> Result:
         """Turn a failure into not supported if the device may lack the command and was silent."""
-        if result.command not in self._optional or result.verdict is not Verdict.FAIL:
+        silent = result.evidence[-1:] and result.evidence[-1].direction == "sent"
+        stated = self._statement.get(result.command, "") if silent else ""
+        never = not self.device.reply_seconds.get(result.command)
+        if result.verdict is not Verdict.FAIL:
             return result
-        if self.device.reply_seconds.get(result.command):
+        if not stated and not (never and result.command in self._optional):
             return result
-        return replace(result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_SUPPORTED)
+        reason = f"The device states: {stated}." if stated else result.reason
+        return replace(
+            result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_SUPPORTED, reason=reason
+        )
 
 
 def _cut_short(result: Result, why: str) -> Result:
