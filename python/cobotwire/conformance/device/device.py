@@ -161,8 +161,13 @@ class Device:
         reply = self.read(query)
         return None if reply is None else any(reply.fields.values())
 
-    def known(self) -> Known:
-        """Return the arm's position as rows of numbers, by their units, for its calculations."""
+    def known(self, command: Command | None = None) -> Known:
+        """Return the arm's position as rows of numbers, by their units, for its calculations.
+
+        For a ``command`` that takes no row, nothing is needed.
+        """
+        if command is not None and not any(f.many for v in command.request for f in v.fields):
+            return {}
         found: dict[tuple[str, ...], tuple[float, ...]] = {}
         for role in ("joints", "coordinates"):
             command = self.command(role)

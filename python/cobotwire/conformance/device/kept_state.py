@@ -80,15 +80,27 @@ class KeptState:
                 restore()
         self._device.kept = None
 
-    def check(self, sent: Malformed) -> str:
-        """Compare the value whose turn it is; return what has changed, empty if nothing has."""
+    def next_query(self, other_than: int) -> Request[Any] | None:
+        """Return the query that is compared next, of another id; None if there is none."""
+        for _ in self._spots:
+            query = self._spots[self._turn].query
+            if self._device.table.command(query.command).id != other_than:
+                return query
+            self._turn = (self._turn + 1) % len(self._spots)
+        return None
+
+    def check(self, sent: Malformed, reply: Reply[Any] | None = None) -> str:
+        """Compare the value whose turn it is; return what has changed, empty if nothing has.
+
+        ``reply`` is that to :meth:`next_query`; left out: the query is sent.
+        """
         for spot in self._spots:
             spot.since.append(sent)
         if not self._spots:
             return ""
-        self._turn = (self._turn + 1) % len(self._spots)
         spot = self._spots[self._turn]
-        changed = self._compare(spot)
+        self._turn = (self._turn + 1) % len(self._spots)
+        changed = self._compare(spot, reply)
         return changed and changed + self._also_changed(spot)
 
     def _also_changed(self, known: _Spot) -> str:
@@ -144,8 +156,8 @@ class KeptState:
         self._device.request(marks[0])
         return marks[0]
 
-    def _compare(self, spot: _Spot) -> str:
-        now = self._device.read(spot.query)
+    def _compare(self, spot: _Spot, reply: Reply[Any] | None = None) -> str:
+        now = reply or self._device.read(spot.query)
         sent, spot.since = spot.since, []
         if now is None or now == spot.value:
             return ""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from cobotwire.conformance.device.kept_state import KeptState, Malformed
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.response import Response
 from cobotwire.conformance.suite import TestCase
-from cobotwire.protocol.table import Command
+from cobotwire.protocol.messages import Reply, Request
 from cobotwire.session.request import EncodedRequest
 
 RECOVERS = TestCase("recovers", "After a malformed request, the next good one is replied to.")
@@ -43,26 +44,30 @@ class MalformedSender:
         """Send a malformed request; the firmware may send an error text, but no reply."""
         kind = case.id if case.id in ONE_KIND else what
         known = kind in self._device.tried_with_pauses
-        if known and self._device.resyncs and self._harmless(what, data):
+        query = self._kept.next_query(other_than=self._request.command.id)
+        at_once = known and self._device.resyncs and query is not None
+        reply = self._reply_after(what, data, query) if query is not None and at_once else None
+        if query is not None and reply is not None:
             self._probe.expect(case, True, "")
             self._probe.expect(RECOVERS, True, "")
-            self.expect_kept(what, data, partial(self._harmless, what, data))
+            self.expect_kept(what, data, partial(self._reply_after, what, data, query), reply)
         else:
             self._device.tried_with_pauses.add(kind)
             passed = self._send_and_wait(case, what, data)
-            self._device.resyncs = self._device.resyncs and (not known or not passed)
+            self._device.resyncs = self._device.resyncs and not (at_once and passed)
             self.expect_kept(what, data, partial(self._again, what, data))
 
-    def _harmless(self, what: str, data: bytes) -> bool:
-        """Return whether all that comes is the reply to the next request."""
-        carrier = self._carrier()
-        if carrier is None:
-            return False
+    def _reply_after(self, what: str, data: bytes, query: Request[Any]) -> Reply[Any] | None:
+        """Return the reply to a query of another id right after; None if it is not all that comes.
+
+        The other id shows that the reply is not to the malformed request.
+        """
         requester, linger = self._device.requester, self._device.timing.linger
         response = requester.send_bytes(self._request, data, what, linger)
         if response.replies or response.unexpected:
-            return False
-        return self._device.count(requester.send(carrier)).only_valid
+            return None
+        good = self._device.count(requester.send(requester.prepare(query)))
+        return good.valid.message if good.only_valid and good.valid else None
 
     def _send_and_wait(self, case: TestCase, what: str, data: bytes) -> bool:
         """Send it alone, then the good request; return whether both pass."""
@@ -79,12 +84,20 @@ class MalformedSender:
         seconds = device.timing.idle if half else device.timing.silence
         return device.requester.send_bytes(self._request, data, what, seconds)
 
-    def expect_kept(self, what: str, data: bytes, again: Callable[[], object]) -> None:
-        """Compare one value of the state with what it was; ``again`` sends the request again.
+    def expect_kept(
+        self,
+        what: str,
+        data: bytes,
+        again: Callable[[], object],
+        reply: Reply[Any] | None = None,
+    ) -> None:
+        """Compare one value of the state with what it was.
 
-        One loss in a body is enough: the others would only end it early.
+        ``again`` sends the malformed request again; ``reply`` is that to the query of the value, if
+        it has been sent. One loss in a body is enough: the others would only end it early.
         """
-        changed = self._kept.check(Malformed(f"{what}, {self._request.command.name}", data, again))
+        sent = Malformed(f"{what}, {self._request.command.name}", data, again)
+        changed = self._kept.check(sent, reply)
         if not self._lost:
             self._probe.expect(KEPT, not changed, changed)
         self._lost = self._lost or bool(changed)
@@ -98,18 +111,6 @@ class MalformedSender:
     def _again(self, what: str, data: bytes) -> None:
         self._send_alone(what, data)
         self._device.requester.send(self._request)
-
-    def _carrier(self) -> EncodedRequest | None:
-        """Return a query of another command, without arguments."""
-        for command in self._device.table.commands:
-            if _is_plain_query(command) and command.id != self._request.command.id:
-                return self._device.requester.prepare(command.request_type())
-        return None
-
-
-def _is_plain_query(command: Command) -> bool:
-    plain = command.safety == "query" and command.requires_reply and bool(command.reply)
-    return plain and not command.event and not command.request[0].fields
 
 
 def expect_one_reply(probe: Probe, case: TestCase, response: Response, what: str) -> None:

@@ -55,7 +55,7 @@ def _damaged(probe: Probe) -> None:
 
 def _sample(probe: Probe) -> EncodedRequest:
     """Return the request to damage: the first sample."""
-    first, *_ = requests(probe.command, probe.command.request[0], probe.device.known())
+    first, *_ = requests(probe.command, probe.command.request[0], probe.device.known(probe.command))
     return probe.device.requester.prepare(first)
 
 

@@ -44,8 +44,8 @@ def is_query(table: Table, command: Command) -> bool:
 
 def _query(probe: Probe) -> None:
     """Request with each set of arguments, and with the last one again."""
-    known = probe.device.known()
     command = probe.command
+    known = probe.device.known(command)
     every = [query for variant in command.request for query in requests(command, variant, known)]
     for query in every:
         first = probe.device.request(query)
