@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
@@ -77,6 +78,8 @@ class Device:
         self.tried_with_pauses: set[str] = set()
         # The poses from which the arm has moved when it was sent a little way, by their index.
         self.preferred_poses: list[int] = []
+        # How often each command that may be acknowledged was sent and judged.
+        self.changes: Counter[str] = Counter()
         # What to restore after a body, and what at the end of the run.
         self.restore_after_body: dict[str, Restore] = {}
         self.restore_at_end: dict[str, Restore] = {}

@@ -13,12 +13,13 @@ from cobotwire.conformance.device.device import (
     NoMoreReplies,
     NotSupported,
 )
+from cobotwire.conformance.device.excuses import cut_short, excused
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.plan import Plan, Step
 from cobotwire.conformance.device.probe import Probe, needed
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
-from cobotwire.conformance.report import Cause, Report, Result, Verdict
+from cobotwire.conformance.report import Report, Result
 from cobotwire.conformance.tally import Tally, merged
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import LinkError, UsageError
@@ -194,9 +195,12 @@ class Tester:
             raise
         finally:
             self.device.restore(self.device.restore_after_body)
-        found = [self._excused(result) for result in probe.results(unsupported)]
+        found = [
+            excused(result, self.device.reply_seconds, self._optional, self._statement)
+            for result in probe.results(unsupported)
+        ]
         # What passed until the device fell silent may not have been observed to its end.
-        return [_cut_short(result, self._ended) for result in found] if self._ended else found
+        return [cut_short(result, self._ended) for result in found] if self._ended else found
 
     def _halt(self) -> None:
         """Stop the arm. An arm that has not come to rest is not sent back, and keeps its power."""
@@ -211,26 +215,3 @@ class Tester:
         reply = None if query is None else self.device.read(query.request_type())
         if reply is not None:
             self.report.firmware = str(reply.result)
-
-    def _excused(self, result: Result) -> Result:
-        """Turn a failure into not supported if the device may lack the command and was silent."""
-        silent = result.evidence[-1:] and result.evidence[-1].direction == "sent"
-        stated = self._statement.get(result.command, "") if silent else ""
-        never = not self.device.reply_seconds.get(result.command)
-        if result.verdict is not Verdict.FAIL:
-            return result
-        if not stated and not (never and result.command in self._optional):
-            return result
-        reason = f"The device states: {stated}." if stated else result.reason
-        return replace(
-            result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_SUPPORTED, reason=reason
-        )
-
-
-def _cut_short(result: Result, why: str) -> Result:
-    """Return a failure as it is, and anything else as not run."""
-    if result.verdict is Verdict.FAIL:
-        return result
-    return replace(
-        result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_RUN, reason=f"{why}.", evidence=()
-    )
