@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cobotwire.codec.interface import Codec
+from cobotwire.conformance.device.comparison import Comparison
 from cobotwire.conformance.device.connection import DeviceConnection
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.requester import Requester, Timing
@@ -17,9 +18,6 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request, Result
 from cobotwire.protocol.table import Address, Command, Role, Table
 from cobotwire.session.request import EncodedRequest
-
-if TYPE_CHECKING:
-    from cobotwire.conformance.device.kept_state import KeptState
 
 Restore = Callable[[], object]
 
@@ -71,7 +69,7 @@ class Device:
         # For each command that may be acknowledged: whether it was.
         self.acknowledged: dict[str, bool] = {}
         # The state before the first malformed request, while such requests are sent.
-        self.kept: KeptState | None = None
+        self.kept: Comparison | None = None
         # Whether the device finds the next frame after a malformed request without a pause, as far
         # as is known; and the kinds of malformed requests that were sent with pauses.
         self.resyncs = True

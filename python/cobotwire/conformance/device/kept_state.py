@@ -7,17 +7,17 @@ sent again, one by one, to find the one that changes it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import zip_longest
 from typing import Any
 
+from cobotwire.conformance.device.comparison import Malformed
 from cobotwire.conformance.device.device import Device
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.read_back import Setting, has_fixed_effect, settings_of
 from cobotwire.conformance.device.requests import arguments_of
-from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Table
@@ -26,18 +26,6 @@ from cobotwire.protocol.table import Command, Table
 MOST_NAMES = 12
 # How often a run looks for the request that has changed something, which takes seconds.
 SEARCHES = 3
-
-
-@dataclass(frozen=True, slots=True)
-class Malformed:
-    """A malformed request that was sent: what it is, its bytes, and what sends it again."""
-
-    what: str
-    data: bytes
-    again: Callable[[], object]
-
-    def __str__(self) -> str:
-        return f"{self.what} ({shown(self.data)})"
 
 
 @dataclass(slots=True)

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from cobotwire.conformance.device.kept_state import KeptState, Malformed
+from cobotwire.conformance.device.comparison import Malformed
+from cobotwire.conformance.device.kept_state import KeptState
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.response import Response
 from cobotwire.conformance.suite import TestCase
