@@ -156,6 +156,15 @@ def test_large_capture_has_the_rows_and_times_of_its_bytes(piece: int) -> None:
     assert np.concatenate([np.asarray(rows.offset) for rows in batches]).tolist() == places.tolist()
 
 
+def test_frames_in_packets_of_one_byte_have_the_times_of_their_first_bytes() -> None:
+    stream = REPLY * 50
+    data = written(
+        Packet(START + n, "received", stream[n : n + 1], "bytes") for n in range(len(stream))
+    )
+    times = read_columns(data, NATIVE).rows("get_angles").time.tolist()
+    assert times == [START + 17 * n for n in range(50)]
+
+
 def test_long_noise_has_the_time_of_its_first_byte() -> None:
     noise = [Packet(START + n, "received", bytes(1000), "bytes") for n in range(1500)]
     data = written([*noise, Packet(START + 9999, "received", REPLY)])

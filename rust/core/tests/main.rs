@@ -9,6 +9,7 @@
 )]
 
 mod bulk;
+mod capture;
 mod common;
 mod formats;
 mod found;
