@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import diagnosed_formats
 import field
 import random_tables
+import small_tables
 import strategies
 from cobotwire import codec as codecs
 from cobotwire import editions
@@ -22,7 +23,7 @@ from cobotwire.diagnose import Diagnoser
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
 from cobotwire.diagnose.survey import Lines, StreamSurvey
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.table import Number, Table, Variant
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
 # The two formats of the maker, and one with an address and a sum.
@@ -129,3 +130,27 @@ def test_survey_equals_diagnosis_for_any_table(
     if StreamSurvey.reads(codec):
         frame = data.draw(random_tables.frames(table))
         check(codec, listening, data.draw(random_tables.streams(table)), frame, data)
+
+
+@given(LISTENING, st.data())
+@settings(max_examples=25)
+def test_survey_finds_the_same_ends_of_damaged_frames(
+    listening: Listening, data: st.DataObject
+) -> None:
+    codec = NATIVE["mycobot280"]
+    damaged = st.lists(strategies.received(codec.table, listening), max_size=6)
+    stream = b"".join(received.data for received in data.draw(damaged))
+    check(codec, listening, stream, data.draw(strategies.real_frames(codec.table)), data)
+
+
+@given(st.lists(st.floats(width=64), min_size=1, max_size=200))
+@settings(max_examples=20)
+def test_lines_hold_floats_as_python_writes_them(values: list[float]) -> None:
+    number = Number("", 8, "big", 0, 1, 1, -(2**63), 2**63 - 1, "", "float")
+    reply = small_tables.command(0x20, "get", reply=(Variant((small_tables.field("x", number),)),))
+    codec = codecs.load(small_tables.table(reply), "native")
+    # Most values of arms are whole numbers of hundredths.
+    values += [round(value, 2) for value in values if abs(value) < 1e15]
+    data = b"".join(codec.encode("get", "reply", [value]) for value in values)
+    lines = surveyed(codec, "reply", False, [data])[0]
+    assert lines == diagnosed(codec, "reply", False, data)[0]

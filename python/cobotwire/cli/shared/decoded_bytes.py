@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from cobotwire import codec as codecs
@@ -25,12 +26,18 @@ LONG_FILE = 4 << 20
 
 def decode_bytes(source: ByteSource, options: DecodeOptions, counts: StreamCounts) -> None:
     """Decode bytes that have no times and one direction."""
-    codec = codecs.load(editions.load(options.edition).TABLE)
+    codec = _codec(options.edition, codecs.chosen())
     survey = None if source.from_arguments else _survey(codec, options)
     if survey is None:
         diagnose_bytes(codec, source, options, counts)
     else:
         _survey_bytes(survey, codec, source, options, counts)
+
+
+@lru_cache
+def _codec(edition: str, name: codecs.CodecName) -> Codec:
+    """Return the codec that all files share: its tables take longer to make than a file to read."""
+    return codecs.load(editions.load(edition).TABLE, name)
 
 
 def _survey(codec: Codec, options: DecodeOptions) -> StreamSurvey | None:
