@@ -1,8 +1,8 @@
 """Measure an export of one large raw file on a Dask cluster of one worker and of two.
 
 Each run starts its own processes. The runs of one and two workers take turns, because a busy
-machine would favour either. For each it prints the time from the first task to the last file, and
-the peak memory of the workers.
+machine would favour either. For each it prints the time from the first task to the last file, the
+processor time of each worker, which another program's load changes less, and the peak memory.
 
     python bench/archive_workers.py [--megabytes 2000] [--rounds 3]
 """
@@ -28,9 +28,17 @@ from streams import stream_a
 
 
 class Run(NamedTuple):
-    """One export: its seconds, the peak memory of each worker in bytes, and its report."""
+    """One export.
+
+    Attributes:
+        seconds: the time that it took.
+        busy: the processor time of each worker, in seconds.
+        peaks: the peak memory of each worker, in bytes.
+        report: what was exported.
+    """
 
     seconds: float
+    busy: list[float]
     peaks: list[int]
     report: Report
 
@@ -60,12 +68,18 @@ def measure(inputs: Inputs, workers: int, folder: Path, piece_bytes: int) -> Run
         # Importing is no part of the work.
         client.run(prepare)
         engine = DaskEngine(cluster.scheduler_address)
+        before = client.run(time.process_time)
         started = time.perf_counter()
         report = archive.export(plan, inputs, engine, piece_bytes=piece_bytes)
         seconds = time.perf_counter() - started
+        busy = [after - before[worker] for worker, after in client.run(time.process_time).items()]
         peaks = list(client.run(peak).values())
     shutil.rmtree(folder / "out")
-    return Run(seconds, peaks, report)
+    return Run(seconds, busy, peaks, report)
+
+
+def _seconds(busy: list[float]) -> str:
+    return " + ".join(f"{seconds:.1f} s" for seconds in busy)
 
 
 def write_capture(path: Path, megabytes: int) -> None:
@@ -102,8 +116,9 @@ def main() -> None:
             most = max(one.peaks + two.peaks) / 1e6
             print(
                 f"1 worker {one.seconds:6.1f} s, 2 workers {two.seconds:6.1f} s: "
-                f"{ratios[-1]:.2f} x; at most {most:.0f} MB a worker; "
-                f"{one.report.frames:,} frames, counts {'agree' if same else 'DIFFER'}",
+                f"{ratios[-1]:.2f} x; busy {_seconds(one.busy)} and {_seconds(two.busy)}; "
+                f"at most {most:.0f} MB a worker; {one.report.frames:,} frames, "
+                f"counts {'agree' if same else 'DIFFER'}",
                 flush=True,
             )
         low, high = min(ratios), max(ratios)
