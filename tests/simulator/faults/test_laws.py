@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from cobotwire.simulator.faults import (
@@ -16,6 +16,7 @@ from cobotwire.simulator.faults import (
     Fault,
     Late,
     Merged,
+    Silent,
     Slow,
     Split,
     Stalled,
@@ -89,6 +90,7 @@ def test_fault_with_probability_0_changes_nothing(
 
 
 @given(st.lists(faults(), max_size=4), REQUESTS, SEEDS)
+@example([Echo(), Silent()], [IS_POWERED], 0)  # the arm is silent after the echo was added
 def test_reported_faults_account_for_every_byte(
     chosen: list[Fault], requests: list[bytes | float], seed: int
 ) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cobotwire.simulator.faults.exchange import Reply
+from cobotwire.simulator.faults.exchange import Reply, joined
 from cobotwire.simulator.faults.fault import Damage, Fault, Moment
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import SECONDS, integer, optional, ruled
@@ -84,7 +84,9 @@ class Silent(Fault):
         return b""
 
     def change_reply(self, reply: Reply, moment: Moment) -> Reply:
-        """Return no reply: the arm has not received the request."""
+        """Return no reply: the arm has not received the request; drop what other faults added."""
+        if added := len(joined(reply)):
+            moment.report(f"{added} bytes of other faults not sent")
         return ()
 
 
