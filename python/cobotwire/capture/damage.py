@@ -20,7 +20,7 @@ _REASONS = {
     "no-interface": "damaged: the file does not describe interface {}",
     "no-time": "its packets have neither a time nor a direction",
     "many-interfaces": f"it describes more than {MOST_INTERFACES} interfaces",
-    "time-range": "damaged: a packet has a time outside of the years 1678 to 2261",
+    "time-range": "columns cannot hold the time of a packet outside of the years 1678 to 2261",
 }
 
 

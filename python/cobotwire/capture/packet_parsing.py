@@ -114,11 +114,7 @@ class PacketParser:
             "frame" if self.application.startswith(OURS) else "bytes",
             interface=format.number,
         )
-        packet = with_comment(packet, decoded(options.get(blocks.COMMENT, b"")))
-        times = [packet.time_ns, *[piece.time_ns for piece in packet.pieces]]
-        if not -(2**63) <= min(times) <= max(times) < 2**63:
-            self._reject(block, "time-range")
-        return packet
+        return with_comment(packet, decoded(options.get(blocks.COMMENT, b"")))
 
     def _format(self, block: Block, fields: Fields) -> _Format:
         (index,) = fields.numbers("I")

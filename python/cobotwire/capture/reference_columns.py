@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from cobotwire.capture.block_parsing import Block, Truncated, cut_blocks
 from cobotwire.capture.captured_columns import CapturedColumns, StreamColumns
+from cobotwire.capture.damage import damaged
 from cobotwire.capture.packet import Direction, Interface, Packet
 from cobotwire.capture.packet_parsing import PacketParser
 from cobotwire.capture.recorder import IDLE_NS
@@ -67,9 +68,7 @@ class ReferenceCaptureReader:
         """Take the blocks that are complete; return how many bytes the next one needs."""
         item = next(self._cut)
         while isinstance(item, Block):
-            packet = self._parser.take(item)
-            if packet is not None:
-                self._packet(packet)
+            self._take_block(item)
             item = next(self._cut)
         return item
 
@@ -80,12 +79,18 @@ class ReferenceCaptureReader:
             at += self._wanted
             item = self._cut.send(data)
             if isinstance(item, Block):
-                packet = self._parser.take(item)
-                if packet is not None:
-                    self._packet(packet)
+                self._take_block(item)
                 item = self._next()
             self._wanted = item
         del self._bytes[:at]
+
+    def _take_block(self, block: Block) -> None:
+        packet = self._parser.take(block)
+        if packet is not None:
+            times = (packet.time_ns, *(piece.time_ns for piece in packet.pieces))
+            if not -(2**63) <= min(times) <= max(times) < 2**63:
+                raise damaged(self._parser.name, block.offset, "time-range")
+            self._packet(packet)
 
     def _packet(self, packet: Packet) -> None:
         for stream in self._streams.values():
