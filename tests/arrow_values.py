@@ -7,7 +7,16 @@ from typing import Any
 
 from cobotwire.codec.events import DecodedMessage
 from cobotwire.codec.table_columns import column_name, part_names, table_columns
+from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.fields import Field
+from cobotwire.protocol.table import Table
+
+
+def device(table: Table, message: DecodedMessage) -> dict[str, Any]:
+    """Return the column of the device that a message belongs to, if its frame has an address."""
+    if message.address is None:
+        return {}
+    return {"address": address_name(table, message.address)}
 
 
 def row(message: DecodedMessage) -> dict[str, Any]:

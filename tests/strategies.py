@@ -133,12 +133,18 @@ def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
 def real_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Draw a legal frame, built by the reference codec."""
     codec = codec_of(table.edition, "reference")
-    return messages(table).map(lambda message: frame_of(codec, *message))
+    addresses = st.sampled_from(table.frame.addresses or (None,))
+    return st.builds(
+        lambda message, address: frame_of(codec, *message, address), messages(table), addresses
+    )
 
 
-def frame_of(codec: Codec, variant: CommandVariant, values: tuple[Any, ...]) -> bytes:
+def frame_of(
+    codec: Codec, variant: CommandVariant, values: tuple[Any, ...], address: int | None = None
+) -> bytes:
     """Return the frame of a message in exactly this variant."""
-    return codec.encode(variant.command.name, variant.direction, values, variant=variant.number)
+    name, direction, index = variant.command.name, variant.direction, variant.number
+    return codec.encode(name, direction, values, variant=index, address=address)
 
 
 def line_noise(table: Table = TABLE) -> st.SearchStrategy[bytes]:

@@ -53,6 +53,7 @@ def plain_stream(stream: StreamColumns) -> dict[str, Any]:
             (rows.command.name, rows.message_direction, rows.variant_index): {
                 "time": rows.time.tolist(),
                 "offset": rows.offset.tolist(),
+                "address": list(rows.address or ()),
                 **{name: rows[name].tolist() for name in rows.names},
             }
             for rows in stream

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import cycle
 from typing import Any
 
 import pyarrow as pa
@@ -41,9 +42,11 @@ def legal_rows(variant: Variant) -> list[tuple[int, ...]]:
 
 def every_message(table: Table, direction: Direction) -> bytes:
     """Return a stream with a frame of each variant of each message."""
-    address = next(iter(table.frame.addresses), None)
+    addresses = cycle(table.frame.addresses or [None])
     return b"".join(
-        table.frame.enclose(command.id, variant.pack(legal_rows(variant)), address, direction)
+        table.frame.enclose(
+            command.id, variant.pack(legal_rows(variant)), next(addresses), direction
+        )
         for command in table.commands
         for variant in command.variants(direction)
     )
@@ -111,7 +114,10 @@ def test_tables_of_every_edition_hold_the_decoded_messages_and_keep_their_column
         for name, wide, _, found in tables(native, stream, direction):
             row = arrow_values.wide_row if wide else arrow_values.row
             fields = found.drop_columns("offset")
-            rows = [filled(row(each), fields.column_names) for each in expected.get(name, [])]
+            rows = [
+                filled(row(each) | arrow_values.device(table, each), fields.column_names)
+                for each in expected.get(name, [])
+            ]
             assert fields.to_pylist() == rows, name
             empty = nothing[False].to_arrow(name, direction, wide=wide)
             assert found.schema.equals(empty.schema, check_metadata=True), name
@@ -165,7 +171,10 @@ def test_tables_of_random_editions_hold_the_decoded_messages(data: st.DataObject
             assert found.schema.equals(without.schema, check_metadata=True)
             assert len({*found.column_names}) == len(found.column_names)
             names = found.column_names[1:]
-            rows = [filled(row(each), names) for each in expected.get(command.name, [])]
+            rows = [
+                filled(row(each) | arrow_values.device(table, each), names)
+                for each in expected.get(command.name, [])
+            ]
             assert comparable(found.select(names).to_pylist()) == comparable(rows)
             found.validate(full=True)
 

@@ -39,6 +39,7 @@ def contents(columns: Columns) -> Any:
             each.direction,
             each.variant_index,
             each.offset.tolist(),
+            None if each.address is None else (each.address.format, each.address.tolist()),
             {
                 name: (each[name].format, each[name].shape, each[name].tolist())
                 for name in each.names

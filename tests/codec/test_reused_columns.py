@@ -35,9 +35,14 @@ class ViewingCommand:
 
 
 def found(columns: Columns) -> Any:
-    """Return the offsets and the values of all rows."""
+    """Return the offsets and the values of all rows, and the addresses if there are any."""
     return [
-        (each.offset.tolist(), [each[name].tolist() for name in each.names]) for each in columns
+        (
+            each.offset.tolist(),
+            [each[name].tolist() for name in each.names],
+            *([] if each.address is None else [each.address.tolist()]),
+        )
+        for each in columns
     ]
 
 

@@ -65,6 +65,7 @@ def found(parts: Sequence[Columns], ends: Sequence[Columns]) -> Found:
         for each in part:
             key = each.command.name, each.direction, each.variant_index
             columns = [each[name].tolist() for name in each.names]
+            columns += [] if each.address is None else [each.address.tolist()]
             # Written out, because a float may be no number, which does not equal itself.
             rows.setdefault(key, []).extend(map(repr, zip(each.offset.tolist(), *columns)))
         rejected += part.rejected.tolist()

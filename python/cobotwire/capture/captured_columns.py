@@ -172,8 +172,9 @@ class CapturedColumns:
         """Return all rows of one message as a ``pyarrow.Table``, in the order of their times.
 
         The columns are ``time`` (``timestamp[ns]``, UTC), ``direction`` (dictionary),
-        ``interface``, ``offset``, and those of :meth:`cobotwire.codec.columns.Columns.to_arrow`:
-        with ``wide`` each number has its own. They do not depend on the rows.
+        ``interface``, ``offset``, ``address`` if frames have an address byte, and those of
+        :meth:`cobotwire.codec.columns.Columns.to_arrow`: with ``wide`` each number has its own.
+        They do not depend on the rows.
 
         Args:
             command: the name of the command.

@@ -66,6 +66,11 @@ class CapturedRows:
         return self._rows.offset
 
     @property
+    def address(self) -> memoryview | None:
+        """The address byte of each message; None if frames of the edition have no address."""
+        return self._rows.address
+
+    @property
     def direction(self) -> memoryview:
         """The direction of each message's packets: 8-bit indexes into ``DIRECTIONS``."""
         parts = [
@@ -95,10 +100,11 @@ class CapturedRows:
         return f"<CapturedRows {command} {direction} {self.variant_index}: {len(self)}>"
 
     def to_numpy(self) -> Arrays:
-        """Return the columns as arrays by name: time, direction, interface, offset, the fields.
+        """Return the columns as arrays by name: when, where, and the fields.
 
-        ``time`` is ``datetime64[ns]``; ``direction`` holds texts. Fields are as in
-        :meth:`cobotwire.codec.columns.Rows.to_numpy`.
+        They are ``time``, ``direction``, ``interface``, ``offset``, ``address`` if frames have an
+        address byte, and the fields. ``time`` is ``datetime64[ns]``; ``direction`` holds texts.
+        Fields are as in :meth:`cobotwire.codec.columns.Rows.to_numpy`.
 
         Raises:
             ImportError: NumPy (the extra ``numpy``) is not installed.
@@ -110,8 +116,8 @@ class CapturedRows:
         """Return the rows as a ``pyarrow.Table``.
 
         The columns are ``time`` (``timestamp[ns]``, UTC), ``direction`` (dictionary),
-        ``interface``, ``offset`` and the fields, which are as in
-        :meth:`cobotwire.codec.columns.Rows.to_arrow`.
+        ``interface``, ``offset``, ``address`` if frames have an address byte, and the fields, which
+        are as in :meth:`cobotwire.codec.columns.Rows.to_arrow`.
 
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.
@@ -119,7 +125,7 @@ class CapturedRows:
         return self._rows.to_arrow(wide=wide, leading=self.leading())
 
     def leading(self) -> dict[str, Any]:
-        """Return the columns of :meth:`to_arrow` before the fields.
+        """Return the columns of :meth:`to_arrow` before the address and the fields.
 
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.

@@ -9,6 +9,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from cobotwire.codec.arrow_addresses import ADDRESS, address_field
 from cobotwire.codec.arrow_cells import LARGEST, cells, flat
 from cobotwire.codec.arrow_layout import Layout
 from cobotwire.codec.table_columns import TableColumn
@@ -60,7 +61,9 @@ def arrow_table(layout: Layout, parts: Sequence[Part], metadata: Mapping[str, st
     """
     columns = [*layout.columns()]
     leading = [
-        pa.field(name, as_array(values).type, nullable=False)
+        address_field(layout.table)
+        if name == ADDRESS and layout.table.frame.addresses
+        else pa.field(name, as_array(values).type, nullable=False)
         for name, values in parts[0].leading.items()
     ]
     names = {column.name for column, _ in columns}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Mapping
 from typing import Any
 
 import pyarrow as pa
@@ -73,6 +74,13 @@ def choices_in(field: Field, part: int | None) -> dict[str, int]:
     return {}
 
 
+def named(numbers: Any, choices: Mapping[str, int]) -> Any:
+    """Return the names of numbers as a dictionary array; each is the value of one of the names."""
+    values = pa.array([*choices.values()], numbers.type)
+    index = pc.index_in(numbers, values).cast(pa.int8() if len(choices) < 128 else pa.int32())
+    return pa.DictionaryArray.from_arrays(index, pa.array([*choices], pa.utf8()))
+
+
 def flat(column: memoryview) -> Any:
     """Return the numbers of a buffer as an array."""
     size = column.nbytes // column.itemsize
@@ -85,9 +93,7 @@ def _values(field: Field, part: int | None, numbers: Any) -> Any:
         return numbers
     described = numbers_in(field, part)
     if choices := choices_in(field, part):
-        physical = pa.array([*choices.values()], pa.float64())
-        index = pc.index_in(numbers, physical).cast(pa.int8() if len(choices) < 128 else pa.int32())
-        return pa.DictionaryArray.from_arrays(index, pa.array([*choices], pa.utf8()))
+        return named(numbers, choices)
     is_flag = field.kind == "flag" and field.const is None and len(field.cases) == 1
     if described and (is_flag or all(number.kind == "flag" for number in described)):
         return numbers.cast(pa.bool_())

@@ -12,7 +12,7 @@ from cobotwire.codec.arrow_cells import cells_type, choices_in, numbers_in
 from cobotwire.codec.table_columns import TableColumn, part_names, table_columns
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.fields import Variant
-from cobotwire.protocol.table import Command, Direction
+from cobotwire.protocol.table import Command, Direction, Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +20,7 @@ class Layout:
     """Which columns a table of messages has. They depend on the message only, not on its rows.
 
     Attributes:
+        table: the edition.
         command: the command of the messages.
         direction: whether they are requests or replies.
         shown: the variants that the table has room for.
@@ -27,6 +28,7 @@ class Layout:
         wide: whether each number of a field has a column of its own.
     """
 
+    table: Table
     command: Command
     direction: Direction
     shown: Sequence[Variant]

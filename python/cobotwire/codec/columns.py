@@ -59,24 +59,29 @@ class Rows:
 
     A column is a memoryview of shape ``(n,)``, or ``(n, k)`` for a field that is a row of ``k``
     numbers: a list of groups has the numbers of all its groups in a row. It has one dimension if it
-    is empty. ``offset`` holds 64-bit unsigned integers. Fields hold physical values as float64;
-    with ``raw`` they hold raw values, in the smallest integer type for the values that the field
-    allows. Bytes and texts are 8-bit unsigned integers. NumPy and Arrow use the same memory.
+    is empty. ``offset`` holds 64-bit unsigned integers, and ``address`` 8-bit ones. Fields hold
+    physical values as float64; with ``raw`` they hold raw values, in the smallest integer type for
+    the values that the field allows. Bytes and texts are 8-bit unsigned integers. NumPy and Arrow
+    use the same memory.
     """
 
     def __init__(
         self,
+        table: Table,
         command: Command,
         direction: Direction,
         variant_index: int,
         offset: Buffer,
         columns: Sequence[Buffer],
+        address: Buffer | None,
     ) -> None:
+        self.table = table
         self.command = command
         self.direction: Direction = direction
         self.variant_index = variant_index
         self._offset = offset
         self._columns = columns
+        self._address = address
 
     @property
     def variant(self) -> Variant:
@@ -92,6 +97,11 @@ class Rows:
     def offset(self) -> memoryview:
         """The start of each message in the stream."""
         return memoryview(self._offset)
+
+    @property
+    def address(self) -> memoryview | None:
+        """The address byte of each message; None if frames of the edition have no address."""
+        return None if self._address is None else memoryview(self._address)
 
     def __len__(self) -> int:
         return len(self.offset)
@@ -114,10 +124,11 @@ class Rows:
         return f"<Rows {self.command.name} {self.direction} {self.variant_index}: {len(self)}>"
 
     def to_numpy(self) -> Arrays:
-        """Return the columns as arrays on the same memory, by name, ``offset`` included.
+        """Return the columns as arrays on the same memory, by name: offset, address, the fields.
 
-        An array has a dimension more for a field of several numbers, and two more for a list of
-        groups or texts, also if there are no rows. Bytes and texts are arrays of ``uint8``.
+        ``address`` exists only if frames have an address byte. An array has a dimension more for a
+        field of several numbers, and two more for a list of groups or texts, also if there are no
+        rows. Bytes and texts are arrays of ``uint8``.
 
         Raises:
             ImportError: NumPy (the extra ``numpy``) is not installed.
@@ -126,6 +137,8 @@ class Rows:
 
         rows = len(self)
         arrays = {"offset": np.asarray(self.offset)}
+        if self.address is not None:
+            arrays["address"] = np.asarray(self.address)
         for field, column in zip(self.variant.fields, self._columns):
             shape = (rows, *field.dimensions)
             arrays[column_name(field.name, self.direction)] = np.asarray(
@@ -142,18 +155,22 @@ class Rows:
         column of its own: ``j1`` to ``j6``. The metadata of an Arrow field has its ``unit``. Raw
         values are integers.
 
+        If frames have an address byte, the column ``address`` follows ``offset``: a dictionary of
+        the names of the devices.
+
         ``leading`` takes the place of ``offset``: columns by name, each a pyarrow array or a buffer
-        of numbers, with one element for each row.
+        of numbers, with one element for each row. ``address`` follows the column ``offset`` in
+        them, or all of them if they have none.
 
         Raises:
             ImportError: pyarrow (the extra ``arrow``) is not installed.
-            UsageError: a leading column has another number of rows, or the name of a field.
+            UsageError: a leading column has another number of rows, or the name of another column.
         """
         from cobotwire.codec.arrow import arrow_table
         from cobotwire.codec.arrow_layout import Layout
 
         raw = all(memoryview(column).format != "d" for column in self._columns)
-        layout = Layout(self.command, self.direction, (self.variant,), raw, wide)
+        layout = Layout(self.table, self.command, self.direction, (self.variant,), raw, wide)
         metadata = {
             "command": self.command.name,
             "direction": self.direction,
@@ -163,9 +180,12 @@ class Rows:
 
     def _part(self, leading: Mapping[str, Any] | None) -> Part:
         from cobotwire.codec.arrow import Part
+        from cobotwire.codec.arrow_addresses import with_address
 
         columns = [memoryview(column) for column in self._columns]
         first = {"offset": self.offset} if leading is None else leading
+        if self.address is not None:
+            first = with_address(first, self.table, self.address)
         return Part(self.variant, self.offset, columns, first)
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
@@ -264,7 +284,10 @@ class Columns(Sequence[Rows]):
         empty = memoryview(b"").cast("Q")
         codes: list[Any] = [cell_type(field, self.raw) for field in variants[chosen].fields]
         columns = [memoryview(b"").cast(code) for code in codes]
-        return Rows(self.table.command(command), direction, chosen, empty, columns)
+        address = memoryview(b"") if self.table.frame.addresses else None
+        return Rows(
+            self.table, self.table.command(command), direction, chosen, empty, columns, address
+        )
 
     def to_arrow(
         self,
@@ -295,7 +318,7 @@ class Columns(Sequence[Rows]):
         ]
         parts = [rows._part(leading and leading(rows)) for rows in found or [first]]
         variants = first.command.variants(direction)
-        layout = Layout(first.command, direction, variants, self.raw, wide)
+        layout = Layout(self.table, first.command, direction, variants, self.raw, wide)
         return arrow_table(layout, parts, {"command": command, "direction": direction})
 
     def __repr__(self) -> str:
@@ -317,12 +340,15 @@ def join_columns(buffers: Sequence[Buffer]) -> memoryview[Any]:
 def join_rows(found: Sequence[Rows]) -> Rows:
     """Return a copy of rows of one variant, one after another."""
     first = found[0]
+    addresses = [rows._address for rows in found if rows._address is not None]
     return Rows(
+        first.table,
         first.command,
         first.direction,
         first.variant_index,
         join_columns([rows._offset for rows in found]),
         [join_columns(columns) for columns in zip(*[rows._columns for rows in found])],
+        join_columns(addresses) if addresses else None,
     )
 
 

@@ -10,7 +10,7 @@ from cobotwire.protocol.frame_format import Direction
 
 # The columns in front of the fields. Which of them a table has depends on its source, but the names
 # of the other columns do not.
-LEADING = ("offset", "time", "direction", "interface", "robot", "source")
+LEADING = ("offset", "address", "time", "direction", "interface", "robot", "source")
 
 
 class TableColumn(NamedTuple):

@@ -207,12 +207,15 @@ fn rows<'py>(
     for (field, cells) in fields.iter().zip(rows.fields) {
         columns.push(Bound::new(py, Memory::cells(cells, field))?);
     }
+    let has_address = edition.core.frame().layout.address_at.is_some();
     names.rows.bind(py).call1((
+        edition.table.bind(py),
         command.object.bind(py),
         names.direction(py, rows.variant.direction),
         rows.variant.variant,
         Memory::offsets(rows.offsets),
         PyTuple::new(py, columns)?,
+        has_address.then(|| Memory::addresses(rows.addresses)),
     ))
 }
 

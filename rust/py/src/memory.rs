@@ -39,6 +39,11 @@ impl Memory {
         Self::new(Column::Offsets(all), 0)
     }
 
+    /// Return a column of address bytes.
+    pub fn addresses(all: Vec<u8>) -> Self {
+        Self::new(Column::Cells(Cells::U8(all)), 0)
+    }
+
     /// Return a column of times.
     pub fn times(all: Vec<i64>) -> Self {
         Self::new(Column::Cells(Cells::I64(all)), 0)

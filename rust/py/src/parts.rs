@@ -1,6 +1,6 @@
 //! Converts parts of the core's results to Python objects, and back to reuse their memory (`out=`).
 
-use cobotwire_core::{Columns, Direction, Offsets, Rows, Spans, VariantId};
+use cobotwire_core::{Cells, Columns, Direction, Offsets, Rows, Spans, VariantId};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -29,19 +29,22 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
     // Attributes are read first, since that runs Python code: another thread, or an error.
     let variants = rows.iter().map(|rows| variant(edition, rows));
     let variants = variants.collect::<PyResult<Vec<_>>>()?;
-    let memories = rows.iter().map(memories).collect::<PyResult<Vec<_>>>()?;
-    let all: Vec<&Memory> = memories.iter().flatten().map(Bound::get).collect();
+    let memories = rows.iter().map(Memories::of).collect::<PyResult<Vec<_>>>()?;
+    let all: Vec<&Memory> = memories.iter().flat_map(Memories::all).collect();
     // Check all of them first, so that the old columns stay complete after an error.
     let mut taken = Memory::take_all(&all)?.into_iter();
     let mut old = Columns::default();
     for (variant, memories) in variants.into_iter().zip(&memories) {
-        let mut columns = taken.by_ref().take(memories.len());
+        let mut columns = taken.by_ref().take(memories.all().count());
         let offsets = columns.next().map_or(Vec::new(), offsets);
+        let address = memories.address.as_ref().and_then(|_| columns.next());
+        let addresses = address.map_or(Vec::new(), addresses);
         let fields = columns.map(Column::into_cells).collect();
         if let Some(variant) = variant {
             old.rows.push(Rows {
                 variant,
                 offsets,
+                addresses,
                 fields,
             });
         }
@@ -50,12 +53,27 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
     Ok(old)
 }
 
-/// Return the memories of some rows: the offsets, then the fields.
-fn memories<'py>(rows: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, Memory>>> {
-    let mut all: Vec<Bound<'py, Memory>> = vec![rows.getattr("_offset")?.extract()?];
-    let columns: Vec<Bound<'py, Memory>> = rows.getattr("_columns")?.extract()?;
-    all.extend(columns);
-    Ok(all)
+/// The memories of some rows.
+struct Memories<'py> {
+    offset: Bound<'py, Memory>,
+    address: Option<Bound<'py, Memory>>,
+    fields: Vec<Bound<'py, Memory>>,
+}
+
+impl<'py> Memories<'py> {
+    fn of(rows: &Bound<'py, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            offset: rows.getattr("_offset")?.extract()?,
+            address: rows.getattr("_address")?.extract()?,
+            fields: rows.getattr("_columns")?.extract()?,
+        })
+    }
+
+    /// Return all of them: the offsets, the addresses if there are any, then the fields.
+    fn all(&self) -> impl Iterator<Item = &Memory> {
+        let first = std::iter::once(&self.offset).chain(&self.address);
+        first.chain(&self.fields).map(Bound::get)
+    }
 }
 
 /// The variant of old rows; `None`: the edition has no command of that name.
@@ -72,6 +90,13 @@ fn variant(edition: &Edition, rows: &Bound<'_, PyAny>) -> PyResult<Option<Varian
         command,
         variant,
     }))
+}
+
+fn addresses(column: Column) -> Vec<u8> {
+    match column {
+        Column::Cells(Cells::U8(all)) => all,
+        _ => Vec::new(),
+    }
 }
 
 fn offsets(column: Column) -> Vec<u64> {

@@ -15,8 +15,9 @@ from cobotwire.codec.arrow import times
 from cobotwire.codec.interface import Columns, Counters, Rows
 from cobotwire.protocol.table import Table
 
-# The columns before the fields: which robot, which input, where in the stream, when.
-OWN = ("robot", "source", "offset", "time")
+# The columns before the fields: which robot, which input, where in the stream, when. Editions whose
+# frames have an address have all of them; others lack the address.
+OWN = ("robot", "source", "offset", "address", "time")
 TIME = pa.timestamp("ns", tz="UTC")
 
 
@@ -56,7 +57,7 @@ class MessageTables:
             leading=lambda rows: _leading(rows, columns, origin),
         )
         # Rows of raw bytes have no time.
-        place = OWN.index("time")
+        place = table.schema.get_field_index("time")
         schema = table.schema.set(place, pa.field("time", TIME))
         return pa.Table.from_arrays(table.columns, schema=schema)
 
@@ -82,15 +83,19 @@ def messages_of(table: Table) -> list[Message]:
 
 
 def _leading(rows: Rows, columns: Columns, origin: Origin) -> Mapping[str, Any]:
-    """Return our columns for some rows."""
+    """Return our columns for some rows, except the address, which every table of them has."""
     size = len(rows)
     time = pa.nulls(size, TIME)
     if origin.stream is not None:
         time = next(
             (times(its) for each, its in zip(columns, origin.stream.times) if each is rows), time
         )
-    values = (_constant(origin.robot, size), _constant(origin.source, size), rows.offset, time)
-    return dict(zip(OWN, values))
+    return {
+        "robot": _constant(origin.robot, size),
+        "source": _constant(origin.source, size),
+        "offset": rows.offset,
+        "time": time,
+    }
 
 
 def _constant(text: str, size: int) -> Any:

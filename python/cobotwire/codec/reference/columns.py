@@ -64,7 +64,7 @@ class ReferenceColumnReader:
         return self._columns([*self._framer.feed(data), *self._framer.flush()], at_end=True)
 
     def _columns(self, events: list[Event], at_end: bool = False) -> Columns:
-        rows: dict[tuple[int, Direction, int], tuple[Any, list[Any]]] = {}
+        rows: dict[tuple[int, Direction, int], tuple[Any, Any, list[Any]]] = {}
         rejected = array("Q")
         for event in events:
             self._noise.take(event)
@@ -79,8 +79,12 @@ class ReferenceColumnReader:
             # By identity, because two variants of a command may be equal.
             index = next(i for i, each in enumerate(variants) if each is message.variant)
             key = (self._table.commands.index(message.command), message.direction, index)
-            offset, columns = rows.setdefault(key, (array("Q"), self._empty(message.variant)))
+            offset, address, columns = rows.setdefault(
+                key, (array("Q"), array("B"), self._empty(message.variant))
+            )
             offset.append(event.offset)
+            if message.address is not None:
+                address.append(message.address)
             values = self._values(event, message)
             for column, value in zip(columns, values):
                 column.extend(value)
@@ -110,12 +114,15 @@ class ReferenceColumnReader:
         (command, direction, variant), _ = item
         return command, direction == "reply", variant
 
-    def _rows(self, key: tuple[int, Direction, int], offset: Any, columns: list[Any]) -> Rows:
+    def _rows(
+        self, key: tuple[int, Direction, int], offset: Any, address: Any, columns: list[Any]
+    ) -> Rows:
         index, direction, variant = key
         command = self._table.commands[index]
         fields = command.variants(direction)[variant].fields
         shaped = [shape(field, column, len(offset)) for field, column in zip(fields, columns)]
-        return Rows(command, direction, variant, offset, shaped)
+        addresses = address if self._table.frame.addresses else None
+        return Rows(self._table, command, direction, variant, offset, shaped, addresses)
 
 
 class Noises:

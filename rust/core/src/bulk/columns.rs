@@ -101,7 +101,10 @@ impl ColumnReader {
 
     /// Reserve memory for the values of `data`, estimated from parts of it.
     pub fn expect(&mut self, data: &[u8], advise: Advise) {
-        let Sorter { plans, rows, .. } = &mut self.sorter;
+        let Sorter {
+            table, plans, rows, ..
+        } = &mut self.sorter;
+        let has_address = table.frame().layout.address_at.is_some();
         let counts = expected(self.stream.rules(), plans.groups.len(), data);
         for (plan, count) in plans.groups.iter().zip(counts) {
             let first = plan.variants.first();
@@ -109,6 +112,9 @@ impl ColumnReader {
                 continue;
             };
             reserve(&mut rows.offsets, count, advise);
+            if has_address {
+                reserve(&mut rows.addresses, count, advise);
+            }
             for (field, cells) in plan.fields.iter().flatten().zip(&mut rows.fields) {
                 cells.reserve(count * field.numbers.len(), advise);
             }

@@ -29,6 +29,10 @@ impl Job<'_> {
         {
             rows.offsets
                 .extend(self.frames.iter().map(|at| self.place(*at)));
+            if let Some(place) = self.table.frame().layout.address_at {
+                let addresses = self.frames.iter().filter_map(|at| self.address(*at, place));
+                rows.addresses.extend(addresses);
+            }
             for (field, cells) in fields.iter().zip(&mut rows.fields) {
                 self.column(field, cells);
             }
@@ -43,6 +47,11 @@ impl Job<'_> {
 
     fn place(&self, at: u16) -> u64 {
         self.offset + u64::from(at)
+    }
+
+    /// Return the address byte of a frame. There is one: a frame ends in its block.
+    fn address(&self, at: u16, place: usize) -> Option<u8> {
+        self.block.get(usize::from(at) + place).copied()
     }
 
     #[allow(clippy::indexing_slicing)] // in bounds: a frame that starts in the block ends in it
@@ -101,6 +110,9 @@ impl Job<'_> {
         };
         if let Some(rows) = all.get_mut(plan.rows + index) {
             rows.offsets.push(self.place(at));
+            let place = self.table.frame().layout.address_at;
+            let address = place.and_then(|place| self.address(at, place));
+            rows.addresses.extend(address);
             push(values, &mut rows.fields);
         }
         true

@@ -11,6 +11,8 @@ pub struct Rows {
     pub variant: VariantId,
     /// Where each frame starts.
     pub offsets: Vec<u64>,
+    /// The address byte of each frame; empty if the format has no addresses.
+    pub addresses: Vec<u8>,
     /// A column for each field. A field with a row of numbers has several cells for each frame.
     pub fields: Vec<Cells>,
 }
@@ -23,6 +25,7 @@ impl Rows {
         Self {
             variant,
             offsets: Vec::new(),
+            addresses: Vec::new(),
             fields: fields
                 .iter()
                 .map(|field| Cells::new(field, numbers))
@@ -39,6 +42,7 @@ impl Rows {
         if columns && self.fields.iter().zip(&old.fields).all(alike) {
             *self = old;
             self.offsets.clear();
+            self.addresses.clear();
             self.fields.iter_mut().for_each(Cells::clear);
         }
     }
@@ -48,6 +52,7 @@ impl Rows {
         let empty = Self {
             variant: self.variant,
             offsets: Vec::new(),
+            addresses: Vec::new(),
             fields: self.fields.iter().map(Cells::like).collect(),
         };
         std::mem::replace(self, empty)

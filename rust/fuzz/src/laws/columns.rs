@@ -155,9 +155,10 @@ fn expected(source: &Source<'_>, frames: &[(usize, &[u8])], numbers: Numbers) ->
             continue;
         };
         let fields = variant_at(source.table, variant).fields().len();
-        let (offsets, columns) = rows.entry(key(variant)).or_default();
+        let (offsets, addresses, columns) = rows.entry(key(variant)).or_default();
         columns.resize(fields, vec![]);
         offsets.push(*at as u64);
+        addresses.extend(source.table.frame().layout.address_at.map(|at| bytes[at]));
         for (field, raw, value) in read {
             columns[field].push(match (numbers, value) {
                 (Numbers::Raw, _) => raw,

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use cobotwire_core::{Cells, Columns, Direction, Field, Number, Spans, Table, Variant, VariantId};
 
-/// The rows of each variant: where they start, and its fields' numbers.
-pub type Rows = BTreeMap<(bool, usize, usize), (Vec<u64>, Vec<Vec<i64>>)>;
+/// The rows of each variant: where they start, their addresses, and its fields' numbers.
+pub type Rows = BTreeMap<(bool, usize, usize), (Vec<u64>, Vec<u8>, Vec<Vec<i64>>)>;
 
 /// Return the variant with this id.
 pub fn variant_at(table: &Table, variant: VariantId) -> &Variant {
@@ -38,11 +38,13 @@ impl Found {
                 assert!(fits(cells, field), "{cells:?} holds {field:?}");
             }
             if rows.offsets.is_empty() {
+                assert!(rows.addresses.is_empty());
                 assert!(rows.fields.iter().all(Cells::is_empty));
                 continue;
             }
-            let (offsets, all) = self.rows.entry(key(rows.variant)).or_default();
+            let (offsets, addresses, all) = self.rows.entry(key(rows.variant)).or_default();
             offsets.extend(rows.offsets);
+            addresses.extend(rows.addresses);
             all.resize(fields.len(), vec![]);
             for (all, cells) in all.iter_mut().zip(&rows.fields) {
                 all.extend(raw_values(cells));

@@ -1,6 +1,7 @@
 """Write messages to an MCAP file, which Foxglove, PlotJuggler and other robotics tools open.
 
-Each message of each robot is a channel with JSON objects. The angles of the joints are also
+Each message of each robot is a channel with JSON objects; so is each message of each device, if
+several devices share a line. The angles of the joints are also
 ``foxglove.JointStates``, and the pose of the arm's end is a ``foxglove.PoseInFrame``.
 """
 
@@ -56,15 +57,16 @@ class McapSink:
         """Yield the records of a batch, in the order of its rows."""
         motion = self._motion(batch.edition)
         schema = schemas.of_table(f"cobotwire.{batch.message.label}", batch.table.schema)
-        topic = f"/{batch.robot}/{batch.message.command}/{batch.message.direction}"
-        channel = self._channel(topic, schema, batch.edition)
+        name = f"{batch.message.command}/{batch.message.direction}"
         for block in batch.table.to_batches(max_chunksize=ROWS):
             times = block.column("time").cast("int64").to_pylist()
             dropped = [name for name in block.schema.names if name in OWN]
-            for time_ns, fields in zip(times, block.drop_columns(dropped).to_pylist()):
+            rows = zip(times, _devices(batch, block), block.drop_columns(dropped).to_pylist())
+            for time_ns, device, fields in rows:
+                channel = self._channel(f"{device}/{name}", schema, batch.edition)
                 yield Record(time_ns, channel, _json(fields))
                 for derived, value in motion.derived(batch.message, fields, time_ns):
-                    topic = f"/{batch.robot}/{TOPICS[derived['title']]}"
+                    topic = f"{device}/{TOPICS[derived['title']]}"
                     yield Record(
                         time_ns, self._channel(topic, derived, batch.edition), _json(value)
                     )
@@ -92,6 +94,14 @@ def open_sink(file: BinaryIO, schema: Any, plan: ExportPlan) -> McapSink:
     writer = Writer(file)
     writer.start(library="cobotwire")
     return McapSink(writer, plan)
+
+
+def _devices(batch: Batch, block: Any) -> list[str]:
+    """Return the start of the topics of each row: its robot, and its device if rows name one."""
+    robot = f"/{batch.robot}"
+    if "address" not in block.schema.names:
+        return [robot] * block.num_rows
+    return [f"{robot}/{name.lower()}" for name in block.column("address").to_pylist()]
 
 
 def _json(value: Any) -> bytes:

@@ -21,11 +21,9 @@ class Motion:
 
     def __init__(self, editions: Editions, edition: str) -> None:
         table = editions.codec(edition).table
-        # The joints of several devices on one line cannot be told apart here.
-        commands = () if table.addresses else table.commands
         self._found = {
             command.name: command.variants("reply")[0].fields[0]
-            for command in commands
+            for command in table.commands
             if command.role == "joints"
         }
         self._forward = editions.forward(edition)

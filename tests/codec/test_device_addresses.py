@@ -1,0 +1,165 @@
+"""Rows of devices that share a line say which device each of them belongs to."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec, Columns
+from cobotwire.codec.stretches import Stretch, decode_stretch
+from cobotwire.editions import load, mycobot280
+from cobotwire.editions.mybuddy import TABLE
+from cobotwire.protocol.errors import UsageError
+from strategies import codec_of
+
+LEFT, RIGHT, WAIST = 1, 2, 3
+BOTH = pytest.mark.parametrize("codec", ["reference", "native"], indirect=True)
+
+
+@pytest.fixture
+def codec(request: pytest.FixtureRequest) -> Codec:
+    return codecs.load(TABLE, request.param)
+
+
+def angles(address: int, *values: float) -> bytes:
+    """Return the frame by which a limb reports its angles."""
+    codec = codec_of("mybuddy", "reference")
+    return codec.encode("get_angles", "reply", [values], address=address)
+
+
+STREAM = b"".join(
+    [
+        angles(LEFT, 10, 0, 0, 0, 0, 0),
+        angles(RIGHT, -10, 0, 0, 0, 0, 0),
+        b"noise",
+        angles(RIGHT, -11, 0, 0, 0, 0, 0),
+        angles(LEFT, 11, 0, 0, 0, 0, 0),
+    ]
+)
+WHOSE = [LEFT, RIGHT, RIGHT, LEFT]
+NAMES = ["LEFT", "RIGHT", "RIGHT", "LEFT"]
+
+
+def whose(columns: Columns) -> list[int]:
+    """Return the addresses of all rows with angles."""
+    rows = columns.rows("get_angles")
+    assert rows.address is not None
+    assert rows.address.format == "B"
+    assert len(rows.address) == len(rows)
+    return rows.address.tolist()
+
+
+@BOTH
+def test_rows_have_the_address_of_their_frame(codec: Codec) -> None:
+    columns = codec.decode_columns(STREAM, "reply")
+    assert whose(columns) == WHOSE
+    arrays = columns.rows("get_angles").to_numpy()
+    assert [*arrays] == ["offset", "address", "angles"]
+    assert arrays["address"].dtype == np.uint8
+    assert arrays["angles"][arrays["address"] == LEFT, 0].tolist() == [10, 11]
+    assert whose(codec.decode_columns(b"", "reply")) == []
+
+
+@BOTH
+def test_table_names_the_devices_after_the_offset(codec: Codec) -> None:
+    columns = codec.decode_columns(STREAM, "reply")
+    for table in (columns.to_arrow("get_angles", wide=True), pa.table(columns.rows("get_angles"))):
+        assert table.column_names[:2] == ["offset", "address"]
+        assert table["address"].to_pylist() == NAMES
+        field = table.schema.field("address")
+        assert field.type == pa.dictionary(pa.int8(), pa.utf8())
+        assert field.metadata == {b"values": b"ALL=0, LEFT=1, RIGHT=2, WAIST=3"}
+        table.validate(full=True)
+    rows = columns.rows("get_angles")
+    when = {"offset": rows.offset, "time": pa.array(range(4))}
+    assert rows.to_arrow(leading=when).column_names == ["offset", "address", "time", "angles"]
+    assert rows.to_arrow(leading={}).column_names == ["address", "angles"]
+    with pytest.raises(UsageError, match="mybuddy has a column address: rename the leading one"):
+        rows.to_arrow(leading={"address": rows.offset})
+
+
+@BOTH
+def test_address_without_a_name_is_named_by_its_number(codec: Codec) -> None:
+    from dataclasses import replace
+
+    unnamed = codecs.load(replace(TABLE, addresses=()), codec.name)
+    table = unnamed.decode_columns(STREAM, "reply").to_arrow("get_angles")
+    assert table["address"].to_pylist() == ["1", "2", "2", "1"]
+
+
+def test_rows_of_an_edition_without_addresses_have_none(codec_280: Codec) -> None:
+    columns = codec_280.decode_columns(codec_280.encode("get_angles", "request", ()) * 2)
+    rows = columns.rows("get_angles", "request")
+    assert rows.address is None
+    assert [*rows.to_numpy()] == rows.to_arrow().column_names == ["offset"]
+    assert columns.rows("get_coords").address is None
+
+
+@pytest.fixture(params=["reference", "native"])
+def codec_280(request: pytest.FixtureRequest) -> Codec:
+    return codecs.load(mycobot280.TABLE, request.param)
+
+
+def test_register_address_is_told_apart_from_that_of_a_device() -> None:
+    table = codecs.load(load("mycobot320").TABLE).decode_columns(b"").to_arrow("get_pro_gripper")
+    assert table.column_names[:3] == ["offset", "gripper_id", "reply_address"]
+
+
+@pytest.mark.parametrize("size", [1, 7, 1000, 1 << 20])
+def test_long_stream_in_pieces_keeps_the_addresses(size: int) -> None:
+    """Several blocks of bulk reading, where the rows of a message are read together."""
+    codec = codecs.load(TABLE, "native")
+    times = 3 if size == 1 else 3000
+    reader = codec.column_reader("reply")
+    stream = STREAM * times
+    parts = [reader.feed(stream[at : at + size]) for at in range(0, len(stream), size)]
+    parts.append(reader.flush())
+    assert [each for part in parts for each in whose(part)] == WHOSE * times
+
+
+@BOTH
+def test_stretches_keep_the_addresses(codec: Codec) -> None:
+    class Bytes:
+        size = len(STREAM)
+
+        def read(self, offset: int, size: int) -> bytes:
+            return STREAM[offset : offset + size]
+
+    half = STREAM.index(b"noise") + 2
+    ends = [Stretch(0, half), Stretch(half, len(STREAM))]
+    parts = [each for end in ends for each in decode_stretch(codec, "reply", Bytes(), end)]
+    assert [address for part in parts for address in whose(part)] == WHOSE
+
+
+def test_rejected_value_takes_the_slow_path_with_the_address() -> None:
+    """A group with a value that no variant allows is read frame by frame."""
+    field = TABLE.command("is_power_on").reply[0].fields[0]
+    codec = codec_of("mybuddy", "native")
+    good = [codec.encode("is_power_on", "reply", (1,), address=each) for each in (WAIST, LEFT)]
+    id = TABLE.command("is_power_on").id
+    bad = TABLE.frame.enclose(id, bytes([77]), RIGHT, "reply")
+    assert not field.cases[0].numbers[0].minimum <= 77 <= field.cases[0].numbers[0].maximum
+    columns = codec.decode_columns(good[0] + bad + good[1], "reply")
+    assert len(columns.rejected) == 1
+    assert list(columns.rows("is_power_on").address or ()) == [WAIST, LEFT]
+
+
+def test_memory_of_earlier_addresses_is_reused_unless_a_view_exists() -> None:
+    codec = codecs.load(TABLE, "native")
+    out = codec.decode_columns(STREAM * 2, "reply")
+    view: Any = out.rows("get_angles").address
+    with pytest.raises(BufferError, match="still used"):
+        codec.decode_columns(STREAM, "reply", out=out)
+    assert whose(out) == WHOSE * 2, "the error leaves the columns intact"
+    view.release()
+    again = codec.decode_columns(STREAM, "reply", out=out)
+    assert whose(again) == WHOSE
+    other = codecs.load(mycobot280.TABLE, "native")
+    request = other.encode("get_angles", "request", ())
+    without = other.decode_columns(request, "both", out=again)
+    assert without.rows("get_angles", "request").address is None
+    assert whose(codec.decode_columns(STREAM, "reply", out=without)) == WHOSE
