@@ -135,7 +135,9 @@ def real_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     codec = codec_of(table.edition, "reference")
     addresses = st.sampled_from(table.frame.addresses or (None,))
     return st.builds(
-        lambda message, address: frame_of(codec, *message, address), messages(table), addresses
+        lambda message, address: frame_of(codec, message[0], message[1], address),
+        messages(table),
+        addresses,
     )
 
 

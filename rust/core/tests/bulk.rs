@@ -39,9 +39,11 @@ fn slowly(table: &Table, listening: Listening, stream: &[u8]) -> Slow {
     slow
 }
 
-/// Return the variant, and the physical values of a frame, by the decoder; `None`: no variant
-/// allows them.
-fn read(table: &Table, listening: Listening, frame: &[u8]) -> Option<(VariantId, Vec<f64>)> {
+/// A frame's variant, its address if it has one, and its physical values.
+type Read = (VariantId, Option<u8>, Vec<f64>);
+
+/// Read a frame by the decoder; `None`: no variant allows its values.
+fn read(table: &Table, listening: Listening, frame: &[u8]) -> Option<Read> {
     let ways = match listening {
         Listening::To(way) => vec![way],
         Listening::Both => vec![Direction::Request, Direction::Reply],
@@ -57,25 +59,28 @@ fn read(table: &Table, listening: Listening, frame: &[u8]) -> Option<(VariantId,
     };
     Some((
         decoded.variant,
+        decoded.address,
         decoded.values.iter().filter_map(number).collect(),
     ))
 }
 
-/// Return each row of columns: where it starts, its variant and its numbers.
-fn rows(columns: &Columns) -> Vec<(u64, VariantId, Vec<f64>)> {
+/// Return each row of columns, with the place where it starts.
+fn rows(columns: &Columns) -> Vec<(u64, Read)> {
     let mut all = Vec::new();
     for rows in &columns.rows {
+        assert!([0, rows.offsets.len()].contains(&rows.addresses.len()));
         for (index, offset) in rows.offsets.iter().enumerate() {
             let cells = |cells: &Cells| {
                 let values = floats(cells);
                 let each = values.len() / rows.offsets.len();
                 values[index * each..(index + 1) * each].to_vec()
             };
-            all.push((
-                *offset,
+            let read = (
                 rows.variant,
+                rows.addresses.get(index).copied(),
                 rows.fields.iter().flat_map(cells).collect(),
-            ));
+            );
+            all.push((*offset, read));
         }
     }
     all.sort_by_key(|(offset, ..)| *offset);
@@ -136,7 +141,7 @@ fn check(table: &Arc<Table>, stream: &[u8], dice: &mut Dice) {
         let mut rejected = Vec::new();
         for (offset, frame) in &slow.frames {
             match read(table, listening, frame) {
-                Some((variant, values)) => expected.push((*offset, variant, values)),
+                Some(read) => expected.push((*offset, read)),
                 None => rejected.push(*offset),
             }
         }
@@ -194,6 +199,19 @@ fn bulk_reading_equals_framer_and_decoder() {
         check(&table, &vec![0xFE; 150_000], &mut dice);
         check(&table, &[0xFE, 0xFE, 0x0E, 0x20].repeat(40_000), &mut dice);
         check(&table, &frames[0].repeat(40_000), &mut dice);
+    }
+}
+
+/// The addresses of several devices, in frames that are read one by one and in groups.
+#[test]
+fn rows_of_several_devices_have_their_addresses() {
+    let edition = Edition::generated("mybuddy");
+    let table = Arc::new(edition.table);
+    let vectors = edition.vectors.iter();
+    let frames: Vec<Vec<u8>> = vectors.filter_map(|vector| vector.frame.clone()).collect();
+    let mut dice = Dice(6);
+    for (size, noise) in [(100, 50), (100_000, 0), (100_000, 20)] {
+        check(&table, &stream(&mut dice, &frames, size, noise), &mut dice);
     }
 }
 

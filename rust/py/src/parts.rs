@@ -29,7 +29,10 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
     // Attributes are read first, since that runs Python code: another thread, or an error.
     let variants = rows.iter().map(|rows| variant(edition, rows));
     let variants = variants.collect::<PyResult<Vec<_>>>()?;
-    let memories = rows.iter().map(Memories::of).collect::<PyResult<Vec<_>>>()?;
+    let memories = rows
+        .iter()
+        .map(Memories::of)
+        .collect::<PyResult<Vec<_>>>()?;
     let all: Vec<&Memory> = memories.iter().flat_map(Memories::all).collect();
     // Check all of them first, so that the old columns stay complete after an error.
     let mut taken = Memory::take_all(&all)?.into_iter();
