@@ -10,6 +10,8 @@ SIMULATING := $(addprefix tests/,conformance docs inspect simulator)
 CALLING := $(addprefix tests/,cli newcomer peers)
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
+# Tests start many programs. Without compiled files, each of them compiles the package anew.
+unexport PYTHONDONTWRITEBYTECODE
 FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
