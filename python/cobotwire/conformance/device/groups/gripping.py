@@ -43,7 +43,14 @@ def _ends(probe: Probe, motion: Setting, position: Request[Any], speed: int) -> 
     reported, argument = motion.pairs[0]
     now = old.fields[reported]
     between = motion.samples(position, old, speed)[:2]
-    return sorted(between, key=lambda sample: -abs(sample.fields[argument] - now))
+    return sorted(between, key=lambda sample: -_distance(sample.fields[argument], now))
+
+
+def _distance(value: Any, other: Any) -> float:
+    """Return how far two values are apart; of two rows, the numbers that are furthest apart."""
+    if isinstance(value, tuple):
+        return max(map(_distance, value, other))
+    return abs(float(value) - float(other))
 
 
 def _moving(table: Table, command: Command) -> Command | None:
