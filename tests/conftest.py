@@ -14,6 +14,11 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE, MyCobot
 from cobotwire.simulator import PtyServer, SimulatedArm
 
+# Hooks of pytest, for all tests.
+from stalled_reruns import pytest_runtest_protocol, pytest_terminal_summary
+
+__all__ = ["pytest_runtest_protocol", "pytest_terminal_summary"]
+
 settings.register_profile(
     "quick",
     max_examples=100,

@@ -13,14 +13,15 @@ RUNS = 4
 
 
 class StallMeter:
-    """A thread that wakes every 5 ms, while the ``with`` block runs.
+    """A thread that wakes every 5 ms, or each ``period``, while the ``with`` block runs.
 
     Attributes:
         longest: the longest delay of a wake-up, in seconds.
-        late: the time of each delayed wake-up and its delay, if that is above 5 ms.
+        late: the time of each delayed wake-up and its delay, if that is above a period.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, period: float = PERIOD) -> None:
+        self._period = period
         self.longest = 0.0
         self.late: list[tuple[float, float]] = []
         self._over = threading.Event()
@@ -38,13 +39,14 @@ class StallMeter:
 
     def _measure(self) -> None:
         before = time.monotonic()
-        while not self._over.wait(PERIOD):
+        while not self._over.wait(self._period):
             now = time.monotonic()
-            too_late = now - before - PERIOD
+            too_late = now - before - self._period
             self.longest = max(self.longest, too_late)
-            if too_late > PERIOD:
+            if too_late > self._period:
                 self.late.append((now, too_late))
             before = now
+        self.longest = max(self.longest, time.monotonic() - before - self._period)
 
 
 def unstalled(run: Callable[[], R], allowed: float) -> R:

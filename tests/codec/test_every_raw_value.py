@@ -119,6 +119,16 @@ def _codec_of(variant: CommandVariant, codec: Codec) -> Codec:
     return codecs.load(variant.table, codec.name)
 
 
+def _shares(kinds: list[Number]) -> tuple[list[int], int]:
+    """Return the first raw value of each slot, and the number of steps.
+
+    The slots of one kind of number share all raw values between them.
+    """
+    each = {kind: -(-WORDS // kinds.count(kind)) for kind in kinds}
+    starts = [kinds[:at].count(kind) * each[kind] for at, kind in enumerate(kinds)]
+    return starts, max(each.values())
+
+
 @pytest.mark.parametrize("variant", WIDE, ids=str)
 def test_every_raw_value_of_every_field_survives_decode_and_encode(
     codec: Codec, variant: CommandVariant
@@ -130,18 +140,17 @@ def test_every_raw_value_of_every_field_survives_decode_and_encode(
     """
     codec = _codec_of(variant, codec)
     name, way = variant.command.name, variant.direction
-    kinds = [slot.kind for slot in variant.slots]
-    step = -(-WORDS // len(kinds))
+    starts, steps = _shares([slot.kind for slot in variant.slots])
     frame = bytearray(variant.frame)
     if codec.name == "native":
         words = range(WORDS)
     elif variant.name not in FIRST:
         words = range(0, WORDS, 97)
     else:
-        words = range(step if len(set(kinds)) == 1 else WORDS)
+        words = range(steps)
     for word in words:
-        for order, slot in enumerate(variant.slots):
-            raw = (word + order * step) % WORDS
+        for start, slot in zip(starts, variant.slots):
+            raw = (word + start) % WORDS
             frame[slot.position : slot.position + 2] = raw.to_bytes(2, slot.number.order)
         data = bytes(frame)
         values = codec.decode(way, data, of=name).values

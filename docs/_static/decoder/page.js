@@ -72,9 +72,8 @@
     busy = true;
     const output = parts(root).output;
     output.setAttribute("aria-busy", "true");
-    const mine = job;
     worker.onmessage = ({ data }) => {
-      if (data.job !== mine) return;
+      if (data.job !== job) return;
       busy = false;
       answered(data);
       output.removeAttribute("aria-busy");
@@ -98,6 +97,7 @@
     const directions = direction.value === "both" ? ["request", "reply"] : [direction.value];
     output.setAttribute("aria-busy", "true");
     const mine = (shows += 1);
+    job += 1; // an answer about the input before comes too late
     load(edition.value, (table) => {
       if (mine === shows) decode(root, table, directions, text.value);
     });

@@ -1,0 +1,65 @@
+"""Run a failed test again if the machine stood still meanwhile.
+
+Many tests wait for a real reply within a deadline. If the machine stops for longer than that, the
+failure says nothing about the code. A test that fails without a stall fails at once, and one that
+fails in each run fails. The summary names the tests that were run again.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from _pytest.runner import call_and_report
+
+from stalls import StallMeter
+
+# Half of the deadline that a client gives a reply.
+STALL = 0.25
+RUNS = 3
+PERIOD = 0.02
+AGAIN = pytest.StashKey[list[str]]()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool:
+    """Run a test, and report its last run."""
+    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+    reports: list[pytest.TestReport] = []
+    for runs_left in reversed(range(RUNS)):
+        reports, stall = _run(item, nextitem, last=runs_left == 0)
+        if not stall:
+            break
+        item.config.stash.setdefault(AGAIN, []).append(f"{item.nodeid}: {stall:.2f} s")
+    for report in reports:
+        item.ihook.pytest_runtest_logreport(report=report)
+    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+    return True
+
+
+def _run(
+    item: pytest.Item, nextitem: pytest.Item | None, *, last: bool
+) -> tuple[list[pytest.TestReport], float]:
+    """Run a test once; return its reports, and the longest stall if it must run again, or 0."""
+    function: Any = item
+    if not getattr(function, "_request", True):
+        function._initrequest()
+    with StallMeter(PERIOD) as meter:
+        reports = [call_and_report(item, "setup", log=False)]
+        failed = False
+        if reports[0].passed:
+            reports.append(call_and_report(item, "call", log=False))
+            failed = reports[-1].failed
+    again = failed and not last and meter.longest > STALL
+    # Fixtures that tests share stay for the next run: only the test's own end.
+    after = item.parent if again else nextitem
+    reports.append(call_and_report(item, "teardown", log=False, nextitem=after))
+    if hasattr(function, "_request"):
+        function._request, function.funcargs = False, None
+    return reports, meter.longest if again else 0.0
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """Name the tests that ran again, with the stall of each failed run."""
+    for line in config.stash.get(AGAIN, []):
+        terminalreporter.write_line(f"run again, because the machine stalled: {line}")
