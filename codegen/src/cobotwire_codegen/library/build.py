@@ -129,7 +129,7 @@ class _Other(NamedTuple):
 
 
 def _other(reader: Reader, stated: _Stated) -> _Other:
-    """Return what the class states whose methods a class has too; nothing if there is none."""
+    """Return the class whose methods the stated class takes over; nothing if it states none."""
     key = language.Class.methods_of
     name = reader.get(key)
     if not name:
