@@ -18,6 +18,7 @@ from cobotwire.protocol.errors import (
     ProtocolError,
     ReplyTimeout,
     ScenarioError,
+    StatementError,
     UsageError,
 )
 
@@ -32,6 +33,7 @@ ERRORS = [
     CaptureError("a.pcapng", 12, "it is cut off"),
     OutputError("out/a.parquet", "the disk is full"),
     ScenarioError(["a.yaml:1:2: there is no fault losst", "a.yaml:2:1: nothing"]),
+    StatementError(["a.yaml:1:2: commands has no key get_angle", "a.yaml:2:1: nothing"]),
 ]
 
 

@@ -100,7 +100,7 @@ def test_text_of_an_error_is_printable(kind: type[errors.CobotwireError], all_gi
         if name != "self" and (all_given or parameter.default is parameter.empty)
     }
     error = kind(**given)
-    assert is_clean(str(error), lines=kind is errors.ScenarioError)
+    assert is_clean(str(error), lines=kind in (errors.ScenarioError, errors.StatementError))
     # The data itself stays as it was.
     assert all(getattr(error, name, value) == value for name, value in given.items())
 

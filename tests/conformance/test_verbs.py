@@ -169,7 +169,7 @@ def test_interrupted_run_is_resumed_and_a_run_is_repeated_from_its_report(tmp_pa
     # As a run leaves it that ended before the settings.
     settings = [r for r in report["results"] if r["group"] == "settings"]
     for result in settings:
-        result |= {"cause": "not run", "verdict": "inconclusive"}
+        result |= {"cause": "run ended", "verdict": "not run"}
     report |= {"finished": False, "stopped": "the run was interrupted"}
     Path(second).write_text(json.dumps(report))
     ended = _run("device", "--simulated", "--resume", second, "--json", third)

@@ -31,7 +31,7 @@ def compare(before: str, after: str, as_json: bool) -> None:
     """Compare the reports BEFORE and AFTER, which were written with --json.
 
     Exit codes: 0 nothing is worse; 1 something is worse: a test case fails that did not fail
-    before, or one that passed is not run now; 2 a file is not a report.
+    before, or one that passed does not pass now; 2 a file is not a report.
     """
     with exit_if_not_testable():
         found = compared(_read("before", before), _read("after", after))
@@ -54,7 +54,7 @@ def _show(found: Comparison) -> None:
     console = Console(soft_wrap=True)
     table = Table("", "command", "test case", "before", "after", "what was found")
     for change in found.changes:
-        outcomes = (change.before or "not run", change.after or "not run")
+        outcomes = (change.before or "no result", change.after or "no result")
         row = (change.kind, change.command or "the line", change.case, *outcomes, change.reason)
         # As plain text, because what a report quotes may look like markup.
         table.add_row(*(Text(printable(part)) for part in row), style=STYLES.get(change.kind))

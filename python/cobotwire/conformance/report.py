@@ -12,25 +12,41 @@ Direction = Literal["sent", "received"]
 
 
 class Verdict(StrEnum):
-    """What a test case found, in the words of ISO/IEC 9646."""
+    """What a test case found, in the words of ISO/IEC 9646; or that it was not run."""
 
     PASS = "pass"  # noqa: S105  (a verdict, not a password)
     FAIL = "fail"
     INCONCLUSIVE = "inconclusive"
+    # Without a verdict: nothing was sent for the test case, or not all of it.
+    NOT_RUN = "not run"
 
 
 class Cause(StrEnum):
-    """The cause of an inconclusive verdict, or the kind of a failure."""
+    """Why a test case was inconclusive or not run, or the kind of a failure."""
 
     NONE = ""
-    # Inconclusive: the run lacks the permission for what must be sent.
+    # Not run: the run lacks the permission for what must be sent.
     NOT_PERMITTED = "not permitted"
+    # Not run: the statement of the subject, or the options of the run, deselect the test case.
+    NOT_SELECTED = "not selected"
+    # Not run: the run ended before.
+    RUN_ENDED = "run ended"
     # Inconclusive: the subject lacks what the test case is about, or is in the wrong state.
     NOT_SUPPORTED = "not supported"
-    # Inconclusive: the run ended before.
-    NOT_RUN = "not run"
     # Fail: repetitions of the same test case differ.
     UNSTABLE = "unstable"
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict that goes with the cause, if nothing else has failed."""
+        return OF_CAUSE.get(self, Verdict.NOT_RUN)
+
+
+OF_CAUSE = {
+    Cause.NONE: Verdict.PASS,
+    Cause.NOT_SUPPORTED: Verdict.INCONCLUSIVE,
+    Cause.UNSTABLE: Verdict.FAIL,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +85,20 @@ class Result:
 
     @property
     def outcome(self) -> str:
-        """The verdict with its cause: ``fail (unstable)``."""
+        """The verdict with its cause: ``not run (not permitted)``."""
         return f"{self.verdict} ({self.cause})" if self.cause else str(self.verdict)
+
+
+@dataclass(frozen=True, slots=True)
+class Environment:
+    """The machine and the programs of a run; ``port`` is what leads to the subject."""
+
+    host: str = ""
+    system: str = ""
+    python: str = ""
+    package: str = ""
+    codec: str = ""
+    port: str = ""
 
 
 def _now() -> str:
@@ -82,7 +110,10 @@ class Report:
     """The results of a run, in the order in which they were found.
 
     ``finished`` is False until the run has reached its end; ``stopped`` says why it ended before.
-    ``options`` are those of the command line, without the subject: a run is repeated with them.
+    ``options`` are those of the command line, without the subject: a run is repeated with them, in
+    the order of the results. ``statement`` is the text of the subject's implementation conformance
+    statement. ``catalogue`` is the version of the catalogue of test cases; the digests are those of
+    the edition's table and of the code that judges.
     """
 
     kind: Kind
@@ -96,6 +127,12 @@ class Report:
     deadline_seconds: dict[str, float] = field(default_factory=dict)
     stopped: str = ""
     options: dict[str, str] = field(default_factory=dict)
+    statement: str = ""
+    catalogue: str = ""
+    edition_digest: str = ""
+    code_digest: str = ""
+    environment: Environment = field(default_factory=Environment)
+    seconds: float = 0.0
 
     @property
     def failures(self) -> list[Result]:

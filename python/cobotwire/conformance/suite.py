@@ -47,7 +47,8 @@ class Group(Generic[Body]):
 
     ``selects`` picks the commands that the body runs for; without it the body runs once, for the
     line as a whole. ``permission`` is needed in addition to the permission for the command's
-    safety class.
+    safety class. The catalogue shows ``sends``, what the tester sends, and ``subject``, what
+    ``selects`` picks, in words.
     """
 
     name: str
@@ -55,6 +56,8 @@ class Group(Generic[Body]):
     body: Body
     selects: Selects | None = None
     permission: frozenset[str] = frozenset()
+    sends: str = ""
+    subject: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -131,8 +131,7 @@ class Tally:
                 further=tuple(count.further),
             )
         if count.excuse:
-            verdict = Verdict.FAIL if count.cause is Cause.UNSTABLE else Verdict.INCONCLUSIVE
-            return replace(result, verdict=verdict, cause=count.cause)
+            return replace(result, verdict=count.cause.verdict, cause=count.cause)
         if not count.observed:
             reason = count.otherwise or unobserved or NOTHING_OBSERVED
             return replace(result, reason=reason, cause=Cause.NOT_SUPPORTED)

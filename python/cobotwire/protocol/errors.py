@@ -315,6 +315,18 @@ class ScenarioError(CobotwireError, ValueError):
         super().__init__(*self.problems)
 
 
+class StatementError(CobotwireError, ValueError):
+    """An error in an implementation conformance statement.
+
+    Attributes:
+        problems: every problem in the order of the file, each as ``file:line:column: what``.
+    """
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__(*self.problems)
+
+
 def _short(value: Any, limit: int = 80) -> str:
     try:
         text = repr(value)

@@ -104,18 +104,32 @@ def load_places(package: str) -> dict[str, str]:
     return {record["name"]: record["place"] for record in _document(package)["commands"]}
 
 
+def load_digest(package: str) -> str:
+    """Return the SHA-256 of a package's ``edition.json``."""
+    from hashlib import sha256  # only reports need it
+
+    return sha256(_stored(package)[1]).hexdigest()
+
+
 def _document(package: str) -> Record:
-    """Return a package's ``edition.json``, also from inside a zip file."""
-    module = sys.modules[package]
-    path = os.path.join(os.path.dirname(str(module.__file__)), "edition.json")
-    loader: Any = module.__spec__ and module.__spec__.loader
-    document: Record = json.loads(loader.get_data(path))
+    """Return a package's ``edition.json``."""
+    path, data = _stored(package)
+    document: Record = json.loads(data)
     if document["version"] != VERSION:
         raise ValueError(
             f"{path} has version {document['version']} of the format, not {VERSION}; "
             "generate the package again with cobotwire-gen"
         )
     return document
+
+
+def _stored(package: str) -> tuple[str, bytes]:
+    """Return the path and bytes of a package's ``edition.json``, also from inside a zip file."""
+    module = sys.modules[package]
+    path = os.path.join(os.path.dirname(str(module.__file__)), "edition.json")
+    loader: Any = module.__spec__ and module.__spec__.loader
+    data: bytes = loader.get_data(path)
+    return path, data
 
 
 class _Reader:

@@ -151,7 +151,7 @@ def test_difference_from_the_script_is_named(case: str) -> None:
 
 def test_script_cases_without_a_script_are_not_supported() -> None:
     report = judged(spaced(ANGLES))
-    unknown = {r.case for r in report.results if r.cause is Cause.NOT_SUPPORTED}
+    unknown = {r.case for r in report.results if r.cause is Cause.NOT_SELECTED}
     assert unknown == set(SCRIPT_CASES)
     assert report.conforms
 

@@ -126,7 +126,7 @@ def test_arm_that_stops_replying_ends_the_run_at_once() -> None:
     assert not report.finished
     assert "does not reply to 3 queries in a row" in report.stopped
     assert run.connection.now < 10
-    left = [result for result in report.results if result.cause is Cause.NOT_RUN]
+    left = [result for result in report.results if result.cause is Cause.RUN_ENDED]
     assert ("read-back", "set_tool_reference") in {(r.case, r.command) for r in left}
     assert {r.reason for r in left} == {f"{report.stopped}."}
 
@@ -168,7 +168,7 @@ def test_killed_device_is_noticed_and_the_rest_is_not_run() -> None:
         assert time.monotonic() - began < 60
         transport.close()
     assert run.report.stopped
-    assert any(result.cause is Cause.NOT_RUN for result in run.report.results)
+    assert any(result.cause is Cause.RUN_ENDED for result in run.report.results)
     assert any(result.verdict is Verdict.PASS for result in run.report.results)
 
 

@@ -72,7 +72,7 @@ def test_interrupt_anywhere_restores_the_arm(writes: int, share: float) -> None:
     report = tester.report
     assert not report.finished
     assert report.stopped == "the run was interrupted"
-    left = [result for result in report.results if result.cause is Cause.NOT_RUN]
+    left = [result for result in report.results if result.cause is Cause.RUN_ENDED]
     assert left[-1].case == "acknowledgements-alike"
     # Every step of a whole run has its results.
     places = {(result.group, result.command) for result in report.results}

@@ -10,6 +10,7 @@ import click
 from cobotwire_codegen.cli.shared import report_problems, root_option
 from cobotwire_codegen.emit import Target, compare, write
 from cobotwire_codegen.project import committed, editions, products
+from cobotwire_codegen.suite_pages import SuiteError, suite_pages
 
 
 @click.command()
@@ -27,9 +28,21 @@ def generate(check_only: bool, with_products: bool, root: str) -> None:
     if with_products:
         wanted += products(Path(root), found)
     if check_only:
-        sys.exit(show_stale(wanted))
+        sys.exit(show_stale(wanted + _suite(Path(root))))
+    changed = write_all(wanted)
+    # After the editions, because it lists their commands.
+    changed += write_all(_suite(Path(root)))
     commands = ", ".join(f"{edition.name} ({len(edition.commands)} commands)" for edition in found)
-    click.echo(f"{commands}: {write_all(wanted)} file(s) changed")
+    click.echo(f"{commands}: {changed} file(s) changed")
+
+
+def _suite(root: Path) -> list[Target]:
+    """Return the pages of the test suite, or exit with 1."""
+    try:
+        return suite_pages(root)
+    except SuiteError as error:
+        click.echo(f"cobotwire-gen: {error}", err=True)
+        sys.exit(1)
 
 
 def write_all(wanted: list[Target]) -> int:

@@ -167,8 +167,8 @@ class Referee:
         results = []
         for case in SCRIPT.cases:
             if self._script is None:
-                reason, cause = f"{case.purpose} It needs a script (--expect).", Cause.NOT_SUPPORTED
-                result = Result(case.id, "", Verdict.INCONCLUSIVE, reason, cause=cause)
+                reason, cause = f"{case.purpose} It needs a script (--expect).", Cause.NOT_SELECTED
+                result = Result(case.id, "", cause.verdict, reason, cause=cause)
                 results.append(result)
             elif case not in self._tally.cases:
                 results.append(Result(case.id, "", Verdict.PASS, case.purpose))

@@ -30,6 +30,7 @@ SCRIPT = Group(
     "script",
     (SCALE, SIGN, BYTE_ORDER, ORDER, ROUNDED, VALUE, VARIANT, ONCE, ALL, NOTHING_ELSE),
     None,
+    subject="the calls of the script (`--expect`)",
 )
 # Factors by which a client may be wrong: powers of ten, and degrees in a radian.
 _SCALES = (10, 100, 1000, 57.29577951308232)

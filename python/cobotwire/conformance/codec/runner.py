@@ -173,8 +173,8 @@ class Run:
 
 
 def _lacking(case: TestCase, reason: str) -> Result:
-    verdict, cause = Verdict.INCONCLUSIVE, Cause.NOT_SUPPORTED
-    return Result(case.id, "", verdict, reason, (), case.source, cause)
+    cause = Cause.NOT_SUPPORTED
+    return Result(case.id, "", cause.verdict, reason, (), case.source, cause)
 
 
 def _in_words(found: Sequence[Observation]) -> str:

@@ -34,7 +34,11 @@ FROM_TABLE: tuple[Group[Derive], ...] = (
     streams.STREAMS,
 )
 SUITE: Suite[Derive | None] = Suite(
-    "codec", (*FROM_TABLE, Group("line protocol", (ANSWERS, EXPECTED_FAILURE), None))
+    "codec",
+    (
+        *FROM_TABLE,
+        Group("line protocol", (ANSWERS, EXPECTED_FAILURE), None, subject="all questions"),
+    ),
 )
 
 

@@ -41,5 +41,5 @@ def cut_short(result: Result, why: str) -> Result:
     if result.verdict is Verdict.FAIL:
         return result
     return replace(
-        result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_RUN, reason=f"{why}.", evidence=()
+        result, verdict=Verdict.NOT_RUN, cause=Cause.RUN_ENDED, reason=f"{why}.", evidence=()
     )

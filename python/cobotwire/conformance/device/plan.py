@@ -34,7 +34,7 @@ RAN = (Verdict.PASS, Verdict.FAIL)
 
 
 def _was_not_run(result: Result) -> bool:
-    return result.cause is Cause.NOT_RUN
+    return result.cause is Cause.RUN_ENDED
 
 
 class Plan:

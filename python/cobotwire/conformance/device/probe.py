@@ -69,7 +69,7 @@ class Probe:
 
     def not_run(self, reason: str) -> list[Result]:
         """Return the results of a body that was not run, because the run ended before."""
-        return self._without_verdict(Cause.NOT_RUN, reason)
+        return self._without_verdict(Cause.RUN_ENDED, reason)
 
     def _without_verdict(self, cause: Cause, reason: str) -> list[Result]:
         for case in self._tally.cases:

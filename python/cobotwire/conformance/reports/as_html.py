@@ -1,173 +1,166 @@
-"""Write reports as one self-contained HTML page: the matrix, and the evidence for each cell."""
+"""Write reports as one self-contained HTML page: the summary first, then causes, then evidence."""
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from hashlib import sha256
 from importlib.resources import files
 from xml.etree.ElementTree import Element
 
-from cobotwire.conformance.report import Cause, Report, Result, Verdict
+from cobotwire.conformance.report import Report, Verdict
+from cobotwire.conformance.reports.causes import CauseGroup, group_by_cause
 from cobotwire.conformance.reports.element import element, page
-from cobotwire.conformance.reports.evidence import shown
-from cobotwire.conformance.reports.matrix import (
-    LINE,
-    Cell,
-    Place,
-    case_ids,
-    commands,
-    matrix,
-)
+from cobotwire.conformance.reports.html_commands import by_command
+from cobotwire.conformance.reports.html_matrix import matrix_of
+from cobotwire.conformance.reports.html_parts import anchor, class_of, order_of, sign_of, title_of
+from cobotwire.conformance.reports.purposes import purposes
 from cobotwire.conformance.reports.times import times_plot
 
-SIGNS = {
-    (Verdict.PASS, Cause.NONE): "✓",
-    (Verdict.FAIL, Cause.NONE): "✗",
-    (Verdict.FAIL, Cause.UNSTABLE): "≈",
-    (Verdict.INCONCLUSIVE, Cause.NOT_PERMITTED): "·",
-    (Verdict.INCONCLUSIVE, Cause.NOT_SUPPORTED): "○",
-}
 HERE = files("cobotwire.conformance.reports")
+# A group of failures with more commands is folded.
+UNFOLDED = 3
 
 
 def to_html(report: Report) -> str:
     """Return a report as a page. It loads nothing, so that it can be mailed and archived."""
-    cells = matrix(report)
     title = f"{report.kind} conformance: {report.subject}"
-    viewport = element("meta", name="viewport", content="width=device-width, initial-scale=1")
+    style, script = _file("page.css"), _file("page.js")
+    # Nothing but the page's own style and script has an effect, whatever a device has sent.
+    policy = f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}"
     head = element(
         "head",
         element("meta", charset="utf-8"),
-        viewport,
+        element("meta", http_equiv="Content-Security-Policy", content=policy),
+        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
         element("title", title),
-        element("style", _file("page.css")),
+        element("style", style),
     )
-    parts = [*_head(report, title), *_failures(report, cells), *_matrix(cells), *_times(report)]
-    parts += [element("h2", "Evidence"), *(_details(report, cell) for cell in cells.values())]
-    return page(head, element("body", *parts, element("script", _file("page.js"))))
+    parts = [*_head(report, title), *_causes(report), *_origin(report), *matrix_of(report)]
+    parts += [*by_command(report), *_times(report)]
+    return page(head, element("body", *parts, element("script", script)))
 
 
 def _file(name: str) -> str:
     return (HERE / name).read_text(encoding="utf-8")
 
 
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
+
+
 def _head(report: Report, title: str) -> Iterator[Element]:
     yield element("h1", title)
+    counts = Counter((result.verdict, result.cause) for result in report.results)
+    if not report.finished:
+        why = f": {report.stopped}" if report.stopped else ""
+        yield _banner("unstable", f"The run ended before its end{why}.")
+    if report.failures:
+        yield _banner("fail", "It does not conform.")
+    elif report.finished:
+        yield _banner("pass", "It conforms as far as it was tested.")
+    chips: list[Element | str] = []
+    for outcome in sorted(counts, key=order_of):
+        word = f"{counts[outcome]} {outcome[1] or outcome[0]}"
+        chips += [element("span", word, class_=f"chip {class_of(*outcome)}"), " "]
+    yield element("p", *chips)
     facts = {
         "edition": report.edition,
-        "firmware": report.firmware or "unknown",
-        "started": report.started,
-        "results": _counts(report),
+        "firmware": report.firmware or "not reported",
+        "started": f"{report.started}, {report.seconds:.1f} s",
+        "catalogue": f"version {report.catalogue}" if report.catalogue else "",
+        "options": _options(report) or "none: only what needs no permission",
     }
-    terms = (part for name, text in facts.items() for part in (("dt", name), ("dd", text)))
-    yield element("dl", *(element(tag, text) for tag, text in terms))
-    if not report.finished:
-        yield _banner("unstable", "The run was interrupted: anything not listed was not tested.")
-    elif report.conforms:
-        yield _banner("pass", "It conforms as far as it was tested.")
-    else:
-        yield _banner("fail", "It does not conform.")
+    yield _terms(facts)
 
 
-def _counts(report: Report) -> str:
-    counts = Counter(result.outcome for result in report.results)
-    return ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "none"
+def _options(report: Report) -> str:
+    return ", ".join(f"{name} {text}" for name, text in report.options.items())
+
+
+def _terms(facts: dict[str, str]) -> Element:
+    given = ((name, text) for name, text in facts.items() if text)
+    return element("dl", *(element(*pair) for n, t in given for pair in (("dt", n), ("dd", t))))
 
 
 def _banner(kind: str, text: str) -> Element:
     return element("p", text, class_=f"banner {kind}")
 
 
-def _failures(report: Report, cells: dict[Place, Cell]) -> Iterator[Element]:
-    failed = [cell for cell in cells.values() if cell.verdict is Verdict.FAIL]
-    if failed:
-        yield element("h2", f"Failures ({len(failed)})")
-    for cell in failed:
-        link = element("a", f"{_name(cell)}, {cell.case}", href=f"#{_anchor(cell)}")
-        verdict = element("span", f"{cell.outcome} ", class_=f"verdict {_class(cell)}")
-        yield element("p", verdict, link, element("br"), cell.gravest.reason, class_="reason")
+def _causes(report: Report) -> Iterator[Element]:
+    """Yield failures and inconclusive test cases by cause, then what was not run."""
+    known = purposes(report.kind)
+    for verdict, title in (
+        (Verdict.FAIL, "Failures"),
+        (Verdict.INCONCLUSIVE, "Inconclusive"),
+    ):
+        found = [result for result in report.results if result.verdict is verdict]
+        groups = group_by_cause(found)
+        if groups:
+            yield element("h2", f"{title}: {len(found)} test cases, {len(groups)} causes")
+        yield from (_cause(group, known.get(group.case, "")) for group in groups)
+    left = [result for result in report.results if result.verdict is Verdict.NOT_RUN]
+    if left:
+        yield element("h2", f"Not run: {len(left)} test cases")
+        counts = Counter(f"{result.cause}: {result.reason}" for result in left)
+        lines = (element("li", f"{count} {text}") for text, count in counts.most_common())
+        yield element("ul", *lines)
 
 
-def _matrix(cells: dict[Place, Cell]) -> Iterator[Element]:
-    columns = case_ids(cells)
-    heads = (element("th", element("span", case), scope="col") for case in columns)
-    rows = []
-    for command in commands(cells):
-        name = element("th", element("code", command or "the line"), scope="row")
-        found = (cells.get((command, case)) for case in columns)
-        rows.append(element("tr", name, *map(_cell, found)))
-    table = element(
-        "table",
-        element("thead", element("tr", element("th", "command"), *heads)),
-        element("tbody", *rows),
-        class_="matrix",
-    )
-    yield element("h2", "Commands and test cases")
-    legend = ", ".join(f"{sign} {cause or verdict}" for (verdict, cause), sign in SIGNS.items())
-    yield element("p", legend, class_="faint")
-    yield element("div", table, class_="scroll")
+def _cause(group: CauseGroup, purpose: str) -> Element:
+    first = group.results[0]
+    count = f" ({len(group.results)})" if len(group.results) > 1 else ""
+    mark = class_of(first.verdict, first.cause)
+    sign = element("b", f"{sign_of(first.verdict, first.cause)} {group.case}{count}", class_=mark)
+    head = element("p", sign, f" {purpose}")
+    places = [_place(result.command, result.reason) for result in group.results]
+    if len(places) <= UNFOLDED:
+        return element("section", head, element("ul", *places), class_=mark)
+    names = element("summary", f"and {len(places) - 1} more: {_names(group.commands[1:])}")
+    rest = element("details", names, element("ul", *places[1:]))
+    return element("section", head, element("ul", places[0]), rest, class_=mark)
 
 
-def _cell(cell: Cell | None) -> Element:
-    if cell is None:
-        return element("td")
-    link = element(
-        "a",
-        SIGNS[cell.verdict, cell.gravest.cause],
-        href=f"#{_anchor(cell)}",
-        title=f"{_name(cell)}, {cell.case}: {cell.outcome}",
-    )
-    return element("td", link, class_=_class(cell))
+def _place(command: str, reason: str) -> Element:
+    link = element("a", title_of(command), href=f"#{anchor(command)}")
+    return element("li", link, f" {reason}")
+
+
+def _names(commands: Sequence[str]) -> str:
+    return ", ".join(map(title_of, commands[:6])) + (", ..." if len(commands) > 6 else "")
+
+
+def _origin(report: Report) -> Iterator[Element]:
+    """Yield what is needed to understand and repeat the run."""
+    environment = report.environment
+    facts = {
+        "edition": f"{report.edition}, SHA-256 {report.edition_digest}",
+        "code": f"SHA-256 {report.code_digest}" if report.code_digest else "",
+        "host": environment.host,
+        "system": environment.system,
+        "Python": environment.python,
+        "cobotwire": f"{environment.package}, {environment.codec} codec",
+        "port": environment.port,
+        "order": "as listed; nothing is drawn at random",
+        "repeat": f"cobotwire --edition {report.edition} conform {report.kind} --again REPORT.json",
+    }
+    if report.code_digest:
+        summary = element("summary", "Where this report comes from, and how to repeat the run")
+        yield element("details", summary, _terms(facts))
+    if report.statement:
+        summary = element("summary", "Implementation conformance statement")
+        lines = report.statement.splitlines()
+        text = (part for line in lines for part in (line, element("br")))
+        yield element("details", summary, element("pre", *text))
 
 
 def _times(report: Report) -> Iterator[Element]:
     if any(report.reply_seconds.values()):
         yield element("h2", "Reply times")
         legend = (
-            "A line from the fastest to the slowest, a box around the middle nine tenths, a mark"
+            "A line from the fastest to the slowest, a bar for the middle nine tenths, a mark at "
+            "the median; red: the deadline."
         )
-        yield element("p", f"{legend} at the median; red: the deadline.", class_="faint")
-        yield element("div", times_plot(report), class_="scroll")
-
-
-def _details(report: Report, cell: Cell) -> Element:
-    """Return the results of a cell; failures are unfolded."""
-    verdict = element("span", cell.outcome, class_=f"verdict {_class(cell)}")
-    summary = element("summary", verdict, f" {_name(cell)}, {cell.case}")
-    parts = [part for result in cell.results for part in _result(report, result)]
-    found = element("details", summary, *parts, id=_anchor(cell))
-    if cell.verdict is Verdict.FAIL:
-        found.set("open", "open")
-    return found
-
-
-def _result(report: Report, result: Result) -> Iterator[Element]:
-    yield element("p", result.reason, class_="reason")
-    for also in result.further:
-        yield element("p", f"also, {also}", class_="faint")
-    if result.source:
-        yield element("p", "required by ", element("code", result.source), class_="faint")
-    rows = [
-        element(
-            "tr",
-            element("td", f"{exchange.at:.4f} s"),
-            element("td", exchange.direction, class_=exchange.direction),
-            element("td", shown(report.kind, exchange), class_="bytes"),
-            element("td", exchange.note, class_="faint"),
-        )
-        for exchange in result.evidence
-    ]
-    if rows:
-        yield element("div", element("table", *rows, class_="evidence"), class_="scroll")
-
-
-def _name(cell: Cell) -> str:
-    return "the line" if cell.command == LINE else cell.command
-
-
-def _class(cell: Cell) -> str:
-    return (cell.gravest.cause or cell.verdict).replace(" ", "-")
-
-
-def _anchor(cell: Cell) -> str:
-    return f"{cell.case}-{cell.command}"
+        yield element("p", legend, class_="faint")
+        yield element("div", times_plot(report), class_="scroll", tabindex="0")

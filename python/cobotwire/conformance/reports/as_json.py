@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict, fields
 from math import isfinite
 from typing import Any
 
-from cobotwire.conformance.report import Cause, Exchange, Report, Result, Verdict
+from cobotwire.conformance.report import Cause, Environment, Exchange, Report, Result, Verdict
 from cobotwire.protocol.errors import UsageError
 
 FORMAT = "cobotwire-conformance"
 # Counts up when a reader of the old version could misread the new one.
-VERSION = 2
+VERSION = 3
 PLAIN = {
     "kind": str,
     "edition": str,
@@ -21,9 +22,13 @@ PLAIN = {
     "finished": bool,
     "reply_seconds": dict,
     "deadline_seconds": dict,
+    "stopped": str,
+    "options": dict,
+    "statement": str,
+    "catalogue": str,
+    "edition_digest": str,
+    "code_digest": str,
 }
-# What reports of earlier releases lack, with the value that they are read with.
-ADDED: dict[str, tuple[type, Any]] = {"stopped": (str, ""), "options": (dict, {})}
 
 
 def to_json(report: Report) -> str:
@@ -32,7 +37,9 @@ def to_json(report: Report) -> str:
         "format": FORMAT,
         "version": VERSION,
         "conforms": report.conforms,
-        **{name: getattr(report, name) for name in (*PLAIN, *ADDED)},
+        **{name: getattr(report, name) for name in PLAIN},
+        "seconds": round(report.seconds, 3),
+        "environment": asdict(report.environment),
         "results": [_result(result) for result in report.results],
     }
     return json.dumps(data, indent=1) + "\n"
@@ -59,9 +66,10 @@ def from_json(text: str) -> Report:
         plain["deadline_seconds"] = {
             command: _seconds(each) for command, each in plain["deadline_seconds"].items()
         }
-        for name, (kind, without) in ADDED.items():
-            plain[name] = _checked(data.get(name, without), kind)
-        return Report(**plain, results=results)
+        for name, text in plain["options"].items():
+            plain["options"][name] = _checked(text, str)
+        plain["seconds"] = _seconds(data["seconds"])
+        return Report(**plain, environment=_environment(data["environment"]), results=results)
     except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
         if isinstance(error, UsageError):
             raise
@@ -85,6 +93,11 @@ def _result(result: Result) -> dict[str, Any]:
     }
 
 
+def _environment(data: Any) -> Environment:
+    names = [each.name for each in fields(Environment)]
+    return Environment(**{name: _checked(data[name], str) for name in names})
+
+
 def _read_result(item: dict[str, Any]) -> Result:
     evidence = tuple(
         Exchange(
@@ -98,9 +111,8 @@ def _read_result(item: dict[str, Any]) -> Result:
     verdict, cause = Verdict(item["verdict"]), Cause(item["cause"])
     names = ("case", "command", "reason", "source")
     case, command, reason, source = (_checked(item[name], str) for name in names)
-    # Reports of earlier releases lack it.
-    further = tuple(_checked(each, str) for each in _checked(item.get("further", []), list))
-    group = _checked(item.get("group", ""), str)
+    further = tuple(_checked(each, str) for each in _checked(item["further"], list))
+    group = _checked(item["group"], str)
     return Result(case, command, verdict, reason, evidence, source, cause, further, group)
 
 

@@ -9,9 +9,11 @@ from cobotwire.conformance.reports.evidence import evidence_lines
 from cobotwire.conformance.reports.matrix import Cell, case_ids, matrix
 from cobotwire.protocol.printable import printable
 
+SKIPPED = (Verdict.INCONCLUSIVE, Verdict.NOT_RUN)
+
 
 def to_junit(report: Report) -> str:
-    """Return a report as JUnit XML. Inconclusive verdicts count as skipped."""
+    """Return a report as JUnit XML. What is inconclusive or was not run counts as skipped."""
     cells = matrix(report)
     root = ElementTree.Element("testsuites", name=f"cobotwire conform {report.kind}")
     for case in case_ids(cells):
@@ -32,7 +34,7 @@ def _suite(report: Report, case: str, cells: list[Cell]) -> ElementTree.Element:
         tests=str(len(cells)),
         failures=str(verdicts.count(Verdict.FAIL)),
         errors="0",
-        skipped=str(verdicts.count(Verdict.INCONCLUSIVE)),
+        skipped=str(sum(verdict in SKIPPED for verdict in verdicts)),
         timestamp=printable(report.started),
     )
     properties = ElementTree.SubElement(suite, "properties")
@@ -53,7 +55,7 @@ def _entry(report: Report, cell: Cell) -> ElementTree.Element:
         failure = ElementTree.SubElement(entry, "failure", message=printable(shown.reason))
         failure.set("type", shown.outcome)
         failure.text = _in_full(report, shown)
-    elif shown.verdict is Verdict.INCONCLUSIVE:
+    elif shown.verdict in SKIPPED:
         ElementTree.SubElement(entry, "skipped", message=printable(shown.reason))
     return entry
 

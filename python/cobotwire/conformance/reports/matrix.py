@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from cobotwire.conformance.report import Report, Result, Verdict
 
 # A cell with several results shows the first of these.
-GRAVEST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)
+GRAVEST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.NOT_RUN, Verdict.PASS)
 # The row of test cases about the line as a whole.
 LINE = ""
 

@@ -25,7 +25,7 @@ def times_plot(report: Report) -> Element:
     parts = [*scale.grid(height)]
     for index, (name, times) in enumerate(rows):
         deadline = report.deadline_seconds.get(name)
-        parts += _row(scale, TOP + ROW * index + ROW / 2, name, times, deadline)
+        parts += _row(scale, TOP + ROW * index + ROW // 2, name, times, deadline)
     width = LEFT + WIDTH + 90
     box = f"0 0 {width} {height}"
     label = "reply times by command"
@@ -46,26 +46,24 @@ class _Scale:
     def grid(self, height: int) -> Iterator[Element]:
         for tick in (tick for tick in TICKS_MS if tick <= self._last):
             x = self.x(tick / 1000)
-            yield element("line", class_="grid", x1=x, x2=x, y1=TOP - 4, y2=height)
+            yield element("path", class_="grid", d=f"M{x} {TOP - 4}V{height}")
             yield element("text", f"{tick:g} ms", x=x, y=TOP - 9, text_anchor="middle")
 
 
 def _row(
-    scale: _Scale, y: float, name: str, times: Sequence[float], deadline: float | None
+    scale: _Scale, y: int, name: str, times: Sequence[float], deadline: float | None
 ) -> Iterator[Element]:
     low, middle, high = _spread(times)
     x1, x2 = scale.x(times[0]), scale.x(times[-1])
     title = element("title", f"{name}: {len(times)} replies, {_ms(times[0])} to {_ms(times[-1])}")
     yield element("text", name, title, x=LEFT - 10, y=y + 4, text_anchor="end")
-    yield element("line", class_="range", x1=x1, x2=x2, y1=y, y2=y)
-    start, width = scale.x(low), max(scale.x(high) - scale.x(low), 1.0)
-    yield element("rect", class_="box", x=start, y=y - 6, width=round(width, 1), height=12)
-    at = scale.x(middle)
-    yield element("line", class_="median", x1=at, x2=at, y1=y - 7, y2=y + 7)
+    yield element("path", d=f"M{x1} {y}H{x2}")
+    start = scale.x(low)
+    yield element("path", class_="b", d=f"M{start} {y}H{max(scale.x(high), start + 1)}")
+    yield element("path", class_="m", d=f"M{scale.x(middle)} {y - 7}v14")
     yield element("text", _ms(middle), x=LEFT + WIDTH + 12, y=y + 4)
     if deadline is not None:
-        at = scale.x(deadline)
-        yield element("line", class_="deadline", x1=at, x2=at, y1=y - 7, y2=y + 7)
+        yield element("path", class_="d", d=f"M{scale.x(deadline)} {y - 7}v14")
 
 
 def _spread(times: Sequence[float]) -> tuple[float, float, float]:

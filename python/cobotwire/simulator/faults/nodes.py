@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from cobotwire.protocol.errors import ScenarioError, UsageError
+from cobotwire.protocol.errors import ScenarioError, StatementError, UsageError
 
 
 class Place(NamedTuple):
@@ -30,22 +30,28 @@ class Node(NamedTuple):
     keys: dict[str, Place]
 
 
-def parse(text: str, name: str) -> Node:
-    """Read one YAML document; messages call the file ``name``.
+def parse(
+    text: str,
+    name: str,
+    what: str = "fault scenarios",
+    failed: type[ScenarioError | StatementError] = ScenarioError,
+) -> Node:
+    """Read one YAML document; messages call the file ``name``, and files of its kind ``what``.
 
     Raises:
-        ScenarioError: the text is not YAML, has a key twice, contains a tag, or exceeds a limit.
+        ScenarioError: the text is not YAML, has a key twice, contains a tag, or exceeds a limit; or
+            another error, ``failed``, in its place.
         UsageError: the YAML library is not installed.
     """
     try:
         from ruamel.yaml import YAML
         from ruamel.yaml.error import MarkedYAMLError, YAMLError
     except ImportError:
-        message = "fault scenarios need ruamel.yaml: pip install 'cobotwire[sim]'"
+        message = f"{what} need ruamel.yaml: pip install 'cobotwire[sim]'"
         raise UsageError("scenario", message=message) from None
     if len(text) > MOST_CHARACTERS:
         message = f"the file has more than {MOST_CHARACTERS} characters, the limit"
-        raise ScenarioError([f"{Place(name, 1, 1)}: {message}"])
+        raise failed([f"{Place(name, 1, 1)}: {message}"])
     yaml = YAML(typ="safe", pure=True)
     yaml.max_depth = _DEEPEST + 5  # deeper files are not parsed; the others get a better message
     try:
@@ -56,13 +62,16 @@ def parse(text: str, name: str) -> Node:
         place = _after(Place(name, 1, 1), error.problem_mark or error.context_mark)
         too_deep = "maximum depth" in (error.problem or "")
         message = TOO_DEEP if too_deep else _sentence(error.problem)
-        raise ScenarioError([f"{place}: {message}"]) from None
+        raise failed([f"{place}: {message}"]) from None
     except (YAMLError, RecursionError) as error:
         place = _place_in(text, name, getattr(error, "position", 0))
-        raise ScenarioError([f"{place}: not YAML: {_sentence(str(error))}"]) from None
+        raise failed([f"{place}: not YAML: {_sentence(str(error))}"]) from None
+    except ScenarioError as error:
+        # Reading ended at the limit of a file.
+        raise failed(error.problems) from None
     if reading.problems:
         problems = sorted(reading.problems)
-        raise ScenarioError([f"{place}: {message}" for place, message in problems])
+        raise failed([f"{place}: {message}" for place, message in problems])
     return root
 
 

@@ -114,6 +114,13 @@ def _texts(history: History, now: Received) -> Iterator[Observation]:
         yield missing_text(due)
 
 
-FRAMES = Group("frames", (LENGTH, ID, FOOTER, ADDRESS, WHOLE, STRAY), _framing)
-INTERLEAVED_WRITES = Group("interleaved writes", (INTERLEAVED,), _interleaving)
-TEXTS = Group("texts", (TEXT_FOLLOWS,), _texts)
+FRAMES = Group(
+    "frames",
+    (LENGTH, ID, FOOTER, ADDRESS, WHOLE, STRAY),
+    _framing,
+    subject="everything that the client sends",
+)
+INTERLEAVED_WRITES = Group(
+    "interleaved writes", (INTERLEAVED,), _interleaving, subject="everything that the client sends"
+)
+TEXTS = Group("texts", (TEXT_FOLLOWS,), _texts, subject="each request that a text follows")

@@ -50,5 +50,10 @@ def _power(history: History, now: Received) -> Iterator[Observation]:
     yield Observation(POWERED, complaint)
 
 
-RESENDING = Group("resending", (MOTION_RESENT, CHANGE_RESENT), _resending)
-POWER = Group("power", (POWERED,), _power)
+RESENDING = Group(
+    "resending",
+    (MOTION_RESENT, CHANGE_RESENT),
+    _resending,
+    subject="each request that changes something",
+)
+POWER = Group("power", (POWERED,), _power, subject="each motion")

@@ -73,5 +73,7 @@ def _alike(other: Received, now: Received) -> bool:
     return not echoes or not all(echoes)
 
 
-WAITING = Group("waiting", (AWAITED, GIVEN_TIME), _waiting)
-LATE_REPLIES = Group("late replies", (LATE_EXPECTED,), _late_replies)
+WAITING = Group("waiting", (AWAITED, GIVEN_TIME), _waiting, subject="each request that has a reply")
+LATE_REPLIES = Group(
+    "late replies", (LATE_EXPECTED,), _late_replies, subject="each request that has a reply"
+)

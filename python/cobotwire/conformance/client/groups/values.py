@@ -37,4 +37,4 @@ def _field_at(table: Table, data: bytes, offset: int) -> Field | None:
     return None
 
 
-VALUES = Group("values", (RANGE, LISTED), _values)
+VALUES = Group("values", (RANGE, LISTED), _values, subject="each legal frame")

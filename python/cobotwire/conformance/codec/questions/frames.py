@@ -175,7 +175,31 @@ def decode(codec: Codec, direction: Direction, of: str, name: str, data: bytes) 
     return Question(f"{case.id}/{name}", case, of, ask, expect)
 
 
-ENCODING = Group("encoding", (ENCODE_BYTES, ENCODE_REJECTS), _encoding)
-REJECTED_VALUES = Group("rejected values", (ENCODE_REJECTS, ENCODE_BYTES), _rejected_values)
-DECODING = Group("decoding", (DECODE_VALUES,), _decoding)
-REJECTED_NUMBERS = Group("rejected numbers", (DECODE_REJECTS, REJECTION_REASON), _rejected_numbers)
+ENCODING = Group(
+    "encoding",
+    (ENCODE_BYTES, ENCODE_REJECTS),
+    _encoding,
+    sends="Ordinary values, corner values, and values between two steps, to be encoded.",
+    subject="each variant of each message",
+)
+REJECTED_VALUES = Group(
+    "rejected values",
+    (ENCODE_REJECTS, ENCODE_BYTES),
+    _rejected_values,
+    sends="Values that are not allowed, and rows with too few and too many numbers, to be encoded.",
+    subject="each variant of each message",
+)
+DECODING = Group(
+    "decoding",
+    (DECODE_VALUES,),
+    _decoding,
+    sends="Legal frames, to be decoded.",
+    subject="each variant of each message",
+)
+REJECTED_NUMBERS = Group(
+    "rejected numbers",
+    (DECODE_REJECTS, REJECTION_REASON),
+    _rejected_numbers,
+    sends="Frames with numbers that are not allowed, to be decoded.",
+    subject="each variant of each message",
+)

@@ -92,7 +92,31 @@ def _has_other_id(variant: CommandVariant, other: CommandVariant) -> bool:
 
 
 REJECTS = (DECODE_REJECTS, REJECTION_REASON)
-DAMAGED = Group("damaged frames", REJECTS, _damaged)
-EVERY_ID = Group("every id", (DECODE_VALUES, *REJECTS), _every_id)
-SHARED_IDS = Group("shared ids", (DECODE_VALUES, *REJECTS), _shared_ids)
-OTHER_COMMANDS = Group("other commands", REJECTS, _other_commands)
+DAMAGED = Group(
+    "damaged frames",
+    REJECTS,
+    _damaged,
+    sends="Frames with a wrong byte outside their data, cut short, and too long.",
+    subject="each variant of each message",
+)
+EVERY_ID = Group(
+    "every id",
+    (DECODE_VALUES, *REJECTS),
+    _every_id,
+    sends="Frames with every id, with and without data.",
+    subject="both directions",
+)
+SHARED_IDS = Group(
+    "shared ids",
+    (DECODE_VALUES, *REJECTS),
+    _shared_ids,
+    sends="Frames without the name of their command.",
+    subject="each variant of each message",
+)
+OTHER_COMMANDS = Group(
+    "other commands",
+    REJECTS,
+    _other_commands,
+    sends="Frames under the name of another command.",
+    subject="each variant of each message",
+)

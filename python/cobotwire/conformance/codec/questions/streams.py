@@ -172,4 +172,10 @@ def stream(codec: Codec, listening: Listening, command: str, name: str, chunks: 
     return Question(f"stream/{name}", STREAM_FRAMES, command, ask, OurCodec(codec).ask(ask))
 
 
-STREAMS = Group("streams", (STREAM_FRAMES, STREAM_CHUNKS, STREAM_NOISE, NOISE_REASON), _streams)
+STREAMS = Group(
+    "streams",
+    (STREAM_FRAMES, STREAM_CHUNKS, STREAM_NOISE, NOISE_REASON),
+    _streams,
+    sends="Streams of frames, damaged frames and noise, in chunks, with silences.",
+    subject="each variant of each message, and random streams",
+)

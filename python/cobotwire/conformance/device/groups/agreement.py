@@ -119,5 +119,22 @@ def _calculate(probe: Probe) -> None:
         probe.expect(AGREES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
 
 
-AGREEMENT = Group("agreement", (AGREES,), _agree, _has_equals)
-CALCULATION = Group("calculation", (AGREES,), _calculate, _calculates)
+AGREEMENT = Group(
+    "agreement",
+    (AGREES,),
+    _agree,
+    _has_equals,
+    sends="The queries of the same quantity, one after the other, at rest.",
+    subject="each query that reports the same quantity as another",
+)
+CALCULATION = Group(
+    "calculation",
+    (AGREES,),
+    _calculate,
+    _calculates,
+    sends=(
+        "The calculation with the position that the arm reports, at several poses if motion "
+        "is permitted."
+    ),
+    subject="each query that calculates what the arm also reports",
+)

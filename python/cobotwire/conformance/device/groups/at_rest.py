@@ -130,6 +130,27 @@ def _short(numbers: Sequence[float]) -> str:
     return ", ".join(f"{number:.4g}" for number in numbers)
 
 
-GEOMETRIES = Group("geometry", (GEOMETRY,), _geometry, _has_geometry)
-REACHED_AT_REST = Group("reached at rest", (REACHED,), _reached, _is_reached_query)
-JOINT_LIMITS = Group("joint limits", (LIMITS,), _limits, _is_limit)
+GEOMETRIES = Group(
+    "geometry",
+    (GEOMETRY,),
+    _geometry,
+    _has_geometry,
+    sends="The queries of the joints, the coordinates and the frames.",
+    subject="the query of the coordinates, if the edition states the links of the arm",
+)
+REACHED_AT_REST = Group(
+    "reached at rest",
+    (REACHED,),
+    _reached,
+    _is_reached_query,
+    sends="The query with the present position, and with positions that differ in one part each.",
+    subject="the query whether the arm is in a position",
+)
+JOINT_LIMITS = Group(
+    "joint limits",
+    (LIMITS,),
+    _limits,
+    _is_limit,
+    sends="The query for each joint.",
+    subject="each query of the joints' limits, if the edition states them",
+)

@@ -71,4 +71,6 @@ CALIBRATION = Group(
     _calibrate,
     _is_calibration,
     frozenset({"irreversible"}),
+    sends="The calibration for each part, at a pose that is not zero.",
+    subject="each permanent command that gives a position a fixed number",
 )

@@ -103,4 +103,10 @@ def _all_acknowledged(probe: Probe) -> None:
     probe.expect(ALIKE, not silent or len(silent) == len(acknowledged), reason)
 
 
-ALL_ACKNOWLEDGED = Group("all acknowledged", (ALIKE,), _all_acknowledged)
+ALL_ACKNOWLEDGED = Group(
+    "all acknowledged",
+    (ALIKE,),
+    _all_acknowledged,
+    sends="Nothing: the acknowledgements of the whole run are compared.",
+    subject="the line as a whole, if the edition has acknowledgements",
+)

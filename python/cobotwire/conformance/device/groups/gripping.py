@@ -98,5 +98,19 @@ def _queries(table: Table, command: Command) -> list[Command]:
     return [query for query in family if query.safety == "query" and query.reply]
 
 
-GRIPPER_MOVES = Group("gripper moves", (MOVING,), _reports_moving, _has_own_moving)
-GRIPPER_OPENS = Group("gripper opens", (ARRIVES, *AFTER_CHANGE), _open_and_close, _opens)
+GRIPPER_MOVES = Group(
+    "gripper moves",
+    (MOVING,),
+    _reports_moving,
+    _has_own_moving,
+    sends="Two positions of the gripper; whether it moves is read on the way and at the end.",
+    subject="each motion of a gripper that a query reports as moving",
+)
+GRIPPER_OPENS = Group(
+    "gripper opens",
+    (ARRIVES, *AFTER_CHANGE),
+    _open_and_close,
+    _opens,
+    sends="Open and close, twice; the opening is read after each.",
+    subject="each command that opens and closes a gripper",
+)

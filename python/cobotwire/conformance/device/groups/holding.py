@@ -80,4 +80,11 @@ def _send_to_all(probe: Probe, command: Command) -> None:
         probe.device.request(part)
 
 
-HOLDING = Group("single parts", (EFFECT, NEIGHBOURS, *AFTER_CHANGE), _switch_each, _is_for_one)
+HOLDING = Group(
+    "single parts",
+    (EFFECT, NEIGHBOURS, *AFTER_CHANGE),
+    _switch_each,
+    _is_for_one,
+    sends="The opposite state for all parts, then the command for each part in turn.",
+    subject="each command that switches one part, if a query reports the state of each",
+)

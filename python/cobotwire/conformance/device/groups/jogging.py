@@ -247,7 +247,26 @@ def _place(part: Field, chosen: int, numbers: tuple[Number, ...]) -> int:
 
 
 COORDINATES = Group(
-    "single coordinates", (ARRIVES, *AFTER_CHANGE), _to_coordinates, _moves_one_axis
+    "single coordinates",
+    (ARRIVES, *AFTER_CHANGE),
+    _to_coordinates,
+    _moves_one_axis,
+    sends="A target a short distance up and down along or about each axis.",
+    subject="the command that moves the end to one coordinate",
 )
-STEPS = Group("steps", (ARRIVES, *AFTER_CHANGE), _step, _is_step)
-JOGS = Group("jogs", (ARRIVES, STOPS, *AFTER_CHANGE), _jogs, _is_jog)
+STEPS = Group(
+    "steps",
+    (ARRIVES, *AFTER_CHANGE),
+    _step,
+    _is_step,
+    sends="A step up and down for each joint or axis.",
+    subject="each motion by a distance",
+)
+JOGS = Group(
+    "jogs",
+    (ARRIVES, STOPS, *AFTER_CHANGE),
+    _jogs,
+    _is_jog,
+    sends="A short jog in both directions for each joint or axis, and a stop.",
+    subject="each motion in a direction",
+)

@@ -186,6 +186,11 @@ DAMAGED = Group(
     _damaged,
     _is_framed_query,
     MALFORMED,
+    sends=(
+        "The query with LEN one too large and too small, a data byte too many, a wrong "
+        "footer, and broken off; after each, a good query."
+    ),
+    subject="each query with a framed reply",
 )
 FORBIDDEN = Group(
     "forbidden values",
@@ -193,6 +198,11 @@ FORBIDDEN = Group(
     _out_of_range,
     _can_be_out_of_range,
     MALFORMED,
+    sends=(
+        "The query with values next to the allowed ones, and the largest that the bytes can "
+        "hold; after each, a good query."
+    ),
+    subject="each query with arguments that can be out of range",
 )
 CROWDED = Group(
     "crowded requests",
@@ -200,5 +210,17 @@ CROWDED = Group(
     _crowded,
     _is_framed_query,
     MALFORMED,
+    sends=(
+        "The query after packets of the servo bus, text and bytes of a header; one byte at a "
+        "time; twice and three times in one write."
+    ),
+    subject="each query with a framed reply",
 )
-UNKNOWN_IDS = Group("unknown ids", (UNKNOWN_ID, RECOVERS, KEPT), _unknown_ids, permission=MALFORMED)
+UNKNOWN_IDS = Group(
+    "unknown ids",
+    (UNKNOWN_ID, RECOVERS, KEPT),
+    _unknown_ids,
+    permission=MALFORMED,
+    sends="Frames with ids that the edition lacks, with and without data.",
+    subject="the line as a whole",
+)

@@ -152,7 +152,40 @@ def _came(reported: bool | None) -> str:
     return "no valid reply" if reported is None else str(reported)
 
 
-POSES = Group("poses", (ARRIVES, REACHED, MOVING, *AFTER_CHANGE), _to_poses, _has("joint targets"))
-JOINTS = Group("single joints", (ARRIVES, *AFTER_CHANGE), _to_angles, _has("joint target"))
-REPLAYS = Group("replays", (ARRIVES, *AFTER_CHANGE), _replays, is_replayed)
-STOPPING = Group("stops", (STOPS, MOVING, *AFTER_CHANGE), _stops, _has("stop"))
+POSES = Group(
+    "poses",
+    (ARRIVES, REACHED, MOVING, *AFTER_CHANGE),
+    _to_poses,
+    _has("joint targets"),
+    sends=(
+        "Two poses inside the workspace, in turns; the arm's state on the way and at the end "
+        "is read."
+    ),
+    subject="the command that moves all joints",
+)
+JOINTS = Group(
+    "single joints",
+    (ARRIVES, *AFTER_CHANGE),
+    _to_angles,
+    _has("joint target"),
+    sends="A target for one joint after the other.",
+    subject="the command that moves one joint",
+)
+REPLAYS = Group(
+    "replays",
+    (ARRIVES, *AFTER_CHANGE),
+    _replays,
+    is_replayed,
+    sends=(
+        "What a query has reported at another pose; or samples, if it does not depend on the pose."
+    ),
+    subject="each motion with a target that a query reports",
+)
+STOPPING = Group(
+    "stops",
+    (STOPS, MOVING, *AFTER_CHANGE),
+    _stops,
+    _has("stop"),
+    sends="A slow motion, and the stop on its way.",
+    subject="the command that stops the arm",
+)

@@ -125,4 +125,14 @@ def _alike(field: Field, before: object, after: object) -> bool:
     return True
 
 
-QUERIES = Group("queries", (REPLIED, FRAME, FIELDS, ECHO, ONCE, REPEATS), _query, is_query)
+QUERIES = Group(
+    "queries",
+    (REPLIED, FRAME, FIELDS, ECHO, ONCE, REPEATS),
+    _query,
+    is_query,
+    sends=(
+        "The query with every argument of short lists and the ends of long ranges; the last "
+        "one twice."
+    ),
+    subject="each query",
+)

@@ -63,4 +63,6 @@ NEXT_TARGET = Group(
     _next_target,
     _chooses_mode,
     frozenset({"motion", "irreversible"}),
+    sends="In each mode: joint 1 up, and at once down.",
+    subject="the setting that chooses what happens to a target when the next one comes",
 )

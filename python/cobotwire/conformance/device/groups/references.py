@@ -125,4 +125,11 @@ def _short(vector: Vector) -> str:
     return ", ".join(f"{part:.1f}" for part in vector)
 
 
-REFERENCES = Group("references", (SHIFTS,), _shifts, _is_reference)
+REFERENCES = Group(
+    "references",
+    (SHIFTS,),
+    _shifts,
+    _is_reference,
+    sends="A reference of 40 mm along each axis; the coordinates are read with and without it.",
+    subject="each setting that takes coordinates, if another one makes the arm use it",
+)

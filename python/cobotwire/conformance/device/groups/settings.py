@@ -119,4 +119,9 @@ SETTINGS = Group(
     (READ_BACK, NEIGHBOURS, RESTORED, *AFTER_CHANGE_OR_REPLY),
     _set_and_read,
     _is_setting,
+    sends=(
+        "For each joint, pin or register: both ends, both signs, a different number for each "
+        "part; then the value before."
+    ),
+    subject="each setting that a query reads back",
 )

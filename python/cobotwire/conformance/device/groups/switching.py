@@ -102,8 +102,31 @@ def _send_colours(probe: Probe) -> None:
     request_change(probe, gentle(probe.command))
 
 
-SWITCHES = Group("switches", (EFFECT, *AFTER_CHANGE_OR_REPLY), _switch, _is_switch)
-UNREAD = Group(
-    "unread commands", AFTER_CHANGE_OR_REPLY, _send_unread, _is_unread, frozenset({"irreversible"})
+SWITCHES = Group(
+    "switches",
+    (EFFECT, *AFTER_CHANGE_OR_REPLY),
+    _switch,
+    _is_switch,
+    sends=(
+        "The command that sets the opposite state, then the command itself, then the one "
+        "that restores the state."
+    ),
+    subject="each command with a fixed effect that a query reports",
 )
-LIGHTS = Group("lights", AFTER_CHANGE_OR_REPLY, _send_colours, _is_light)
+UNREAD = Group(
+    "unread commands",
+    AFTER_CHANGE_OR_REPLY,
+    _send_unread,
+    _is_unread,
+    frozenset({"irreversible"}),
+    sends="The command once, with the arguments that change the least.",
+    subject="each command that no query reads back",
+)
+LIGHTS = Group(
+    "lights",
+    AFTER_CHANGE_OR_REPLY,
+    _send_colours,
+    _is_light,
+    sends="Colours that differ in each part, the darkest last.",
+    subject="each command with the role light",
+)

@@ -1,0 +1,46 @@
+"""The pages of the conformance test suite, which the package itself lists.
+
+The generator does not import the package: it runs it, in a process of its own, so that the pages
+are made from the files as they are now.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path, PurePosixPath
+
+from cobotwire_codegen.emit import Target
+
+MODULE = "cobotwire.conformance.catalogue"
+HISTORY = "python/cobotwire/conformance/catalogue/history.py"
+
+
+class SuiteError(Exception):
+    """The pages of the test suite cannot be made; the text says why, and what to do."""
+
+
+def suite_pages(root: Path) -> list[Target]:
+    """Return the pages of the catalogue of test cases; none if the project has no test suite.
+
+    Raises:
+        SuiteError: the test cases have changed and the catalogue has no new version, or they cannot
+            be listed.
+    """
+    if not (root / HISTORY).is_file():
+        return []
+    package = str((root / "python").resolve())
+    path = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
+    done = subprocess.run(  # noqa: S603  (the project's own package)
+        [sys.executable, "-m", MODULE],
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        raise SuiteError(done.stderr.strip().rpartition("\n")[2])
+    files = {PurePosixPath(name): text for name, text in json.loads(done.stdout).items()}
+    return [Target(root / "docs" / "reference" / "test-suite", files)]

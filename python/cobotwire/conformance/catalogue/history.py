@@ -1,0 +1,22 @@
+"""The versions of the catalogue of test cases.
+
+A test case that is added, removed, reworded or sends something else needs a new version:
+``cobotwire-gen --check`` fails until the last entry has the digest of the catalogue. The message
+names the entry to add.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class CatalogueVersion(NamedTuple):
+    """A version; ``digest`` is that of the catalogue (:func:`listing.digest`)."""
+
+    number: int
+    digest: str
+    what: str
+
+
+HISTORY = (CatalogueVersion(1, "4e90f5aa1281", "the first version with a number"),)
+VERSION = HISTORY[-1].number

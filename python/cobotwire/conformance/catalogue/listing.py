@@ -1,0 +1,75 @@
+"""List the test cases of all suites, and those of an edition by command."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from hashlib import sha256
+from typing import Any, NamedTuple
+
+from cobotwire.conformance.catalogue.history import HISTORY
+from cobotwire.conformance.client import SUITE as CLIENTS
+from cobotwire.conformance.codec import SUITE as CODECS
+from cobotwire.conformance.device import SUITE as DEVICES
+from cobotwire.conformance.device.permissions import class_of
+from cobotwire.conformance.suite import Group, Suite, TestCase
+from cobotwire.protocol.table import Command, Table
+
+SUITES: tuple[Suite[Any], ...] = (DEVICES, CLIENTS, CODECS)
+# The characters of a digest that are written.
+SHOWN = 12
+
+
+class Selected(NamedTuple):
+    """The test cases of a group that a command is tested by; without a command: the line."""
+
+    command: Command | None
+    group: Group[Any]
+    cases: tuple[TestCase, ...]
+    permissions: frozenset[str]
+
+
+def selected(table: Table) -> Iterator[Selected]:
+    """Yield what is tested on a device of an edition, in the order of its commands."""
+    for command in table.commands:
+        for group in DEVICES.groups:
+            if command.event or group.selects is None or not group.selects(table, command):
+                continue
+            cases = tuple(case for case in group.cases if case.applies(command))
+            yield Selected(command, group, cases, group.permission | class_of(command))
+    for group in DEVICES.groups:
+        if group.selects is None:
+            yield Selected(None, group, group.cases, group.permission)
+
+
+def digest() -> str:
+    """Return the digest of the catalogue: it changes with every word of every test case."""
+    listed = [
+        [
+            suite.kind,
+            [
+                [
+                    group.name,
+                    sorted(group.permission),
+                    group.sends,
+                    group.subject,
+                    [[case.id, case.purpose, case.source] for case in group.cases],
+                ]
+                for group in suite.groups
+            ],
+        ]
+        for suite in SUITES
+    ]
+    return sha256(json.dumps(listed).encode()).hexdigest()[:SHOWN]
+
+
+def outdated() -> str:
+    """Return what must be done because the test cases have changed; empty if they have not."""
+    last, now = HISTORY[-1], digest()
+    if last.digest == now:
+        return ""
+    entry = f'CatalogueVersion({last.number + 1}, "{now}", "what has changed")'
+    return (
+        f"the test cases have changed since version {last.number} of the catalogue; add this entry "
+        f"to python/cobotwire/conformance/catalogue/history.py: {entry}"
+    )

@@ -1,0 +1,202 @@
+"""A device that is a program: the run starts it, connects to it, and stops it in the end."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from types import TracebackType
+from typing import Literal, Self
+
+from cobotwire.conformance.device.program_transport import DescriptorEnd, WatchedTransport
+from cobotwire.conformance.last_words import ending
+from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.transport import Transport, open_transport
+
+Attach = Literal["stdio", "pty", "port"]
+ATTACH: tuple[Attach, ...] = ("stdio", "pty", "port")
+# The word of a command that stands for the path of the pseudo-terminal.
+PORT_WORD = "{port}"
+# What a program prints that other programs can open.
+PRINTED_PORT = re.compile(rb"(?:socket|rfc2217)://\S+|/dev/\S+|\bCOM\d+\b")
+# How long the program may take to print its port, and to end after it was asked to, in seconds.
+STARTING, ENDING = 10.0, 2.0
+# How often the output is searched for a port, in seconds, and how much of it.
+POLL = 0.02
+READ_SIZE = 4096
+
+
+def parse_command(text: str, attach: str | None) -> tuple[list[str], Attach]:
+    """Return the words of a command, and how to connect to it.
+
+    By default that is a pseudo-terminal if the command has the word ``{port}``, else standard input
+    and output.
+
+    Raises:
+        UsageError: the text is not a command, or does not fit.
+    """
+    try:
+        command = shlex.split(text)
+    except ValueError as error:
+        raise UsageError("command", text, message=f"--command {text!r}: {error}") from None
+    if not command:
+        raise UsageError("command", text, message="--command is empty; name a program")
+    named = any(PORT_WORD in word for word in command)
+    for each in ATTACH:
+        if each == (attach or ("pty" if named else "stdio")):
+            if named and each != "pty":
+                message = f"{PORT_WORD} stands for a pseudo-terminal: use --attach pty, or omit it"
+                raise UsageError("attach", attach, message=message)
+            return command, each
+    raise UsageError("attach", attach, f"one of {', '.join(ATTACH)}")
+
+
+class StartedDevice:
+    """A program that is a device while its ``with`` block runs; ``transport`` leads to it."""
+
+    def __init__(self, command: Sequence[str], attach: Attach, baudrate: int) -> None:
+        """Start the program, in a session of its own.
+
+        Args:
+            command: the program and its arguments.
+            attach: ``stdio``: its standard input and output are the line; ``pty``: a
+                pseudo-terminal is, whose path replaces ``{port}`` in the command (without it, it is
+                the standard input and output); ``port``: the program prints what is to be opened.
+            baudrate: bits a second, for a port that it prints.
+
+        Raises:
+            LinkError: it cannot be started, or prints no port.
+        """
+        self.name = f"command {shlex.join(command)}"
+        # Diagnostics go to a file, because a pipe that nobody reads would block when it is full.
+        self._diagnostics = tempfile.TemporaryFile()  # noqa: SIM115  (closed by stop)
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115  (closed by stop)
+        self._ends: list[int] = []
+        try:
+            self._process, inner = self._start(list(command), attach, baudrate)
+        except BaseException:
+            self._release()
+            raise
+        self.transport: Transport = WatchedTransport(inner, self.name, self.ended)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+    def ended(self) -> str:
+        """Return how the program ended; empty while it runs."""
+        code = self._process.poll()
+        return "" if code is None else ending(code, self._diagnostics)
+
+    def stop(self) -> None:
+        """Close the line and end the program, with the programs that it has started."""
+        self.transport.close()
+        _end(self._process)
+        self._release()
+
+    def _start(
+        self, command: list[str], attach: Attach, baudrate: int
+    ) -> tuple[subprocess.Popen[bytes], Transport]:
+        if attach == "port":
+            process = self._popen(command, subprocess.DEVNULL, self._output.fileno())
+            try:
+                return process, open_transport(self._printed_port(process), baudrate)
+            except BaseException:
+                _end(process)
+                raise
+        ours, theirs, path = _pty() if attach == "pty" else _pair()
+        self._ends.append(theirs)
+        inner = DescriptorEnd(ours, self.name)
+        placed = [word.replace(PORT_WORD, path) for word in command]
+        named = placed != command
+        ends = (subprocess.DEVNULL, self._output.fileno()) if named else (theirs, theirs)
+        try:
+            process = self._popen(placed, *ends)
+        except BaseException:
+            inner.close()
+            raise
+        if not named:
+            # Only the program holds its end: when it is gone, nothing can come any more.
+            os.close(self._ends.pop())
+        return process, inner
+
+    def _popen(self, command: list[str], stdin: int, stdout: int) -> subprocess.Popen[bytes]:
+        try:
+            return subprocess.Popen(  # noqa: S603  (running the caller's command is the point)
+                command,
+                stdin=stdin,
+                stdout=stdout,
+                stderr=self._diagnostics,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise LinkError(self.name, f"cannot be started: {error.strerror or error}") from error
+
+    def _printed_port(self, process: subprocess.Popen[bytes]) -> str:
+        """Wait until the program prints a port or URL."""
+        until = time.monotonic() + STARTING
+        while True:
+            code = process.poll()
+            self._output.seek(0)
+            found = PRINTED_PORT.search(self._output.read(READ_SIZE))
+            if found:
+                return found[0].decode(errors="replace")
+            if code is not None:
+                raise LinkError(self.name, ending(code, self._diagnostics))
+            if time.monotonic() >= until:
+                message = f"it printed no port (/dev/..., socket://HOST:PORT) in {STARTING:g} s"
+                raise LinkError(self.name, message)
+            time.sleep(POLL)
+
+    def _release(self) -> None:
+        while self._ends:
+            os.close(self._ends.pop())
+        self._diagnostics.close()
+        self._output.close()
+
+
+def _pair() -> tuple[int, int, str]:
+    """Return our end and the program's end of a connection."""
+    ours, theirs = socket.socketpair()
+    return ours.detach(), theirs.detach(), ""
+
+
+def _pty() -> tuple[int, int, str]:
+    """Return our end and the program's end of a pseudo-terminal, and the path of the latter."""
+    if sys.platform == "win32":
+        raise UsageError("attach", "pty", message="Windows has no pseudo-terminals: use --attach")
+    import tty
+
+    ours, theirs = os.openpty()
+    # Raw mode: a terminal would echo the requests and swallow some of their bytes.
+    tty.setraw(theirs)
+    return ours, theirs, os.ttyname(theirs)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a program and its session."""
+    with suppress(OSError):
+        if hasattr(os, "killpg"):
+            os.killpg(process.pid, 15)
+        else:
+            process.terminate()
+    try:
+        process.wait(ENDING)
+    except subprocess.TimeoutExpired:
+        with suppress(OSError):
+            os.killpg(process.pid, 9) if hasattr(os, "killpg") else process.kill()
+        process.wait()

@@ -1,0 +1,44 @@
+"""What the parts of the page have in common: signs, classes and anchors."""
+
+from __future__ import annotations
+
+from cobotwire.conformance.report import Cause, Verdict
+
+# In the order in which outcomes are listed.
+SIGNS = {
+    (Verdict.FAIL, Cause.NONE): "✗",
+    (Verdict.FAIL, Cause.UNSTABLE): "≈",
+    (Verdict.INCONCLUSIVE, Cause.NOT_SUPPORTED): "○",
+    (Verdict.PASS, Cause.NONE): "✓",
+    (Verdict.NOT_RUN, Cause.NOT_PERMITTED): "·",
+    (Verdict.NOT_RUN, Cause.NOT_SELECTED): "-",
+    (Verdict.NOT_RUN, Cause.RUN_ENDED): "…",
+}
+
+
+def sign_of(verdict: Verdict, cause: Cause) -> str:
+    """Return the sign of an outcome; a report of another program may have any."""
+    return SIGNS.get((verdict, cause)) or SIGNS.get((verdict, Cause.NONE), "?")
+
+
+def order_of(outcome: tuple[Verdict, Cause]) -> int:
+    """Return the place of an outcome in lists."""
+    known = list(SIGNS)
+    return known.index(outcome) if outcome in known else len(known)
+
+
+def class_of(verdict: Verdict, cause: Cause) -> str:
+    """Return the class of an outcome, which has its colour."""
+    if verdict is Verdict.FAIL:
+        return "unstable" if cause is Cause.UNSTABLE else "fail"
+    return {Verdict.PASS: "pass", Verdict.INCONCLUSIVE: "open"}.get(verdict, "skip")
+
+
+def title_of(command: str) -> str:
+    """Return a command's name; the line has none."""
+    return command or "the line"
+
+
+def anchor(command: str) -> str:
+    """Return the id of a command's entry."""
+    return f"of-{command}"

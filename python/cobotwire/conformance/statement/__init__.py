@@ -1,0 +1,14 @@
+"""Implementation conformance statements: what a maker declares that a device has, and lacks."""
+
+from cobotwire.conformance.statement.reader import load_statement, read_statement
+from cobotwire.conformance.statement.statement import Statement, Support, is_mandatory
+from cobotwire.conformance.statement.template import statement_template
+
+__all__ = [
+    "Statement",
+    "Support",
+    "is_mandatory",
+    "load_statement",
+    "read_statement",
+    "statement_template",
+]
