@@ -9,6 +9,7 @@ from cobotwire.cli.conform_client import client
 from cobotwire.cli.conform_codec import codec
 from cobotwire.cli.conform_compare import compare
 from cobotwire.cli.conform_device import device
+from cobotwire.cli.conform_statement import statement
 
 
 @click.group(short_help="Test an arm, a client or a codec.")
@@ -19,5 +20,5 @@ def conform() -> None:
     """
 
 
-for verb in (device, client, codec, compare, cases):
+for verb in (device, client, codec, compare, cases, statement):
     conform.add_command(verb)

@@ -6,17 +6,15 @@ import json
 import sys
 from collections import Counter
 from dataclasses import asdict
-from pathlib import Path
 
 import click
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from cobotwire.capture.file_errors import unusable_file
 from cobotwire.cli.shared.conform_report import CONFORMS, DOES_NOT, exit_if_not_testable
-from cobotwire.conformance import Report
-from cobotwire.conformance.reports import Comparison, from_json
+from cobotwire.cli.shared.earlier_reports import read_report
+from cobotwire.conformance.reports import Comparison
 from cobotwire.conformance.reports import compare as compared
 from cobotwire.protocol.printable import printable
 
@@ -34,20 +32,12 @@ def compare(before: str, after: str, as_json: bool) -> None:
     before, or one that passed does not pass now; 2 a file is not a report.
     """
     with exit_if_not_testable():
-        found = compared(_read("before", before), _read("after", after))
+        found = compared(read_report("before", before), read_report("after", after))
     if as_json:
         click.echo(json.dumps(asdict(found), indent=1))
     else:
         _show(found)
     sys.exit(DOES_NOT if found.worse else CONFORMS)
-
-
-def _read(argument: str, name: str) -> Report:
-    try:
-        text = Path(name).read_text(encoding="utf-8")
-    except (OSError, UnicodeError) as error:
-        raise unusable_file(argument, name, error) from error
-    return from_json(text)
 
 
 def _show(found: Comparison) -> None:

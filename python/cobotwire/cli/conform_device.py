@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
+from dataclasses import replace
 
 import click
 from rich.console import Console
 from rich.progress import Progress
 
 from cobotwire import editions
-from cobotwire.capture.file_errors import unusable_file
 from cobotwire.cli.shared.arm_options import address_option, baudrate_option
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.conform_report import (
@@ -20,26 +19,20 @@ from cobotwire.cli.shared.conform_report import (
     exit_if_not_testable,
     report_options,
 )
-from cobotwire.conformance import Report
+from cobotwire.cli.shared.earlier_reports import earlier_report
+from cobotwire.cli.shared.subject_connection import Lacking, Subject, connected
 from cobotwire.conformance.device import (
+    ATTACH,
     PERMISSIONS,
-    DeviceConnection,
     Plan,
     RunOptions,
     Step,
     Tester,
 )
-from cobotwire.conformance.reports import from_json
+from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.sources import spec_lines
-from cobotwire.protocol.errors import LinkError, UsageError
-from cobotwire.protocol.table import Table
-from cobotwire.simulator import SimulatedArm
-from cobotwire.simulator.arm import Note
-from cobotwire.simulator.clock import SteppedClock
-from cobotwire.simulator.memory import MemoryTransport
-from cobotwire.transport import open_transport
-
-IN_MEMORY = "simulated arm in memory"
+from cobotwire.conformance.statement import Statement, load_statement, read_statement
+from cobotwire.protocol.errors import LinkError
 
 
 @click.command()
@@ -76,6 +69,18 @@ IN_MEMORY = "simulated arm in memory"
 @address_option
 @click.option("--linger", type=float, help="Milliseconds to listen after a reply [default: 4].")
 @click.option("--simulated", is_flag=True, help="Test a simulated arm instead of URL.")
+@click.option("--command", metavar="COMMAND", help="Start this program, test it, and stop it.")
+@click.option(
+    "--attach",
+    type=click.Choice(ATTACH),
+    help="With --command: how to connect [default: pty if COMMAND has {port}, else stdio].",
+)
+@click.option(
+    "--statement",
+    type=click.Path(),
+    metavar="FILE",
+    help="What the arm has and lacks (YAML); `conform statement` prints a template.",
+)
 @click.option(
     "--resume",
     type=click.Path(),
@@ -103,6 +108,9 @@ def device(
     address: str | None,
     linger: float | None,
     simulated: bool,
+    command: str | None,
+    attach: str | None,
+    statement: str | None,
     resume: str | None,
     again: str | None,
     files: ReportFiles,
@@ -112,6 +120,10 @@ def device(
     By default only queries are sent; --allow permits more. Motion also needs --max-speed and
     --workspace. Settings are restored at the end; Ctrl-C stops the arm and restores them too.
 
+    --command tests a program. It is connected by its standard input and output, by a
+    pseudo-terminal (the word {port} in COMMAND becomes its path), or by the port that it prints
+    (--attach port).
+
     Exit codes: 0 the arm conforms; 1 it does not; 2 it could not be tested.
     """
     with exit_if_not_testable():
@@ -119,40 +131,27 @@ def device(
         options = RunOptions(
             allow, max_speed, workspace, repeat, retries, optional, address, linger, baudrate
         )
-        plan = Plan()
-        if resume is not None or again is not None:
-            earlier = _earlier(resume, again, options, edition)
+        subject = Subject(port, command, attach, simulated, baudrate)
+        given = options.for_report() | ({"statement": statement} if statement else {})
+        earlier = earlier_report(resume, again, given, edition, "device")
+        if earlier is None:
+            plan = Plan()
+            declared = load_statement(statement, table) if statement else Statement()
+        else:
             options = RunOptions.of_report(earlier.options)
             plan = Plan(earlier, resume=resume is not None)
+            text = earlier.statement
+            declared = read_statement(text, table, "the report") if text else Statement()
         options.validate(table)
-        statement = _Statement(table)
-        with _connection(table, port, simulated, options.baudrate, statement) as connection:
-            tester = options.tester(connection, table, spec_lines(edition), statement.reasons)
+        lacking = Lacking(table)
+        subject = replace(subject, baudrate=options.baudrate)
+        with connected(table, subject, lacking) as connection:
+            tester = options.tester(
+                connection, table, spec_lines(edition), declared, lacking.reasons
+            )
+            identify(tester.report, edition, port=connection.name)
             _run(tester, plan)
     conclude(tester.report, files)
-
-
-def _earlier(resume: str | None, again: str | None, given: RunOptions, edition: str) -> Report:
-    """Return the report to continue or to repeat.
-
-    Raises:
-        UsageError: its file is no report of the edition, or options are given in addition.
-    """
-    name = "--again" if resume is None else "--resume"
-    path = again if resume is None else resume
-    if path is None or (resume is not None and again is not None):
-        raise UsageError("again", again, message="give either --resume or --again, not both")
-    if given != RunOptions():
-        names = ", ".join(f"--{each.replace('_', '-')}" for each in given.for_report())
-        raise UsageError("options", message=f"{name} uses the options of the report: omit {names}")
-    try:
-        report = from_json(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeError) as error:
-        raise unusable_file(name.removeprefix("--"), path, error) from error
-    if report.edition != edition:
-        message = f"{path} is about the edition {report.edition}; add --edition {report.edition}"
-        raise UsageError("edition", edition, message=message)
-    return report
 
 
 def _run(tester: Tester, plan: Plan) -> None:
@@ -177,37 +176,3 @@ def _progress() -> Iterator[Callable[[Step, int, int], None]]:
             bar.update(task, description=step.name, completed=index, total=count)
 
         yield show_step
-
-
-class _Statement:
-    """What a simulated arm states that it does not support: coordinates of an unknown geometry."""
-
-    def __init__(self, table: Table) -> None:
-        self.reasons: dict[str, str] = {}
-        self._table = table
-        self._why = table.robot.why_no_geometry
-
-    def note(self, note: Note) -> None:
-        """Keep a note of the arm if it says so."""
-        if note.text.endswith(self._why):
-            id = self._table.command(note.command).id
-            same = [command.name for command in self._table.commands if command.id == id]
-            self.reasons |= dict.fromkeys(same, self._why)
-
-
-@contextmanager
-def _connection(
-    table: Table, port: str | None, simulated: bool, baudrate: int | None, statement: _Statement
-) -> Iterator[DeviceConnection]:
-    if simulated == (port is not None):
-        raise UsageError("URL", port, message="give either the URL of an arm or --simulated")
-    if port is None:
-        clock = SteppedClock()
-        arm = SimulatedArm(table, clock=clock, on_note=statement.note)
-        yield DeviceConnection(MemoryTransport(arm, clock), clock, IN_MEMORY)
-        return
-    opened = open_transport(port, table.baudrate if baudrate is None else baudrate)
-    try:
-        yield DeviceConnection(opened)
-    finally:
-        opened.close()

@@ -12,14 +12,15 @@ from cobotwire.conformance.report import Environment, Report
 from cobotwire.protocol.loading import load_digest
 
 
-def identify(report: Report, *, port: str = "") -> None:
+def identify(report: Report, edition: str, *, port: str = "") -> None:
     """Write into a report what it needs to be understood, and repeated, elsewhere.
 
     Args:
-        report: the report of a run on an edition that ``editions.load`` finds by its name.
+        report: the report.
+        edition: the name or package of its edition, as ``editions.load`` takes it.
         port: what connects the tester with the subject.
     """
-    report.edition_digest = edition_digest(report.edition)
+    report.edition_digest = edition_digest(edition)
     report.catalogue = f"{VERSION}"
     report.code_digest = code_digest()
     report.environment = environment(port)

@@ -48,7 +48,8 @@ class Group(Generic[Body]):
     ``selects`` picks the commands that the body runs for; without it the body runs once, for the
     line as a whole. ``permission`` is needed in addition to the permission for the command's
     safety class. The catalogue shows ``sends``, what the tester sends, and ``subject``, what
-    ``selects`` picks, in words.
+    ``selects`` picks, in words. With ``declared`` the body judges the statement of the subject: it
+    runs only if there is one, and for the commands that it declares absent.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Group(Generic[Body]):
     permission: frozenset[str] = frozenset()
     sends: str = ""
     subject: str = ""
+    declared: bool = False
 
 
 @dataclass(frozen=True, slots=True)

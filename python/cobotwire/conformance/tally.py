@@ -136,7 +136,7 @@ class Tally:
             reason = count.otherwise or unobserved or NOTHING_OBSERVED
             return replace(result, reason=reason, cause=Cause.NOT_SUPPORTED)
         often = "once" if count.observed == 1 else f"{count.observed} times"
-        reason = count.note or f"{case.purpose} Observed {often}."
+        reason = count.note or f"Observed {often}."
         return replace(result, verdict=Verdict.PASS, reason=reason, evidence=evidence)
 
 

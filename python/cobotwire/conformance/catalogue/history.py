@@ -18,5 +18,5 @@ class CatalogueVersion(NamedTuple):
     what: str
 
 
-HISTORY = (CatalogueVersion(1, "4e90f5aa1281", "the first version with a number"),)
+HISTORY = (CatalogueVersion(1, "06c50cbca37d", "the first version with a number"),)
 VERSION = HISTORY[-1].number

@@ -33,12 +33,14 @@ def selected(table: Table) -> Iterator[Selected]:
     """Yield what is tested on a device of an edition, in the order of its commands."""
     for command in table.commands:
         for group in DEVICES.groups:
-            if command.event or group.selects is None or not group.selects(table, command):
+            if command.event or group.declared or group.selects is None:
+                continue
+            if not group.selects(table, command):
                 continue
             cases = tuple(case for case in group.cases if case.applies(command))
             yield Selected(command, group, cases, group.permission | class_of(command))
     for group in DEVICES.groups:
-        if group.selects is None:
+        if group.selects is None or group.declared:
             yield Selected(None, group, group.cases, group.permission)
 
 

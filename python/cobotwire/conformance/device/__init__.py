@@ -11,20 +11,24 @@ from cobotwire.conformance.device.permissions import (
 )
 from cobotwire.conformance.device.plan import Plan, Step
 from cobotwire.conformance.device.requester import Timing
+from cobotwire.conformance.device.started import ATTACH, StartedDevice, parse_command
 from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.device.tester import Tester
 
 __all__ = [
     "ALL_PERMISSIONS",
+    "ATTACH",
     "PERMISSIONS",
     "SUITE",
     "DeviceConnection",
     "Permissions",
     "Plan",
     "RunOptions",
+    "StartedDevice",
     "Step",
     "Tester",
     "Timing",
+    "parse_command",
     "parse_workspace",
     "words",
 ]

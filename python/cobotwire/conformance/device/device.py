@@ -14,6 +14,7 @@ from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.requester import Requester, Timing
 from cobotwire.conformance.device.requests import Known, units
 from cobotwire.conformance.device.response import Response
+from cobotwire.conformance.statement import Statement
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request, Result
 from cobotwire.protocol.table import Address, Command, Role, Table
@@ -52,8 +53,10 @@ class Device:
         timing: Timing,
         retries: int = 0,
         address: Address | None = None,
+        statement: Statement | None = None,
     ) -> None:
         self.connection = connection
+        self.statement = statement or Statement()
         self.table: Table = codec.table
         self.permissions = permissions
         self.timing = timing

@@ -15,7 +15,7 @@ def excused(
     result: Result,
     reply_seconds: Mapping[str, list[float]],
     optional: Container[str],
-    statement: Mapping[str, str],
+    lacking: Mapping[str, str],
 ) -> Result:
     """Turn a failure by silence into not supported, if the device may lack the command.
 
@@ -23,12 +23,12 @@ def excused(
         result: the result.
         reply_seconds: the times of all valid replies, by command.
         optional: the commands that the device may lack altogether.
-        statement: what the device states that it does not support: by command, the reason.
+        lacking: what the device states that it does not support: by command, the reason.
     """
     if result.verdict is not Verdict.FAIL:
         return result
     silent = any(words in result.reason for words in SILENCE)
-    stated = statement.get(result.command, "") if silent else ""
+    stated = lacking.get(result.command, "") if silent else ""
     never = not reply_seconds.get(result.command)
     if not stated and not (never and result.command in optional):
         return result

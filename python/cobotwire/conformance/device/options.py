@@ -10,6 +10,7 @@ from cobotwire.conformance.device.connection import DeviceConnection
 from cobotwire.conformance.device.permissions import Permissions, parse_workspace, words
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.tester import Tester
+from cobotwire.conformance.statement import Statement
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 
@@ -84,7 +85,8 @@ class RunOptions:
         connection: DeviceConnection,
         table: Table,
         sources: Mapping[str, str] | None = None,
-        statement: Mapping[str, str] | None = None,
+        statement: Statement | None = None,
+        lacking: Mapping[str, str] | None = None,
     ) -> Tester:
         """Return the tester for a connection; nothing is sent.
 
@@ -103,6 +105,7 @@ class RunOptions:
             retries=self.retries,
             optional=self._optional(table),
             statement=statement,
+            lacking=lacking,
             address=int(self.address) if number and self.address else self.address,
         )
         tester.report.options = self.for_report()

@@ -67,6 +67,10 @@ class Probe:
         """Return the results of a body that was not run for lack of permission."""
         return self._without_verdict(Cause.NOT_PERMITTED, f"It needs permission: {missing}.")
 
+    def not_selected(self, reason: str) -> list[Result]:
+        """Return the results of a body that was not run, because the statement deselects it."""
+        return self._without_verdict(Cause.NOT_SELECTED, reason)
+
     def not_run(self, reason: str) -> list[Result]:
         """Return the results of a body that was not run, because the run ended before."""
         return self._without_verdict(Cause.RUN_ENDED, reason)

@@ -7,6 +7,7 @@ from cobotwire.conformance.device.groups import (
     at_rest,
     calibration,
     changes,
+    declared,
     gripping,
     holding,
     jogging,
@@ -25,6 +26,7 @@ SUITE: Suite[Body] = Suite(
     "device",
     (
         queries.QUERIES,
+        declared.DECLARED_ABSENT,
         at_rest.GEOMETRIES,
         at_rest.REACHED_AT_REST,
         at_rest.JOINT_LIMITS,
@@ -52,7 +54,8 @@ SUITE: Suite[Body] = Suite(
         agreement.AGREEMENT,
         agreement.CALCULATION,
         calibration.CALIBRATION,
-        # Last, because it compares all acknowledgements of the run.
+        # Last, because they compare all acknowledgements of the run.
         changes.ALL_ACKNOWLEDGED,
+        declared.DECLARED_FACTS,
     ),
 )

@@ -20,6 +20,7 @@ from cobotwire.conformance.device.probe import Probe, needed
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.report import Report, Result
+from cobotwire.conformance.statement import Statement
 from cobotwire.conformance.tally import Tally, merged
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import LinkError, UsageError
@@ -46,7 +47,8 @@ class Tester:
         retries: int = 0,
         optional: frozenset[str] = frozenset(),
         address: int | str | None = None,
-        statement: Mapping[str, str] | None = None,
+        statement: Statement | None = None,
+        lacking: Mapping[str, str] | None = None,
     ) -> None:
         """Prepare a run; nothing is sent.
 
@@ -59,9 +61,10 @@ class Tester:
             repeat: how often each body is run; if the runs differ, the verdict is unstable.
             retries: how often a query is repeated if nothing comes.
             optional: commands that the device may lack: if it is silent, they are not supported.
-            statement: what the device states that it does not support: by command, the reason. It
-                may grow during the run. Silence of such a command is no failure.
             address: the device's address, by number or name; left out: the edition's first one.
+            statement: what the maker declares of the device; it selects test cases, and is tested.
+            lacking: what the device itself states that it does not support: by command, the
+                reason. It may grow during the run. Silence of such a command is no failure.
 
         Raises:
             UsageError: the edition has no such address, or a request to it has no reply.
@@ -72,8 +75,9 @@ class Tester:
         self.connection = connection
         self.table = table
         self._repeat = repeat
-        self._optional = optional
-        self._statement: Mapping[str, str] = {} if statement is None else statement
+        self._statement = statement or Statement()
+        self._optional = optional | self._statement.optional
+        self._lacking: Mapping[str, str] = {} if lacking is None else lacking
         self._sources = sources
         # Why the run ends before its end; empty: it does not.
         self._ended = ""
@@ -84,19 +88,24 @@ class Tester:
             timing=timing or Timing(),
             retries=retries,
             address=device_address,
+            statement=self._statement,
         )
         at = "" if device_address is None else f" at address {device_address.name}"
         self.report = Report("device", table.edition, f"{connection.name}{at}")
+        self.report.statement = self._statement.text
         self.report.reply_seconds = self.device.reply_seconds
         self.report.deadline_seconds = {c.name: c.deadline_ms / 1000 for c in table.commands}
 
     def steps(self) -> Iterator[Step]:
         """Yield the steps in the order of a run."""
         for group in SUITE.groups:
+            if group.declared and not self._statement.given:
+                continue
             if group.selects is None:
                 yield Step(group, None)
                 continue
-            for command in self.table.commands:
+            absent = self._statement.absent(self.table)
+            for command in absent if group.declared else self.table.commands:
                 # Nothing is sent for an event.
                 if not command.event and group.selects(self.table, command):
                     yield Step(group, command)
@@ -131,6 +140,7 @@ class Tester:
             raise
         finally:
             self._close(steps[done:])
+            self.report.seconds = self.connection.now
         self.report.finished = not self._ended
         return self.report
 
@@ -162,17 +172,25 @@ class Tester:
 
     def results(self, step: Step) -> list[Result]:
         """Run one step as often as the run repeats steps."""
-        missing = self.missing(step)
-        if missing or self._ended:
+        if self.missing(step) or self._deselected(step) or self._ended:
             return self.results_without_run(step)
         found = merged([self._run_once(step) for _ in range(self._repeat)])
         return [replace(result, group=step.group.name) for result in found]
 
     def results_without_run(self, step: Step) -> list[Result]:
-        """Return the results of a step that is not permitted, or that the run did not reach."""
-        missing, probe = self.missing(step), self._probe(step)
-        found = probe.not_permitted(missing) if missing else probe.not_run(f"{self._ended}.")
+        """Return the results of a step that is not selected or permitted, or was not reached."""
+        missing, deselected, probe = self.missing(step), self._deselected(step), self._probe(step)
+        if deselected:
+            found = probe.not_selected(deselected)
+        else:
+            found = probe.not_permitted(missing) if missing else probe.not_run(f"{self._ended}.")
         return [replace(result, group=step.group.name) for result in found]
+
+    def _deselected(self, step: Step) -> str:
+        """Return why the statement deselects a step; empty: it does not."""
+        if step.command is None or step.group.declared:
+            return ""
+        return self._statement.deselected(step.command)
 
     def _probe(self, step: Step) -> Probe:
         return Probe(self.device, step.group, step.command, Tally(self._sources))
@@ -196,7 +214,7 @@ class Tester:
         finally:
             self.device.restore(self.device.restore_after_body)
         found = [
-            excused(result, self.device.reply_seconds, self._optional, self._statement)
+            excused(result, self.device.reply_seconds, self._optional, self._lacking)
             for result in probe.results(unsupported)
         ]
         # What passed until the device fell silent may not have been observed to its end.

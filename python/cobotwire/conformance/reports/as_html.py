@@ -14,7 +14,16 @@ from cobotwire.conformance.reports.causes import CauseGroup, group_by_cause
 from cobotwire.conformance.reports.element import element, page
 from cobotwire.conformance.reports.html_commands import by_command
 from cobotwire.conformance.reports.html_matrix import matrix_of
-from cobotwire.conformance.reports.html_parts import anchor, class_of, order_of, sign_of, title_of
+from cobotwire.conformance.reports.html_parts import (
+    anchor,
+    class_of,
+    counted_of,
+    heading,
+    order_of,
+    sign_of,
+    title_of,
+    words_of,
+)
 from cobotwire.conformance.reports.purposes import purposes
 from cobotwire.conformance.reports.times import times_plot
 
@@ -38,7 +47,10 @@ def to_html(report: Report) -> str:
         element("style", style),
     )
     parts = [*_head(report, title), *_causes(report), *_origin(report), *matrix_of(report)]
-    parts += [*by_command(report), *_times(report)]
+    parts += [*by_command(report), *_times(report), *_cases(report)]
+    titles = [part for part in parts if part.tag == "h2"]
+    # After the facts, which come first.
+    parts.insert([part.tag for part in parts].index("dl") + 1, _navigation(titles))
     return page(head, element("body", *parts, element("script", script)))
 
 
@@ -62,8 +74,8 @@ def _head(report: Report, title: str) -> Iterator[Element]:
         yield _banner("pass", "It conforms as far as it was tested.")
     chips: list[Element | str] = []
     for outcome in sorted(counts, key=order_of):
-        word = f"{counts[outcome]} {outcome[1] or outcome[0]}"
-        chips += [element("span", word, class_=f"chip {class_of(*outcome)}"), " "]
+        words = words_of(counts[outcome], outcome)
+        chips += [element("span", words, class_=f"chip {class_of(*outcome)}"), " "]
     yield element("p", *chips)
     facts = {
         "edition": report.edition,
@@ -88,6 +100,14 @@ def _banner(kind: str, text: str) -> Element:
     return element("p", text, class_=f"banner {kind}")
 
 
+def _navigation(titles: Sequence[Element]) -> Element:
+    links: list[Element | str] = []
+    for title in titles:
+        name = (title.text or "").partition(":")[0]
+        links += [element("a", name, href=f"#{title.get('id')}"), " "]
+    return element("nav", *links)
+
+
 def _causes(report: Report) -> Iterator[Element]:
     """Yield failures and inconclusive test cases by cause, then what was not run."""
     known = purposes(report.kind)
@@ -98,13 +118,14 @@ def _causes(report: Report) -> Iterator[Element]:
         found = [result for result in report.results if result.verdict is verdict]
         groups = group_by_cause(found)
         if groups:
-            yield element("h2", f"{title}: {len(found)} test cases, {len(groups)} causes")
+            counted = f"{counted_of(len(found), 'test case')}, {counted_of(len(groups), 'cause')}"
+            yield heading(title.lower(), title, counted)
         yield from (_cause(group, known.get(group.case, "")) for group in groups)
     left = [result for result in report.results if result.verdict is Verdict.NOT_RUN]
     if left:
-        yield element("h2", f"Not run: {len(left)} test cases")
-        counts = Counter(f"{result.cause}: {result.reason}" for result in left)
-        lines = (element("li", f"{count} {text}") for text, count in counts.most_common())
+        yield heading("not-run", "Not run", counted_of(len(left), "test case"))
+        counts = Counter(result.reason for result in left)
+        lines = (element("li", f"{count}: {text}") for text, count in counts.most_common())
         yield element("ul", *lines)
 
 
@@ -155,9 +176,18 @@ def _origin(report: Report) -> Iterator[Element]:
         yield element("details", summary, element("pre", *text))
 
 
+def _cases(report: Report) -> Iterator[Element]:
+    """Yield the purpose of each test case of the report."""
+    known = purposes(report.kind)
+    ids = dict.fromkeys(result.case for result in report.results)
+    if any(id in known for id in ids):
+        yield heading("cases", "Test cases")
+        yield _terms({id: known.get(id, "") for id in ids})
+
+
 def _times(report: Report) -> Iterator[Element]:
     if any(report.reply_seconds.values()):
-        yield element("h2", "Reply times")
+        yield heading("times", "Reply times")
         legend = (
             "A line from the fastest to the slowest, a bar for the middle nine tenths, a mark at "
             "the median; red: the deadline."

@@ -43,6 +43,9 @@ def pattern(result: Result) -> str:
     text = result.reason
     if result.command:
         text = text.replace(result.command, "COMMAND")
-    for values in (ARGUMENTS, BYTES, NUMBER):
+    # From the inside out: arguments may have rows, in parentheses of their own.
+    while text != (text := ARGUMENTS.sub("", text)):
+        pass
+    for values in (BYTES, NUMBER):
         text = values.sub("", text)
     return " ".join(text.split())

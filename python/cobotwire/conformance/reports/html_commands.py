@@ -9,7 +9,15 @@ from xml.etree.ElementTree import Element
 from cobotwire.conformance.report import Exchange, Kind, Report, Result, Verdict
 from cobotwire.conformance.reports.element import element
 from cobotwire.conformance.reports.evidence import shown
-from cobotwire.conformance.reports.html_parts import anchor, class_of, order_of, sign_of, title_of
+from cobotwire.conformance.reports.html_parts import (
+    anchor,
+    class_of,
+    heading,
+    order_of,
+    sign_of,
+    title_of,
+    words_of,
+)
 
 # The last exchanges that the page shows of what passed; the JSON report has more.
 OF_PASSES = 3
@@ -21,7 +29,7 @@ def by_command(report: Report) -> Iterator[Element]:
     found: dict[str, list[Result]] = {}
     for result in report.results:
         found.setdefault(result.command, []).append(result)
-    yield element("h2", "Results by command")
+    yield heading("commands", "Results by command")
     legend = (
         f"→ the tester sends, ← it receives; times in seconds since the start. Of what passed, the "
         f"last {OF_PASSES} exchanges are shown; the JSON report has more."
@@ -33,10 +41,10 @@ def by_command(report: Report) -> Iterator[Element]:
 
 def _command(kind: Kind, command: str, results: list[Result]) -> Element:
     counts = Counter((result.verdict, result.cause) for result in results)
-    marks = []
+    marks: list[Element | str] = []
     for outcome in sorted(counts, key=order_of):
-        word = f"{counts[outcome]} {outcome[1] or outcome[0]}"
-        marks += [" ", element("span", word, class_=f"chip {class_of(*outcome)}")]
+        words = words_of(counts[outcome], outcome)
+        marks += [" ", element("span", words, class_=f"chip {class_of(*outcome)}")]
     summary = element("summary", element("code", title_of(command)), *marks)
     sources = dict.fromkeys(result.source for result in results if result.source)
     required = [element("p", f"spec: {', '.join(sources)}", class_="faint")] if sources else []

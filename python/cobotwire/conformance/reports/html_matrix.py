@@ -8,7 +8,14 @@ from xml.etree.ElementTree import Element
 
 from cobotwire.conformance.report import Report
 from cobotwire.conformance.reports.element import element
-from cobotwire.conformance.reports.html_parts import SIGNS, anchor, class_of, sign_of, title_of
+from cobotwire.conformance.reports.html_parts import (
+    SIGNS,
+    anchor,
+    class_of,
+    heading,
+    sign_of,
+    title_of,
+)
 from cobotwire.conformance.reports.matrix import Cell, case_ids, commands, matrix
 
 
@@ -22,7 +29,7 @@ def matrix_of(report: Report) -> Iterator[Element]:
         link = element("a", title_of(command), href=f"#{anchor(command)}")
         found = [cells.get((command, case)) for case in columns]
         rows.append(element("tr", element("th", link, scope="row"), *_row(found)))
-    yield element("h2", "Commands and test cases")
+    yield heading("matrix", "Commands and test cases")
     signs = ", ".join(f"{sign} {cause or verdict}" for (verdict, cause), sign in SIGNS.items())
     yield element("p", f"{signs}. A command leads to its results.", class_="faint")
     head = element("thead", element("tr", element("th", "command"), *heads))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from xml.etree.ElementTree import Element
+
 from cobotwire.conformance.report import Cause, Verdict
+from cobotwire.conformance.reports.element import element
 
 # In the order in which outcomes are listed.
 SIGNS = {
@@ -32,6 +35,22 @@ def class_of(verdict: Verdict, cause: Cause) -> str:
     if verdict is Verdict.FAIL:
         return "unstable" if cause is Cause.UNSTABLE else "fail"
     return {Verdict.PASS: "pass", Verdict.INCONCLUSIVE: "open"}.get(verdict, "skip")
+
+
+def words_of(count: int, outcome: tuple[Verdict, Cause]) -> str:
+    """Return a count of an outcome in words: ``12 not run (not permitted)``."""
+    verdict, cause = outcome
+    return f"{count} {verdict}" + (f" ({cause})" if cause else "")
+
+
+def counted_of(count: int, noun: str) -> str:
+    """Return a count with its noun, in the plural if need be."""
+    return f"{count} {noun}" + ("s" if count != 1 else "")
+
+
+def heading(id: str, title: str, more: str = "") -> Element:
+    """Return a title that the navigation leads to."""
+    return element("h2", f"{title}: {more}" if more else title, id=id)
 
 
 def title_of(command: str) -> str:

@@ -1,10 +1,16 @@
 """Implementation conformance statements: what a maker declares that a device has, and lacks."""
 
 from cobotwire.conformance.statement.reader import load_statement, read_statement
-from cobotwire.conformance.statement.statement import Statement, Support, is_mandatory
+from cobotwire.conformance.statement.statement import (
+    Acknowledgements,
+    Statement,
+    Support,
+    is_mandatory,
+)
 from cobotwire.conformance.statement.template import statement_template
 
 __all__ = [
+    "Acknowledgements",
     "Statement",
     "Support",
     "is_mandatory",

@@ -70,12 +70,16 @@ class Statement:
     def absent(self, table: Table) -> Iterator[Command]:
         """Yield the commands that are declared absent."""
         for command in table.commands:
-            if self.commands.get(command.name) is Support.ABSENT:
+            if self.lacks(command):
                 yield command
+
+    def lacks(self, command: Command) -> bool:
+        """Return whether a command is declared absent."""
+        return self.commands.get(command.name) is Support.ABSENT
 
     def deselected(self, command: Command) -> str:
         """Return why a command is not tested; empty: it is."""
-        if self.commands.get(command.name) is Support.ABSENT:
+        if self.lacks(command):
             return f"The statement declares {command.name} absent."
         if not self.fitted.get(command.family, True):
             return (

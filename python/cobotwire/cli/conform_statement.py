@@ -1,0 +1,24 @@
+"""``cobotwire conform statement``: write the template of a statement."""
+
+from __future__ import annotations
+
+import click
+
+from cobotwire import editions
+from cobotwire.conformance.statement import statement_template
+
+
+@click.command(short_help="Write the template of a statement about a device.")
+@click.option("--edition", "other", help="The edition; as before `conform`.")
+@click.pass_obj
+def statement(edition: str, other: str | None) -> None:
+    """Print the template of an implementation conformance statement (YAML) for an edition.
+
+    In it a maker declares what a device has and lacks; `conform device --statement FILE` selects
+    the test cases by it, and tests whether it is true:
+
+    \b
+      cobotwire conform statement --edition mycobot280 > statement.yaml
+      cobotwire --edition mycobot280 conform device URL --statement statement.yaml
+    """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
+    click.echo(statement_template(editions.load(other or edition).TABLE), nl=False)
