@@ -16,7 +16,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -98,6 +98,9 @@ plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes
 	mkdir -p target
 	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
+
+picture: .venv/.tools .venv/.native ## record the picture of the README: a simulated arm, a program, monitor
+	$(BIN)/python tools/record_picture.py docs/pictures
 
 answers: .venv/.tools .venv/.native ## record the example capture of docs/answers.md, export it, draw its pictures
 	rm -rf target/answers && mkdir -p target/answers

@@ -1,4 +1,4 @@
-"""Run the guide's pages, and the README's example, on a simulated arm."""
+"""Run the guide's pages and the README on a simulated arm."""
 
 from __future__ import annotations
 
@@ -16,8 +16,12 @@ from docs.pages import BLOCK, PORT, run
 from vectors import ROOT
 
 GUIDE = ROOT / "docs" / "guide"
-# The page programs.md includes files; test_programs.py runs them.
-PAGES = [ROOT / "docs" / "start.md", *sorted({*GUIDE.glob("*.md")} - {GUIDE / "programs.md"})]
+# The page programs.md includes files; test_programs.py runs them. The README is a page too.
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "docs" / "start.md",
+    *sorted({*GUIDE.glob("*.md")} - {GUIDE / "programs.md"}),
+]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -32,7 +36,7 @@ def test_commands_of_guide_page_print_the_output_of_the_page(page: Path, tmp_pat
 
 def test_example_of_the_readme_moves_the_arm_and_prints_readings() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    [example] = [block["text"] for block in BLOCK.finditer(text) if block["kind"] == "python"]
+    [_, example] = [block["text"] for block in BLOCK.finditer(text) if block["kind"] == "python"]
     clock = RunningClock(4.0)
     with PtyServer(SimulatedArm(TABLE, clock=clock), clock) as server:
         done = subprocess.run(
