@@ -34,6 +34,7 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	$(BIN)/python tools/unasync.py --check
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/codespell
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest cobotwire._native --mypy-config-file pyproject.toml
 	cargo fmt --all --check
@@ -156,7 +157,7 @@ clean: ## remove the environment and all build products
 	. $(BIN)/activate && maturin develop --release --quiet --extras sim
 	touch $@
 
-.venv/.tools: .venv/.base codegen/pyproject.toml
+.venv/.tools: .venv/.base codegen/pyproject.toml Cargo.toml
 	$(BIN)/python -m pip install --quiet -e codegen --group test
 	touch $@
 

@@ -15,9 +15,15 @@ from cobotwire.editions.mycobot import TABLE, MyCobot
 from cobotwire.simulator import PtyServer, SimulatedArm
 
 # Hooks of pytest, for all tests.
+from pty_users import pytest_ignore_collect, pytest_itemcollected
 from stalled_reruns import pytest_runtest_protocol, pytest_terminal_summary
 
-__all__ = ["pytest_runtest_protocol", "pytest_terminal_summary"]
+__all__ = [
+    "pytest_ignore_collect",
+    "pytest_itemcollected",
+    "pytest_runtest_protocol",
+    "pytest_terminal_summary",
+]
 
 settings.register_profile(
     "quick",

@@ -11,8 +11,6 @@
 
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
-
 __all__ = [
     "AsyncMechArm270",
     "AsyncMercuryA1",
@@ -70,6 +68,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    __version__: str
     from cobotwire.client.aio_two_arms import AsyncTwoArms
     from cobotwire.client.two_arms import TwoArms
     from cobotwire.codec import chosen as codec_in_use
@@ -157,6 +156,11 @@ else:
     def __getattr__(name: str) -> Any:
         if name not in __all__:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        if name == "__version__":
+            # That of the installed distribution; Cargo.toml states it once for all parts.
+            from importlib.metadata import version
+
+            return version("cobotwire")
         from importlib import import_module
 
         module = import_module(f"{__name__}.{_PLACES.get(name, 'protocol.errors')}")

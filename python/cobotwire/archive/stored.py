@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from types import TracebackType
 from typing import Protocol, Self
 
@@ -79,10 +78,11 @@ class _File:
         self._file = open(path, "rb", buffering=0)  # noqa: SIM115  (closed by Stored)
 
     def read(self, offset: int, size: int) -> bytes:
-        data = os.pread(self._file.fileno(), size, offset)
+        self._file.seek(offset)
+        data = self._file.read(size)
         # The system may return less, and returns at most 2 GiB.
         while data and len(data) < size:
-            more = os.pread(self._file.fileno(), size - len(data), offset + len(data))
+            more = self._file.read(size - len(data))
             if not more:
                 break
             data += more

@@ -20,7 +20,8 @@ from cobotwire.diagnose.explain import format_message
 from cobotwire.inspect.captured import codec_of_interface
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.printable import printable
-from cobotwire.simulator import PtyServer, ReplayedArm, ReplayedRequest
+from cobotwire.simulator import ReplayedArm, ReplayedRequest
+from cobotwire.simulator.local import local_server
 
 FASTEST = 1e6
 
@@ -53,7 +54,7 @@ def replay(
         arm = _arm(capture, edition, speed, interface, lines)
         warn_if_incomplete(capture)
     try:
-        serve(PtyServer(arm), between=[lines.flush])
+        serve(local_server(arm), between=[lines.flush])
     finally:
         lines.close()
 

@@ -25,6 +25,7 @@ from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, T
 from cobotwire.simulator.behaviour.external import named
 from cobotwire.simulator.faults import AppliedFault, Scenario, find, shipped
 from cobotwire.simulator.kinematics import prepare
+from cobotwire.simulator.local import local_server
 from cobotwire.simulator.motion.hand import read_points
 from cobotwire.simulator.peer import Peer
 from cobotwire.simulator.tcp import address
@@ -46,7 +47,9 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
 
 
 @click.command(short_help="Serve a simulated arm.")
-@click.option("--pty", "on_pty", is_flag=True, help="Serve a pseudo-terminal [default].")
+@click.option(
+    "--pty", "on_pty", is_flag=True, help="Serve a pseudo-terminal [default; on Windows TCP]."
+)
 @click.option("--tcp", metavar="HOST:PORT", help="Serve TCP; :0 is any free port on loopback.")
 @click.option(
     "--speed",
@@ -137,7 +140,7 @@ def sim(
         arm.lead(read_points(led, package.TABLE.joints))
     faults = None if scenario is None else find(scenario, package.TABLE)
     peers = _Peers(arm, clock, faults, seed, None if quiet else output, lines)
-    server = _server(peers, clock, tcp)
+    server = _server(peers, clock, on_pty, tcp)
     with ExitStack() as stack:
         between: list[Callable[[], None]] = [] if quiet else [lines.flush]
         stack.callback(lines.close)
@@ -154,9 +157,10 @@ def sim(
         serve(server, output.serving(server.url), between)
 
 
-def _server(peers: _Peers, clock: RunningClock, tcp: str | None) -> Server:
+def _server(peers: _Peers, clock: RunningClock, on_pty: bool, tcp: str | None) -> Server:
     if tcp is None:
-        return PtyServer(peers.new(None), clock)
+        peer = peers.new(None)
+        return PtyServer(peer, clock) if on_pty else local_server(peer, clock)
     numbers = itertools.count(1)
     host, port = address(tcp)
     server = TcpServer(lambda: peers.new(next(numbers)), host, port, clock)

@@ -1,4 +1,4 @@
-"""Drive a simulated arm on a pseudo-terminal through pyserial, and check its replies."""
+"""Drive a simulated arm on a pseudo-terminal (on Windows, over TCP), and check its replies."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 from cobotwire import codec as codecs
 from cobotwire.client import Traffic
 from cobotwire.editions.mycobot import TABLE, Angles, Coords, MyCobot, TargetKind
-from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.local import local_server
 
 # Angles and coordinates that were read from a real arm. The angles are whole encoder ticks.
 TARGET = Angles(95.18, -0.61, -0.61, -0.61, 88.85, -1.31)
@@ -64,7 +65,7 @@ def run(
     traffic: list[Traffic] = []
     simulated = SimulatedArm(TABLE)
     with (
-        PtyServer(simulated) as server,
+        local_server(simulated) as server,
         MyCobot(server.url, codec=codec, trace=traffic.append) as arm,
     ):
         report(f"connected to a simulated arm at {server.url} with the {arm.codec} codec")

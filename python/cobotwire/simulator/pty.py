@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import os
 import select
-import termios
-import tty
 from contextlib import suppress
 
+from cobotwire.protocol.errors import LinkError
 from cobotwire.simulator.clock import RunningClock
 from cobotwire.simulator.openings import Openings
 from cobotwire.simulator.peer import Peer
 from cobotwire.simulator.server import READ, Endpoint, Server
+
+try:
+    import termios
+    import tty
+except ModuleNotFoundError:  # Windows
+    termios = tty = None  # type: ignore[assignment]
+
+HAS_PTYS = termios is not None
 
 
 class PtyServer(Server):
@@ -23,7 +30,13 @@ class PtyServer(Server):
     """
 
     def __init__(self, peer: Peer, clock: RunningClock | None = None) -> None:
-        """Create the pty; ``clock`` is the one that the peer uses; None: real time."""
+        """Create the pty; ``clock`` is the one that the peer uses; None: real time.
+
+        Raises:
+            LinkError: the system has no pseudo-terminals.
+        """
+        if not HAS_PTYS:
+            raise LinkError("pty", "this system has no pseudo-terminals: serve TCP instead")
         super().__init__(clock)
         self._master, slave = os.openpty()
         # Raw mode: a terminal would echo the requests and swallow some of their bytes.

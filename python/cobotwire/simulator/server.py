@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import selectors
+import socket
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -38,9 +38,9 @@ class Server:
         self._clock = RunningClock() if clock is None else clock
         self._clients: dict[int, _Client] = {}
         self._selector = selectors.DefaultSelector()
-        # A byte written to ``stopper`` ends :meth:`serve`.
-        self._stop, self.stopper = os.pipe()
-        os.set_blocking(self.stopper, False)
+        # A byte sent to the second one ends :meth:`serve`. Windows can wait for no pipe.
+        self._stop, self._stopper = socket.socketpair()
+        self._stopper.setblocking(False)
         self._selector.register(self._stop, READ)
         self._thread = threading.Thread(target=self.serve, name="cobotwire-sim", daemon=True)
 
@@ -53,12 +53,17 @@ class Server:
         self._thread.join()
         self.close()
 
+    @property
+    def stopper(self) -> int:
+        """The descriptor for ``signal.set_wakeup_fd``: a byte written to it ends :meth:`serve`."""
+        return self._stopper.fileno()
+
     def serve(self, callbacks: Sequence[Callable[[], None]] = (), every: float = 0.25) -> None:
         """Serve until :meth:`stop` is called; call ``callbacks`` every ``every`` seconds."""
         call_at = time.monotonic() if callbacks else None
         while True:
             for key, events in self._selector.select(self._wait(call_at)):
-                if key.fd == self._stop:
+                if key.fileobj is self._stop:
                     return
                 self._ready(key.fd, events)
             for client in tuple(self._clients.values()):
@@ -70,15 +75,15 @@ class Server:
 
     def stop(self) -> None:
         """End :meth:`serve`; another thread or a signal handler may call this."""
-        os.write(self.stopper, b"x")
+        self._stopper.send(b"x")
 
     def close(self) -> None:
         """Disconnect all clients, and release everything."""
         for client in tuple(self._clients.values()):
             self._drop(client)
         self._selector.close()
-        for descriptor in (self._stop, self.stopper):
-            os.close(descriptor)
+        self._stop.close()
+        self._stopper.close()
 
     def _ready(self, descriptor: int, events: int) -> None:
         """Handle a registered descriptor that is ready: a client's."""

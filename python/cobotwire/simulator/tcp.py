@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import selectors
 import socket
 import time
@@ -116,13 +115,13 @@ class TcpServer(Server):
 
     def _descriptors_are_free(self) -> bool:
         """Return whether there are descriptors for a client, and for what a reply imports."""
-        free: list[int] = []
+        free: list[socket.socket] = []
         try:
             with suppress(OSError):
-                free += (os.dup(self._listening.fileno()) for _ in range(SPARE_DESCRIPTORS))
+                free += (self._listening.dup() for _ in range(SPARE_DESCRIPTORS))
         finally:
-            for descriptor in free:
-                os.close(descriptor)
+            for copy in free:
+                copy.close()
         return len(free) == SPARE_DESCRIPTORS
 
     def _drop_idle_client(self) -> bool:

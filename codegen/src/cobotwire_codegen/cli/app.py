@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from cobotwire_codegen.cli import same_version
 from cobotwire_codegen.cli.build import build
 from cobotwire_codegen.cli.check import check
 from cobotwire_codegen.cli.diff import diff
@@ -36,7 +37,14 @@ _EPILOG = (
     "--products", "with_products", is_flag=True, help="Also generate files that are not committed."
 )
 @root_option
-@click.version_option(package_name="cobotwire-codegen")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=same_version.print_version,
+    help="Show the version; fail if cobotwire is installed in another one.",
+)
 @click.pass_context
 def main(ctx: click.Context, check_only: bool, with_products: bool, root: str) -> None:
     """Generate software from a protocol in YAML.
@@ -44,6 +52,7 @@ def main(ctx: click.Context, check_only: bool, with_products: bool, root: str) -
     Without a verb, generate this project's own files (editions, reference, test data) from spec/.
     With --check, report files that are stale, missing or left over instead.
     """
+    same_version.check()
     if ctx.invoked_subcommand is None:
         ctx.invoke(generate, check_only=check_only, with_products=with_products, root=root)
 

@@ -76,13 +76,15 @@ class AtomicFile:
             raise output_error(self.path, error) from error
 
     def publish(self) -> None:
-        """Give the file its final name; then :func:`sync_folder` makes the name last.
+        """Finish the file, and give it its final name; :func:`sync_folder` makes the name last.
 
         Raises:
             UsageError: the final name was taken in the meantime.
             OutputError: the file cannot be renamed.
         """
         self._refuse_existing()
+        # Windows does not rename an open file.
+        self.finish()
         try:
             os.replace(self._temporary, self.path)
             self._published = True
@@ -125,7 +127,12 @@ class WritableFile(io.BufferedIOBase):
         return size if self._discarded else self._stored.write(data)
 
     def finish(self) -> int:
-        """Write everything to the disk, and close the stored file; return its size in bytes."""
+        """Write everything to the disk, and close the stored file; return its size in bytes.
+
+        Finishing twice is harmless.
+        """
+        if self._stored.closed:
+            return self._size
         self._stored.flush()
         os.fsync(self._stored.fileno())
         size = os.fstat(self._stored.fileno()).st_size

@@ -20,6 +20,7 @@ from cobotwire.simulator import (
     TcpServer,
 )
 from cobotwire.simulator.clock import Clock
+from cobotwire.simulator.local import local_server
 from cobotwire.simulator.peer import Peer
 from cobotwire.simulator.testing.options import ArmOptions, WrapsPeer
 
@@ -54,14 +55,14 @@ def served(options: ArmOptions) -> Iterator[str]:
         raise UsageError("transport", "memory", message=message)
     clock = RunningClock(options.speed)
     arm = _Arm(options, editions.load(options.edition).TABLE, clock)
-    server: Server
-    server = (
-        TcpServer(arm.connect, clock=clock)
-        if options.transport == "tcp"
-        else PtyServer(arm.connect(), clock)
-    )
-    with server:
+    with _server(options.transport, arm, clock) as server:
         yield server.url
+
+
+def _server(transport: str | None, arm: _Arm, clock: RunningClock) -> Server:
+    if transport == "tcp":
+        return TcpServer(arm.connect, clock=clock)
+    return (PtyServer if transport == "pty" else local_server)(arm.connect(), clock)
 
 
 class _Arm:

@@ -1,0 +1,80 @@
+"""Check what both distributions say of themselves: one version, the same links, absolute links."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import cobotwire
+from newcomer.installing import run
+from vectors import ROOT
+
+PROJECTS = {"cobotwire": ROOT / "pyproject.toml", "codegen": ROOT / "codegen" / "pyproject.toml"}
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+
+
+def project(name: str) -> dict[str, Any]:
+    table: dict[str, Any] = tomllib.loads(PROJECTS[name].read_text(encoding="utf-8"))["project"]
+    return table
+
+
+def test_version_is_stated_once_and_is_that_of_both_distributions() -> None:
+    stated = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
+    assert [project(name).get("version") for name in PROJECTS] == [None, None]
+    assert version("cobotwire") == version("cobotwire-codegen") == stated
+    assert cobotwire.__version__ == stated
+    crates = tomllib.loads((ROOT / "Cargo.lock").read_text())["package"]
+    ours = [crate["version"] for crate in crates if crate["name"].startswith("cobotwire-")]
+    assert ours == [stated] * 2
+
+
+def test_both_distributions_have_the_same_links_and_licence() -> None:
+    assert project("cobotwire")["urls"] == project("codegen")["urls"]
+    assert {"Documentation", "Repository", "Changelog", "Issues"} <= set(project("codegen")["urls"])
+    assert (ROOT / "codegen" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
+
+
+@pytest.mark.parametrize("name", PROJECTS)
+def test_extra_all_has_every_other_extra(name: str) -> None:
+    extras = project(name)["optional-dependencies"]
+    [everything] = extras.pop("all")
+    named = everything.partition("[")[2].rstrip("]").split(",")
+    assert sorted(named) == sorted(extras)
+
+
+@pytest.mark.parametrize("page", ["README.md", "codegen/README.md"])
+def test_long_description_links_to_absolute_addresses_of_existing_files(page: str) -> None:
+    repository = project("cobotwire")["urls"]["Repository"]
+    links = LINK.findall((ROOT / page).read_text(encoding="utf-8"))
+    assert links
+    assert [link for link in links if not link.startswith("https://")] == []
+    prefix = f"{repository}/blob/main/"
+    ours = [link.removeprefix(prefix) for link in links if link.startswith(repository)]
+    assert [path for path in ours if not (ROOT / path.partition("#")[0]).is_file()] == []
+
+
+def installed(folder: Path, number: str) -> dict[str, str]:
+    """Return an environment in which cobotwire seems to be installed in another version."""
+    metadata = folder / f"cobotwire-{number}.dist-info" / "METADATA"
+    metadata.parent.mkdir()
+    metadata.write_text(f"Metadata-Version: 2.1\nName: cobotwire\nVersion: {number}\n")
+    return {"PYTHONPATH": f"{folder}:{ROOT / 'codegen' / 'src'}"}
+
+
+@pytest.mark.parametrize("words", [["--version"], ["schema"]])
+def test_generator_refuses_a_package_of_another_version(tmp_path: Path, words: list[str]) -> None:
+    command = [sys.executable, "-m", "cobotwire_codegen", *words]
+    ours = version("cobotwire-codegen")
+    run(*command, env=installed(tmp_path, ours))
+    (tmp_path / "other").mkdir()
+    with pytest.raises(subprocess.CalledProcessError) as caught:
+        run(*command, env=installed(tmp_path / "other", "9.8.7"))
+    expected = f"cobotwire-codegen is {ours}, but the installed cobotwire is 9.8.7."
+    assert expected in " ".join("".join(caught.value.__notes__).split())
