@@ -1,0 +1,204 @@
+"""Check that a version can be released. This script publishes nothing.
+
+    python tools/release.py            # check this tree; print what is left to do
+    python tools/release.py --build    # also build and check the distributions (make wheels-check does more)
+    python tools/release.py --tag v0.1.0   # in the release workflow: the tag fits the tree
+    python tools/release.py --notes    # print the section of the changelog, for the release's page
+
+Pushing a tag starts .github/workflows/release.yml, which builds, waits for a maintainer's approval,
+and publishes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections.abc import Callable, Iterator
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+UNRELEASED = "Unreleased"
+SECTIONS = ("Added", "Changed", "Deprecated", "Removed", "Fixed", "Security")
+VERSION = re.compile(r"\d+\.\d+\.\d+(rc\d+)?")
+DATE_FORMAT = re.compile(r"\d{4}-\d{2}-\d{2}")
+LEFT = """
+Left to do by hand, in this order:
+  1. Confirm the repository's URL (pyproject.toml names {repository}) and the site's.
+  2. Once: register .github/workflows/release.yml with the environment "pypi" as trusted publisher of
+     the projects cobotwire and cobotwire-codegen on PyPI; require an approval for the environment.
+  3. make test, make wheels-check, make fuzz FUZZ_SECONDS=600, make conform
+  4. git tag --sign v{version} && git push origin v{version}
+  5. Read what the workflow built, then approve its job "publish".
+  6. Install it as a user: pip install cobotwire=={version}; cobotwire demo
+"""
+
+
+class Failed(Exception):
+    """A check failed; the text says what to do."""
+
+
+def version() -> str:
+    """Return the version that Cargo.toml states, for all parts."""
+    stated: str = _toml("Cargo.toml")["workspace"]["package"]["version"]
+    return stated
+
+
+def check_version() -> str:
+    """Check that the version is one, and that nothing else states another one."""
+    number = version()
+    if not VERSION.fullmatch(number):
+        raise Failed(f"Cargo.toml: {number} is not a version such as 1.2.3 or 1.2.3rc1")
+    for name in ("pyproject.toml", "codegen/pyproject.toml"):
+        if "version" not in _toml(name)["project"].get("dynamic", []):
+            raise Failed(f"{name}: the version must be dynamic; Cargo.toml states it")
+    locked = {crate["name"]: crate["version"] for crate in _toml("Cargo.lock")["package"]}
+    for name in ("cobotwire-core", "cobotwire-native"):
+        if locked[name] != number:
+            raise Failed(f"Cargo.lock has {name} {locked[name]}: run cargo update --workspace")
+    return number
+
+
+def check_changelog() -> str:
+    """Check that the version has a dated section, and that the sections have known headings."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    for heading in re.findall(r"^### (.*)$", text, re.MULTILINE):
+        if heading not in SECTIONS:
+            raise Failed(f"CHANGELOG.md: {heading} is not one of {', '.join(SECTIONS)}")
+    entries = re.findall(r"^- .*(?:\n  .*)*", text, re.MULTILINE)
+    doubled = sorted({entry for entry in entries if entries.count(entry) > 1})
+    if doubled:
+        raise Failed(f"CHANGELOG.md has this twice: {doubled[0]}")
+    found = re.search(rf"^## {re.escape(version())} \((.*)\)$", text, re.MULTILINE)
+    if found is None:
+        raise Failed(f"CHANGELOG.md: rename '## {UNRELEASED}' to '## {version()} ({date.today()})'")
+    if not DATE_FORMAT.fullmatch(found[1]):
+        raise Failed(f"CHANGELOG.md: {found[1]} is not a date such as {date.today()}")
+    return f"{version()} of {found[1]}"
+
+
+def check_tree() -> str:
+    """Check that everything is committed."""
+    if changed := _git("status", "--porcelain"):
+        raise Failed(f"not committed: {changed.splitlines()[0]}")
+    return _git("rev-parse", "--short", "HEAD")
+
+
+def check_branch() -> str:
+    """Check that the commit is on main, and that the version has no tag yet."""
+    if _git("tag", "--list", f"v{version()}"):
+        raise Failed(f"v{version()} exists: a version is released once; raise it in Cargo.toml")
+    if _git("rev-parse", "--abbrev-ref", "HEAD") != "main":
+        raise Failed("releases are made from main")
+    return "main"
+
+
+def check_ci() -> str:
+    """Check that each workflow of this commit succeeded, as far as the command gh can tell."""
+    if shutil.which("gh") is None:
+        raise Failed("the command gh is not installed: look at the commit's checks on GitHub")
+    command = ("gh", "run", "list", "--commit", _git("rev-parse", "HEAD"))
+    states = _run(*command, "--json", "name,conclusion", "--jq", '.[] | .name + ": " + .conclusion')
+    if not states or any(not line.endswith(": success") for line in states.splitlines()):
+        raise Failed(f"not every workflow succeeded: {states or 'none has run'}")
+    return states.replace("\n", ", ")
+
+
+def check_distributions() -> str:
+    """Build both distributions; check metadata, contents and versions."""
+    with tempfile.TemporaryDirectory() as folder:
+        build(Path(folder))
+        return check_files(Path(folder))
+
+
+def check_files(folder: Path) -> str:
+    """Check distributions that were built."""
+    files = sorted(folder.iterdir())
+    wrong = [file.name for file in files if f"-{version()}" not in file.name]
+    if len(files) < 4 or wrong:
+        raise Failed(f"expected two source distributions and wheels of {version()}: {files}")
+    _run(sys.executable, "-m", "twine", "check", "--strict", *map(str, files))
+    wheels = [str(file) for file in files if file.suffix == ".whl"]
+    _run(sys.executable, "-m", "check_wheel_contents", *wheels)
+    return ", ".join(file.name for file in files)
+
+
+def build(folder: Path) -> None:
+    """Build both source distributions, and from these both wheels."""
+    python = sys.executable
+    _run(python, "-m", "maturin", "sdist", "--out", str(folder))
+    [source] = folder.glob("cobotwire-*.tar.gz")
+    command = ("pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(folder))
+    _run(python, "-m", *command, str(source))
+    _run(python, "-m", "build", "--outdir", str(folder), str(ROOT / "codegen"))
+
+
+def notes() -> str:
+    """Return the section of the changelog for this version."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    parts = re.split(r"^## (.*)$", text, flags=re.MULTILINE)
+    for heading, body in zip(parts[1::2], parts[2::2]):
+        if heading.split(" ")[0] == version():
+            return body.strip()
+    raise Failed(f"CHANGELOG.md has no section for {version()}")
+
+
+def _toml(name: str) -> dict[str, Any]:
+    return tomllib.loads((ROOT / name).read_text(encoding="utf-8"))
+
+
+def _git(*words: str) -> str:
+    return _run("git", *words)
+
+
+def _run(*words: str) -> str:
+    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)  # noqa: S603
+    if ended.returncode:
+        raise Failed(f"{' '.join(words[:5])}: {ended.stderr.strip() or ended.stdout.strip()}")
+    return ended.stdout.strip()
+
+
+def _checks(tagged: bool, with_build: bool) -> Iterator[Callable[[], str]]:
+    yield from (check_version, check_changelog)
+    if not tagged:
+        yield from (check_tree, check_branch, check_ci)
+    if with_build:
+        yield check_distributions
+
+
+def main() -> int:
+    """Run the checks; return 1 if one failed."""
+    assert __doc__ is not None
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--build", action="store_true", help="also build the distributions")
+    parser.add_argument("--tag", help="the tag that starts the release")
+    parser.add_argument("--notes", action="store_true", help="print the changelog's section")
+    given = parser.parse_args()
+    if given.notes:
+        print(notes())
+        return 0
+    failed = 0
+    for check in _checks(given.tag is not None, given.build):
+        name = check.__name__.removeprefix("check_")
+        try:
+            print(f"ok    {name}: {check()}")
+        except Failed as error:
+            failed += 1
+            print(f"FAIL  {name}: {error}")
+    if given.tag not in (None, f"v{version()}"):
+        failed += 1
+        print(f"FAIL  tag: {given.tag} is not v{version()}")
+    if given.tag is None:
+        urls = _toml("pyproject.toml")["project"]["urls"]
+        print(LEFT.format(version=version(), repository=urls["Repository"]))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
