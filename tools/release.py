@@ -1,9 +1,9 @@
 """Check that a version can be released. This script publishes nothing.
 
-    python tools/release.py            # check this tree; print what is left to do
-    python tools/release.py --build    # also build and check the distributions (make wheels-check does more)
+    python tools/release.py                # check this tree; print what is left to do
+    python tools/release.py --build        # also build and check the distributions
     python tools/release.py --tag v0.1.0   # in the release workflow: the tag fits the tree
-    python tools/release.py --notes    # print the section of the changelog, for the release's page
+    python tools/release.py --notes        # print the changelog's section of the version
 
 Pushing a tag starts .github/workflows/release.yml, which builds, waits for a maintainer's approval,
 and publishes.
@@ -31,8 +31,8 @@ DATE_FORMAT = re.compile(r"\d{4}-\d{2}-\d{2}")
 LEFT = """
 Left to do by hand, in this order:
   1. Confirm the repository's URL (pyproject.toml names {repository}) and the site's.
-  2. Once: register .github/workflows/release.yml with the environment "pypi" as trusted publisher of
-     the projects cobotwire and cobotwire-codegen on PyPI; require an approval for the environment.
+  2. Once: register .github/workflows/release.yml with the environment "pypi" as trusted publisher
+     of the projects cobotwire and cobotwire-codegen on PyPI; require an approval in it.
   3. make test, make wheels-check, make fuzz FUZZ_SECONDS=600, make conform
   4. git tag --sign v{version} && git push origin v{version}
   5. Read what the workflow built, then approve its job "publish".

@@ -31,8 +31,10 @@ THIRD_PARTY = ("click", "rich.console", "rich.live", "rich.progress", "serial.to
 # Only imported in the test that imports all of our modules.
 EXTRAS = ("libcst.codemod", "matplotlib.backends.backend_agg", "matplotlib.font_manager", "pytest")
 
-ABSENT_MODULES = ("curses", "fcntl", "grp", "posix", "pty", "pwd", "readline", "resource")
-ABSENT_MODULES += ("syslog", "termios", "tty")
+ABSENT_MODULES = (
+    *("curses", "fcntl", "grp", "posix", "pty", "pwd", "readline", "resource", "syslog"),
+    *("termios", "tty"),
+)
 ABSENT_NAMES: dict[Any, tuple[str, ...]] = {
     # set_blocking came to Windows with Python 3.12. pyserial uses O_NOCTTY and O_NONBLOCK here.
     os: (
@@ -60,22 +62,24 @@ def pretend(extras: Iterable[str] = ()) -> None:
         importlib.import_module(name)
     sysconfig.get_config_vars()
     # pyserial is that of this system, which waits for the port with select().
-    posix = importlib.import_module("serial.serialposix")
-    posix.select = types.SimpleNamespace(select=_select)  # type: ignore[attr-defined]
+    posix: Any = importlib.import_module("serial.serialposix")
+    posix.select = types.SimpleNamespace(select=_select)
+    # Any: what is replaced has more precise types than its replacement.
+    modules: dict[str, Any] = sys.modules
     for name in ABSENT_MODULES:
-        sys.modules[name] = None  # type: ignore[assignment]
+        modules[name] = None
     for module, names in ABSENT_NAMES.items():
         for name in names:
             if hasattr(module, name):
                 delattr(module, name)
-    selectors.DefaultSelector = selectors.SelectSelector  # type: ignore[misc,assignment]
-    selectors.SelectSelector._select = staticmethod(_select_sockets)  # type: ignore[attr-defined]
+    modules["selectors"].DefaultSelector = selectors.SelectSelector
+    modules["selectors"].SelectSelector._select = staticmethod(_select_sockets)
+    modules["select"].select = _select_sockets
     # As the default loop of Windows.
-    asyncio.SelectorEventLoop.add_reader = _not_implemented  # type: ignore[method-assign,assignment]
-    select.select = _select_sockets  # type: ignore[assignment]
-    os.replace = _replace_closed
+    modules["asyncio"].SelectorEventLoop.add_reader = _not_implemented
+    modules["os"].replace = _replace_closed
     # Path() makes one of these where os.name is "nt", and it works on Windows alone.
-    sys.modules[pathlib.Path.__module__].WindowsPath = pathlib.PosixPath  # type: ignore[attr-defined]
+    modules[pathlib.Path.__module__].WindowsPath = pathlib.PosixPath
     os.name, sys.platform = "nt", "win32"
 
 
