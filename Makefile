@@ -16,7 +16,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos front-end
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -25,7 +25,7 @@ help: ## list the targets
 demo: .venv/.native ## drive a simulated arm over a pty and check every reply
 	$(BIN)/cobotwire demo --codec native
 
-test: .venv/.tools .venv/.native ## run everything: linters, types, generated files, Rust, Python
+test: .venv/.tools .venv/.native front-end ## run everything: linters, types, generated files, Rust, Python
 	$(MAKE) --no-print-directory --jobs 2 $(IN_TURN) lint rust-test
 	$(MAKE) --no-print-directory python-test
 
@@ -44,7 +44,7 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 rust-test: products ## run the Rust tests
 	+cargo test --workspace --quiet
 
-python-test: .venv/.tools .venv/.native ## run the Python tests on both codecs, in four lanes
+python-test: .venv/.tools .venv/.native front-end ## run the Python tests on both codecs, in four lanes
 	$(MAKE) --no-print-directory --jobs 4 $(IN_TURN) computing-tests simulating-tests calling-tests waiting-tests
 
 computing-tests:
@@ -58,6 +58,9 @@ calling-tests:
 
 waiting-tests:
 	$(BIN)/python -m pytest $(addprefix --ignore=,$(COMPUTING) $(SIMULATING) $(CALLING))
+
+front-end: ## fetch the JavaScript that the page of `cobotwire studio` and its test need
+	$(PYTHON) tools/front_end.py
 
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen

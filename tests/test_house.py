@@ -28,6 +28,7 @@ ROOMS = (
     "inspect",
     "archive",
     "conformance",
+    "studio",
     "cli",
 )
 # Each third-party library has one importer, so that it can be replaced in one place.
@@ -45,6 +46,8 @@ ONE_IMPORTER = {
     "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
     "libcst": ["pymycobot/migrate/"],
     "ruamel": ["simulator/faults/nodes.py"],
+    "starlette": ["studio/app.py", "studio/feed.py", "studio/serving.py"],
+    "uvicorn": ["studio/serving.py"],
 }
 
 
@@ -117,7 +120,7 @@ def test_importing_the_package_loads_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"
         "loaded = {name.split('.')[0] for name in sys.modules}\n"
-        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy'\n"
+        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy starlette uvicorn'\n"
         "print(sorted(loaded & set(extras.split())))"
     )
     result = subprocess.run(

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from cobotwire import editions
-from cobotwire.cli.shared.call_arguments import parse, request_values
+from cobotwire.inspect.call_arguments import parse, request_values
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command, Field
 from strategies import TABLES, codec_of

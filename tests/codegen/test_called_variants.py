@@ -14,8 +14,8 @@ import pytest
 
 import small_specs
 from cobotwire import codec as codecs
-from cobotwire.cli.shared.call_arguments import parse, request_values, variant_of
 from cobotwire.conformance.samples import samples
+from cobotwire.inspect.call_arguments import parse, request_values, variant_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import MemoryTransport, RunningClock, SteppedClock
 from cobotwire_codegen.check import check

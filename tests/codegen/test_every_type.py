@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 from cobotwire import codec as codecs
-from cobotwire.cli.shared import call_arguments
 from cobotwire.codec.interface import Frame
 from cobotwire.diagnose.explain import format_message, frame_parts
+from cobotwire.inspect import call_arguments
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire_codegen.build import build_edition

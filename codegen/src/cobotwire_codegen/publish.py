@@ -39,7 +39,9 @@ from cobotwire_codegen.publish_sections import (
     exact_number,
     given,
     hexed,
+    places_of,
     sections_for_people,
+    sources_of_commands,
 )
 
 FORMAT = "cobotwire-edition"
@@ -66,6 +68,17 @@ def edition_json(edition: Edition, *, complete: bool = False) -> str:
         else:
             lines.append(f'"{key}": {_compact(value)}')
     return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def sources_json(edition: Edition) -> str:
+    """Return where each command comes from, for people: its place, lines, disputes and errata.
+
+    Codecs and clients do not read it.
+    """
+    rows = ",\n".join(
+        f"{_compact(name)}: {_compact(record)}" for name, record in sources_of_commands(edition)
+    )
+    return f'{{\n"generated": {_compact(MARK)},\n"commands": {{\n{rows}\n}}\n}}\n'
 
 
 def _compact(value: Any) -> str:
@@ -195,7 +208,6 @@ class _Writer:
 
     def command(self, family: str, command: Command) -> Record:
         """Return a command's record: what is on the wire first, then its description."""
-        spots = (command.place, *(change.place for change in command.changes))
         return given(
             id=command.id,
             name=command.name,
@@ -223,7 +235,7 @@ class _Writer:
             title=command.title,
             doc=command.doc,
             notes=list(lower.notes(command)),
-            place=" ".join(f"{spot.file}:{spot.line}" for spot in spots),
+            place=places_of(command),
         )
 
     def _variants(self, variants: tuple[Variant, ...]) -> list[list[Record]]:

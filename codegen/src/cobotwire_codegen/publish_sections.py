@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from cobotwire_codegen.errors import Place
-from cobotwire_codegen.model import Edition
+from cobotwire_codegen.model import Command, Edition
 
 Record = dict[str, Any]
 
@@ -21,6 +21,29 @@ def sections_for_people(edition: Edition) -> Record:
         "errata": [_plain(erratum) for erratum in edition.errata],
         "vectors": [_plain(vector) for vector in edition.vectors],
     }
+
+
+def places_of(command: Command) -> str:
+    """Return where the spec states a command and its changes: ``FILE:LINE FILE:LINE``."""
+    spots = (command.place, *(change.place for change in command.changes))
+    return " ".join(f"{spot.file}:{spot.line}" for spot in spots)
+
+
+def sources_of_commands(edition: Edition) -> Iterator[tuple[str, Record]]:
+    """Yield the name of each command with its place, its lines in the document, and its errata."""
+    for command in edition.commands:
+        errata = [erratum for erratum in edition.errata if command.name in erratum.commands]
+        record = given(
+            place=places_of(command),
+            document=edition.document if command.source else "",
+            lines=command.source,
+            disputed=command.disputed,
+            errata=[
+                {"lines": each.lines, "says": each.says, "read": each.read, "why": each.why}
+                for each in errata
+            ],
+        )
+        yield command.name, _plain_record(record)
 
 
 def _sources(edition: Edition) -> Iterator[Record]:

@@ -26,6 +26,7 @@ VERBS = {
     "decode": "Explain bytes, streams and recordings.",
     "export": "Write captures to Parquet, CSV, Arrow and MCAP.",
     "sim": "Serve a simulated arm.",
+    "studio": "Show an arm or a recording in the browser.",
     "replay": "Print a recording, or serve it as an arm.",
     "plot": "Draw a recording.",
     "conform": "Test an arm, a client or a codec.",

@@ -14,11 +14,12 @@ from cobotwire.cli.shared.arm_options import (
     open_arm,
     parse_address,
 )
-from cobotwire.cli.shared.call_arguments import parse
 from cobotwire.cli.shared.completers import complete_commands, complete_ports
-from cobotwire.cli.shared.output import as_json_value, format_result
+from cobotwire.cli.shared.output import format_result
+from cobotwire.inspect.call_arguments import parse
 from cobotwire.inspect.readiness import check_accepted, check_ready
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.json_values import as_json_value
 from cobotwire.session.request import RequestEncoder
 
 

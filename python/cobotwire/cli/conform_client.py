@@ -12,7 +12,6 @@ import click
 
 from cobotwire import editions
 from cobotwire.capture.file_errors import unusable_file
-from cobotwire.cli.shared.call_arguments import parse, request_values, variant_of
 from cobotwire.cli.shared.conform_report import (
     ReportFiles,
     conclude,
@@ -22,6 +21,7 @@ from cobotwire.cli.shared.conform_report import (
 from cobotwire.cli.shared.serving import serve
 from cobotwire.conformance.client import FAULTS, Referee, ScriptLine, faulty_replies
 from cobotwire.conformance.sources import spec_lines
+from cobotwire.inspect.call_arguments import parse, request_values, variant_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, Server, TcpServer

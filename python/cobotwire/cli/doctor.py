@@ -13,10 +13,11 @@ from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.exit_codes import LINK_FAILED
-from cobotwire.cli.shared.output import as_json_value, format_result
+from cobotwire.cli.shared.output import format_result
 from cobotwire.client import Client
 from cobotwire.inspect import Doctor, Report
 from cobotwire.protocol.errors import LinkError
+from cobotwire.protocol.json_values import as_json_value
 from cobotwire.session import RetryPolicy
 
 MOST = 10_000

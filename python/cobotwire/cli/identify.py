@@ -11,10 +11,11 @@ import click
 from cobotwire.cli.shared.arm_options import baudrate_option
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.exit_codes import NO_REPLY
-from cobotwire.cli.shared.output import as_json_value, format_result
+from cobotwire.cli.shared.output import format_result
 from cobotwire.inspect.evidence import Evidence
 from cobotwire.inspect.identification import Identification
 from cobotwire.inspect.identification import identify as identify_arm
+from cobotwire.protocol.json_values import as_json_value
 
 
 @click.command(short_help="Find out which edition an arm speaks.")

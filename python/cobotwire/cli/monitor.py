@@ -15,8 +15,9 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.completers import complete_ports
-from cobotwire.cli.shared.output import as_json_value, print_line
+from cobotwire.cli.shared.output import print_line
 from cobotwire.inspect import Monitor, Observation
+from cobotwire.protocol.json_values import as_json_value
 
 
 @click.command(short_help="Show joints, coordinates, rate, errors.")

@@ -19,12 +19,13 @@ REMEMBERED = 4096
 
 
 class Part(NamedTuple):
-    """A run of bytes inside a frame, and what it means."""
+    """A run of bytes inside a frame, and what it means; ``raw`` is the raw value of a number."""
 
     offset: int
     data: bytes
     name: str
     meaning: str
+    raw: int | None = None
 
 
 class Reading(NamedTuple):
@@ -85,7 +86,8 @@ def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[
             name = f"{field.name} {number.name}".strip()
             # Several parts of a word share its bytes: the last one has them.
             chunk = data[offset : offset + number.step]
-            yield Part(offset, chunk, name, format_value(field, number, single))
+            raw = number.unpack(data, offset)
+            yield Part(offset, chunk, name, format_value(field, number, single), raw)
             offset += number.step
     end = "footer" if frame.check is None else "check"
     yield Part(offset, data[offset:], end, "the frame ends here")

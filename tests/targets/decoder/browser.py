@@ -68,17 +68,19 @@ def evaluate(url: str, *expressions: str) -> list[Any]:
 
     Time is real, and workers run, unlike in :func:`dom`.
     """
-    with _Tab(url) as tab:
+    with Tab(url) as tab:
         return [tab.evaluate(expression) for expression in expressions]
 
 
-class _Tab:
+class Tab:
     """A page in a browser that takes commands of the DevTools protocol on descriptors 3 and 4."""
 
     def __init__(self, url: str) -> None:
         self._url = url
         self._count = 0
         self._session: dict[str, str] = {}
+        # What the page reported, such as what it logged, once its domain is enabled.
+        self.events: list[dict[str, Any]] = []
 
     def __enter__(self) -> Self:
         theirs_in, ours_out = os.pipe()
@@ -95,13 +97,11 @@ class _Tab:
         os.close(theirs_out)
         self._in, self._out = open(ours_in, "rb", buffering=0), open(ours_out, "wb", buffering=0)
         self._read = b""
-        target = self._call("Target.createTarget", url="about:blank")["targetId"]
-        attached = self._call("Target.attachToTarget", targetId=target, flatten=True)
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
         self._session = {"sessionId": attached["sessionId"]}
-        self._call("Page.enable")
-        self._call("Page.navigate", url=self._url)
-        while self._message().get("method") != "Page.loadEventFired":
-            pass
+        self.call("Page.enable")
+        self.open(self._url)
         return self
 
     def __exit__(
@@ -116,22 +116,29 @@ class _Tab:
         self._in.close()
         self._out.close()
 
+    def open(self, url: str) -> None:
+        """Go to a page, and wait until it is loaded."""
+        self.call("Page.navigate", url=url)
+        while self._message().get("method") != "Page.loadEventFired":
+            pass
+
     def evaluate(self, expression: str) -> Any:
         """Return the value of an expression, or of its promise."""
-        found = self._call(
+        found = self.call(
             "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
         )
         assert "exceptionDetails" not in found, found
         return found["result"].get("value")
 
-    def _call(self, method: str, **parameters: Any) -> dict[str, Any]:
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Run a command of the DevTools protocol; return its result."""
         self._count += 1
         request = {"id": self._count, "method": method, "params": parameters, **self._session}
         data = json.dumps(request).encode() + b"\0"
         while data:
             data = data[self._out.write(data) or 0 :]
         while (answer := self._message()).get("id") != self._count:
-            pass
+            self.events.append(answer)
         assert "error" not in answer, answer
         return dict(answer["result"])
 

@@ -18,7 +18,7 @@ from jinja2 import (
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Edition, Enum, Flag, Listed, Quantity, Type, Value
-from cobotwire_codegen.publish import edition_json
+from cobotwire_codegen.publish import edition_json, sources_json
 from cobotwire_codegen.render import layout, markdown, parameters, python_api, words
 from cobotwire_codegen.render.byte_table import byte_rows
 from cobotwire_codegen.render.diagram import byte_diagram
@@ -54,6 +54,7 @@ def render_python(
     # Type checkers use the annotations of an installed package only if it has this file.
     files[PurePosixPath("py.typed")] = ""
     files[PurePosixPath("edition.json")] = edition_json(edition)
+    files[PurePosixPath("sources.json")] = sources_json(edition)
     files |= _messages(jinja, common)
     for way in WAYS:
         files |= _client(jinja, common, way)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cobotwire.cli.shared.hex_colours import Paint
-from cobotwire.cli.shared.output import as_hex, as_json_value
+from cobotwire.cli.shared.output import as_hex
 from cobotwire.codec.interface import Frame
 from cobotwire.diagnose.explain import (
     DIRECTIONS,
@@ -20,6 +20,7 @@ from cobotwire.diagnose.explain import (
     format_message,
     frame_parts,
 )
+from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.table import Table
 
 if TYPE_CHECKING:

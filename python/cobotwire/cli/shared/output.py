@@ -51,20 +51,6 @@ def as_hex(data: bytes) -> str:
     return data.hex(" ").upper()
 
 
-def as_json_value(value: Any) -> Any:
-    """Return a result as JSON values.
-
-    Named tuples become objects, enum members their names, and bytes pairs of hex digits.
-    """
-    if hasattr(value, "_asdict"):
-        return {name: as_json_value(part) for name, part in value._asdict().items()}
-    if isinstance(value, IntEnum):
-        return value.name
-    if isinstance(value, bytes):
-        return as_hex(value)
-    return list(value) if isinstance(value, tuple) else value
-
-
 def format_result(value: Any) -> str:
     """Format a result on one line, for people."""
     if hasattr(value, "_asdict"):

@@ -8,9 +8,10 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from cobotwire.cli.shared.output import as_hex, as_json_value
+from cobotwire.cli.shared.output import as_hex
 from cobotwire.codec.interface import Noise
 from cobotwire.diagnose.explain import format_message
+from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.printable import printable
 from cobotwire.session.device import DeviceEvent, MalformedRequest, RequestReceived
 from cobotwire.simulator.arm import Note

@@ -1,4 +1,4 @@
-"""Parse the arguments of a command as they are written on the command line."""
+"""Parse the arguments of a command as people write them."""
 
 from __future__ import annotations
 

@@ -1,0 +1,76 @@
+"""``cobotwire studio``: show an arm, its line or a recording in the browser."""
+
+from __future__ import annotations
+
+import click
+
+from cobotwire.cli.shared.arm_options import address_option, arm_options, parse_address
+from cobotwire.cli.shared.completers import complete_ports
+from cobotwire.cli.shared.output import print_line
+from cobotwire.studio.extras import check_extra
+
+
+@click.command(short_help="Show an arm or a recording in the browser.")
+@click.argument("source", required=False, metavar="[URL|RECORDING]", shell_complete=complete_ports)
+@arm_options
+@address_option
+@click.option(
+    "--rate", type=float, default=10.0, show_default=True, help="Polls a second; 0: only listen."
+)
+@click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen on.")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=0, help="The TCP port [default: a free one]."
+)
+@click.option("--allow-motion", is_flag=True, help="Let the page send more than queries.")
+@click.option("--no-browser", is_flag=True, help="Print the address, but open no browser.")
+@click.pass_obj
+def studio(
+    edition: str,
+    source: str | None,
+    baudrate: int | None,
+    record: str | None,
+    address: str | None,
+    rate: float,
+    host: str,
+    port: int,
+    allow_motion: bool,
+    no_browser: bool,
+) -> None:
+    """Show the arm at URL, or a RECORDING, on a page in the browser, until Ctrl-C.
+
+    URL is a serial port, or a URL such as socket://host:9000. Without it, a simulated arm is
+    started. The page shows the arm in 3D, curves, and every frame on the line, byte by byte.
+
+    The first line of output is the address of the page. It contains a secret: whoever has it can
+    see the page. Only programs on this machine reach the page, unless --host says otherwise.
+
+    The page sends queries. Anything else needs --allow-motion here and the switch "allow motion" on
+    the page. With --allow-motion the arm is sent stop at the end.
+    """
+    check_extra()
+    # Imported here: the packages of the extra may be absent.
+    from cobotwire.studio.access import Access
+    from cobotwire.studio.serving import Options, serve
+
+    def announce(access: Access) -> None:
+        if not access.loopback:
+            click.echo(
+                f"cobotwire: everyone who can read the network of {host} can read the secret "
+                "of the address",
+                err=True,
+            )
+        print_line(access.url)
+
+    options = Options(
+        source,
+        edition,
+        baudrate,
+        record,
+        None if address is None else parse_address(address),
+        rate,
+        host,
+        port,
+        allow_motion,
+        not no_browser,
+    )
+    serve(options, announce)

@@ -1,0 +1,20 @@
+"""Turn the results of calls into JSON values."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+
+def as_json_value(value: Any) -> Any:
+    """Return a result as JSON values.
+
+    Named tuples become objects, enum members their names, and bytes pairs of hex digits.
+    """
+    if hasattr(value, "_asdict"):
+        return {name: as_json_value(part) for name, part in value._asdict().items()}
+    if isinstance(value, IntEnum):
+        return value.name
+    if isinstance(value, bytes):
+        return value.hex(" ").upper()
+    return list(value) if isinstance(value, tuple) else value

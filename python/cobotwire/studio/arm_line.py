@@ -1,0 +1,146 @@
+"""The one session with an arm: it polls the arm in a thread, and sends what pages request."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from cobotwire.editions import Edition
+from cobotwire.inspect.readiness import check_accepted, check_ready
+from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
+from cobotwire.protocol.table import Command, Role
+from cobotwire.session import Traffic
+from cobotwire.transport import open_transport
+
+POLLED: tuple[Role, ...] = ("joints", "coordinates")
+# A port that disappeared is opened again at most this often.
+REOPEN_SECONDS = 1.0
+# Traffic that the server has not taken yet; beyond that the oldest is lost, and counted.
+QUEUED = 20_000
+
+
+class PortOptions(NamedTuple):
+    """How the port is opened; None: as the edition says, or without a recording."""
+
+    url: str
+    baudrate: int | None = None
+    record: str | None = None
+    address: int | str | None = None
+
+
+class ArmLine:
+    """Owns the port while its ``with`` block runs.
+
+    Attributes:
+        lost: how many items of traffic were dropped, because the server was too slow.
+        problem: why the port cannot be used now; empty if it can.
+    """
+
+    def __init__(self, edition: Edition, port: PortOptions, rate: float) -> None:
+        """Open the port. The arm is polled ``rate`` times a second; 0: never.
+
+        Raises:
+            UsageError: the port, the baud rate, the address or the file is not allowed.
+            LinkError: the port does not exist, or cannot be opened.
+        """
+        self.table, self.lost, self.problem = edition.TABLE, 0, ""
+        self.url = port.url
+        self.baudrate = port.baudrate or self.table.baudrate
+        self._rate = rate
+        self._traffic: deque[Traffic] = deque(maxlen=QUEUED)
+        self._transport = open_transport(port.url, self.baudrate)
+        try:
+            self._arm = edition.CLIENT(
+                self._transport,
+                trace=self._note,
+                record=port.record,
+                address=port.address,
+                on_error="leave",
+            )
+        except BaseException:
+            self._transport.close()
+            raise
+        roles = (self.table.find_role(role) for role in POLLED)
+        self._polled = [command for command in roles if command is not None and rate]
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="cobotwire-studio", daemon=True)
+
+    def __enter__(self) -> ArmLine:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._ended.set()
+        self._thread.join(2.0)
+        self._arm.close()
+
+    def take(self) -> list[Traffic]:
+        """Return the traffic since the last call."""
+        taken = []
+        while self._traffic:
+            taken.append(self._traffic.popleft())
+        return taken
+
+    def call(self, command: Command, arguments: dict[str, Any], force: bool) -> Any:
+        """Send a command and return its result; check first whether the arm obeys a motion.
+
+        Raises:
+            CobotwireError: an argument is not allowed, the arm does not obey or reply, or the port
+                is gone.
+        """
+        checks = command.starts_motion and not force
+        if checks:
+            check_ready(self._arm, command)
+        result = getattr(self._arm, command.name)(**arguments)
+        if checks:
+            check_accepted(self._arm, command)
+        return result
+
+    def stop(self) -> None:
+        """Send the edition's stop at once: it takes no turns with requests that wait.
+
+        Raises:
+            UsageError: the edition has no stop.
+            LinkError: the port is gone.
+        """
+        getattr(self._arm, self.table.in_role("stop").name)()
+
+    def _note(self, traffic: Traffic) -> None:
+        # The thread that reads or writes runs this, so it only queues.
+        self.lost += len(self._traffic) == QUEUED
+        self._traffic.append(traffic)
+
+    def _run(self) -> None:
+        while not self._ended.is_set():
+            try:
+                self._poll()
+            except LinkError as error:
+                self.problem = str(error)
+                self._reopen()
+
+    def _poll(self) -> None:
+        due = time.monotonic() + (1 / self._rate if self._polled else 0.1)
+        for command in self._polled:
+            try:
+                getattr(self._arm, command.name)()
+            except (ReplyTimeout, ProtocolError):
+                # Pages see on the line what came instead.
+                continue
+        self._arm.listen(max(0.0, due - time.monotonic()))
+
+    def _reopen(self) -> None:
+        while not self._ended.wait(REOPEN_SECONDS):
+            try:
+                self._transport.reopen()
+            except LinkError as error:
+                self.problem = str(error)
+            else:
+                self.problem = ""
+                return
+
+
+Remark = Callable[[str, str], None]
+"""Takes the kind of a remark about the line, and its text."""

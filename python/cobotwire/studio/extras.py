@@ -1,0 +1,29 @@
+"""Import the packages of the web server, or say which extra installs them."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from cobotwire.protocol.errors import UsageError
+
+PAGE = Path(__file__).parent / "page"
+# The curves are drawn by uPlot, which wheels ship and ``make`` fetches: tools/front_end.py.
+CURVES = PAGE / "vendor" / "uPlot.esm.js"
+
+
+def check_extra() -> None:
+    """Check that everything that serves the page is installed.
+
+    Raises:
+        UsageError: a package is missing, or the page lacks its library.
+    """
+    for package in ("starlette", "uvicorn", "websockets"):
+        try:
+            import_module(package)
+        except ImportError as error:
+            message = f"cobotwire studio needs {package}: pip install 'cobotwire[studio]'"
+            raise UsageError(package, message=message) from error
+    if not CURVES.is_file():
+        message = f"{CURVES} is missing; in a checkout, `make front-end` fetches it"
+        raise UsageError("uPlot", message=message)

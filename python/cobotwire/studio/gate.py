@@ -1,0 +1,71 @@
+"""The outermost layer of the server: refuse requests, limit their size, set the headers."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, MutableMapping
+from typing import Any
+
+from cobotwire.studio.access import HEADERS, Access
+
+# Arguments of one command are the largest thing that a page sends.
+LARGEST_BODY = 64 << 10
+
+Scope = MutableMapping[str, Any]
+Message = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[Message]]
+Send = Callable[[Message], Awaitable[None]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+
+class Gate:
+    """An ASGI application around another one, which sees only requests that may pass."""
+
+    def __init__(self, inner: App, access: Access) -> None:
+        self._inner, self._access = inner, access
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve a request, a WebSocket, or the start and the end of the server."""
+        if scope["type"] == "lifespan":
+            await self._inner(scope, receive, send)
+            return
+        headers: dict[str, str] = {}
+        for name, value in scope["headers"]:
+            text = value.decode("latin-1")
+            key = name.decode("latin-1").lower()
+            # A second host or origin must not hide the first: together they match nothing.
+            headers[key] = f"{headers[key]}, {text}" if key in headers else text
+        socket = scope["type"] == "websocket"
+        method = "WEBSOCKET" if socket else scope["method"]
+        refusal = self._access.refusal(method, scope["path"], headers)
+        if refusal is None and not headers.get("content-length", "0").isdigit():
+            refusal = 400, "the content length is not a number"
+        if refusal is None and int(headers.get("content-length", "0")) > LARGEST_BODY:
+            refusal = 413, "the request is too long"
+        if refusal is None and "transfer-encoding" in headers:
+            refusal = 411, "the request lacks its length"
+        if refusal is None:
+            await self._inner(scope, receive, send if socket else _with_headers(send))
+        elif socket:
+            # Before it is accepted, closing a WebSocket is the HTTP status 403.
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            await _refuse(_with_headers(send), *refusal)
+
+
+def _with_headers(send: Send) -> Send:
+    async def sending(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            own = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
+            names = {name for name, _ in own}
+            rest = [pair for pair in message.get("headers", ()) if pair[0].lower() not in names]
+            message = {**message, "headers": [*rest, *own]}
+        await send(message)
+
+    return sending
+
+
+async def _refuse(send: Send, status: int, reason: str) -> None:
+    text = ("content-type", "text/plain; charset=utf-8")
+    headers = [tuple(part.encode() for part in text), (b"connection", b"close")]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": f"{reason}\n".encode()})

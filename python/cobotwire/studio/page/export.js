@@ -1,0 +1,26 @@
+// Export what the filters of the line select.
+
+import { byId, el } from "./dom.js";
+
+export function wireExport(server) {
+  byId("export").addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const query = new URLSearchParams(new FormData(byId("export")));
+    query.set("command", byId("by-command").value);
+    query.set("direction", byId("by-direction").value);
+    const say = (text) => (byId("export-status").textContent = text);
+    say("writing");
+    try {
+      const response = await server.fetch(`/api/export?${query}`);
+      if (!response.ok) await server.answer(response);
+      const named = /filename="([\w.-]+)"/.exec(response.headers.get("content-disposition"));
+      const data = await response.blob();
+      const address = URL.createObjectURL(data);
+      el("a", { href: address, download: named?.[1] ?? "studio.bin" }).click();
+      setTimeout(() => URL.revokeObjectURL(address), 10000);
+      say(`${named?.[1]}, ${data.size} bytes`);
+    } catch (error) {
+      say(error.message);
+    }
+  });
+}

@@ -1,0 +1,82 @@
+// Talk to the server. The token is kept where only this origin, port included, can read it.
+
+const KEY = "cobotwire-studio-token";
+const AGAIN_MS = 1000;
+
+function token() {
+  const given = new URLSearchParams(location.hash.slice(1)).get("token");
+  if (given) {
+    sessionStorage.setItem(KEY, given);
+    // The address bar must not show it, nor the history keep it.
+    history.replaceState(null, "", location.pathname);
+  }
+  return sessionStorage.getItem(KEY) ?? "";
+}
+
+export class Server {
+  // `onBatch` gets each batch of news; `onState` gets "open", "closed" or "refused".
+  constructor(onBatch, onState) {
+    this.token = token();
+    this.page = "";
+    this.onBatch = onBatch;
+    this.onState = onState;
+    this.everOpen = false;
+    this.connect();
+  }
+
+  connect() {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    const address = `${scheme}://${location.host}/api/feed`;
+    this.socket = new WebSocket(address, ["cobotwire-studio", `token.${this.token}`]);
+    this.socket.onopen = () => {
+      this.everOpen = true;
+      this.onState("open");
+    };
+    this.socket.onmessage = (message) => this.onBatch(JSON.parse(message.data));
+    this.socket.onclose = () => this.closed();
+  }
+
+  async closed() {
+    this.page = "";
+    let refused = false;
+    try {
+      refused = (await this.fetch("/api/table")).status === 401;
+    } catch {
+      // The server is gone; it may come back.
+    }
+    this.onState(refused ? "refused" : "closed");
+    if (!refused) setTimeout(() => this.connect(), AGAIN_MS);
+  }
+
+  // Send a wish over the open connection: it overtakes whatever else is requested.
+  wish(wish, values = {}) {
+    if (this.socket.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify({ wish, ...values }));
+    return true;
+  }
+
+  fetch(path, options = {}) {
+    const headers = { authorization: `Bearer ${this.token}`, "x-studio-page": this.page };
+    return fetch(path, { ...options, headers, cache: "no-store" });
+  }
+
+  async get(path) {
+    return this.answer(await this.fetch(path));
+  }
+
+  async post(path, values = {}) {
+    return this.answer(await this.fetch(path, { method: "POST", body: JSON.stringify(values) }));
+  }
+
+  async answer(response) {
+    const text = await response.text();
+    let found;
+    try {
+      found = JSON.parse(text);
+    } catch {
+      throw new Error(text.trim() || `the server replied ${response.status}`);
+    }
+    if (!response.ok) throw new Error(found.error ?? `the server replied ${response.status}`);
+    return found;
+  }
+}

@@ -1,0 +1,129 @@
+"""Who may send, and what: one page at a time, queries at once, the rest with two permissions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from cobotwire import codec as codecs
+from cobotwire.inspect.call_arguments import parse
+from cobotwire.protocol.addresses import find_address
+from cobotwire.protocol.errors import CobotwireError, UsageError
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Command, Table
+from cobotwire.session.request import EncodedRequest, RequestEncoder
+
+
+class NotPermitted(CobotwireError):
+    """A page may not send what it wants to send; nothing was sent."""
+
+
+class Control:
+    """Which page may send, and whether it may move the arm.
+
+    Attributes:
+        page: the page that may send; empty: none.
+        motion: whether the switch of that page is on.
+        motion_permitted: whether the command line permits motion.
+    """
+
+    def __init__(self, motion_permitted: bool) -> None:
+        self.motion_permitted = motion_permitted
+        self.page = ""
+        self.motion = False
+
+    def take(self, page: str) -> None:
+        """Let a page send.
+
+        Raises:
+            NotPermitted: another page may send; it has to release the control first.
+        """
+        if self.page not in ("", page):
+            raise NotPermitted("another page may send now; release the control there first")
+        self.page = page
+
+    def release(self, page: str) -> bool:
+        """Let other pages send; return whether this page could."""
+        if self.page != page:
+            return False
+        self.page, self.motion = "", False
+        return True
+
+    def switch_motion(self, page: str, on: bool) -> None:
+        """Turn the switch of the page that may send.
+
+        Raises:
+            NotPermitted: another page may send, or the command line does not permit motion.
+        """
+        self.check_page(page)
+        if on and not self.motion_permitted:
+            raise NotPermitted(
+                "the server was started without --allow-motion, so only queries may be sent"
+            )
+        self.motion = on
+
+    def check_page(self, page: str) -> None:
+        """Check that a page may send at all.
+
+        Raises:
+            NotPermitted: it may not.
+        """
+        if not page or page != self.page:
+            raise NotPermitted("this page only watches; take the control before you send")
+
+    def check(self, page: str, command: Command) -> None:
+        """Check that a page may send a command.
+
+        Raises:
+            NotPermitted: it may not.
+        """
+        self.check_page(page)
+        if command.safety != "query" and not (self.motion_permitted and self.motion):
+            where = "in the page" if self.motion_permitted else "with --allow-motion"
+            raise NotPermitted(
+                f"{command.name} is not a query ({command.safety}): allow motion {where} first"
+            )
+
+
+class Preparer:
+    """Turns the fields of a form into a request."""
+
+    def __init__(self, table: Table, address: int | str | None = None) -> None:
+        self._table = table
+        self._encoder = RequestEncoder(codecs.load(table), find_address(table, address))
+
+    def command(self, name: object) -> Command:
+        """Return a command that can be sent.
+
+        Raises:
+            UsageError: there is none of that name.
+        """
+        if not isinstance(name, str):
+            raise UsageError("command", name, "the name of a command")
+        command = self._table.command(name)
+        if command.event:
+            message = f"{name} is an event, which the device sends without a request"
+            raise UsageError("command", name, message=message)
+        return command
+
+    def arguments(self, command: Command, given: object) -> dict[str, Any]:
+        """Return the arguments of a command from the texts of a form; empty ones are left out.
+
+        Raises:
+            UsageError: an argument is missing or unknown, or its text is not a value of it.
+        """
+        if not isinstance(given, Mapping):
+            raise UsageError("arguments", given, "texts by the name of the argument")
+        for name, text in given.items():
+            if not isinstance(text, str) or not text.isprintable():
+                raise UsageError(str(name), text, "a text that can be printed")
+        return parse(command, [f"{name}={text}" for name, text in given.items() if text])
+
+    def encoded(self, command: Command, arguments: Mapping[str, Any]) -> EncodedRequest:
+        """Return the request as it would be sent.
+
+        Raises:
+            UsageError: an argument is not allowed.
+        """
+        request: Request[Any] = command.request_type(**arguments)
+        return self._encoder.encode_request(request)

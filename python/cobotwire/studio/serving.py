@@ -1,0 +1,171 @@
+"""Run the server: open the arm or the recording, listen, print the address, end with Ctrl-C."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import time
+import webbrowser
+from collections import deque
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
+from pathlib import Path
+from typing import NamedTuple
+
+import uvicorn
+from starlette.applications import Starlette
+
+from cobotwire import editions
+from cobotwire.capture import is_capture
+from cobotwire.editions import Edition
+from cobotwire.protocol.errors import CobotwireError, LinkError, UsageError
+from cobotwire.studio.access import Access
+from cobotwire.studio.app import make_app
+from cobotwire.studio.arm_line import ArmLine, PortOptions
+from cobotwire.studio.live import REMARKS, LiveSession
+from cobotwire.studio.recorded import RecordedSession
+from cobotwire.studio.sending import Control
+from cobotwire.studio.simulated_line import SimulatedLine
+from cobotwire.studio.stage import Stage
+
+FASTEST_POLL = 200.0
+# What pages send is small.
+LARGEST_MESSAGE = 4096
+MOST_CONNECTIONS = 256
+# Open pages have this long to close their connections at the end.
+END_SECONDS = 2
+
+
+class Options(NamedTuple):
+    """What to show and how.
+
+    Attributes:
+        source: a port, a URL or the file of a recording; None: a simulated arm.
+        edition: the name of the edition.
+        baudrate, record, address: as for other verbs.
+        rate: how often a second the arm is polled; 0: never.
+        host, port: where the server listens; port 0: any that is free.
+        allow_motion: whether pages may send anything but queries.
+        open_browser: whether to open the page.
+    """
+
+    source: str | None
+    edition: str
+    baudrate: int | None = None
+    record: str | None = None
+    address: int | str | None = None
+    rate: float = 10.0
+    host: str = "127.0.0.1"
+    port: int = 0
+    allow_motion: bool = False
+    open_browser: bool = True
+
+
+def serve(options: Options, announce: Callable[[Access], None]) -> None:
+    """Serve until Ctrl-C or SIGTERM. ``announce`` gets the address when the server listens.
+
+    If pages may move the arm, it is sent ``stop`` at the end.
+
+    Raises:
+        UsageError: an option is not allowed, or a recording does not exist.
+        LinkError: the port cannot be opened, or the address cannot be listened on.
+        CaptureError: the file is not a recording.
+    """
+    if not 0 <= options.rate <= FASTEST_POLL:
+        raise UsageError("rate", options.rate, f"0..{FASTEST_POLL:g}")
+    with _listening(options.host, options.port) as listening, staged(options) as stage:
+        access = Access(options.host, listening.getsockname()[1])
+
+        @asynccontextmanager
+        async def lifespan(app: Starlette) -> AsyncIterator[None]:
+            announce(access)
+            if options.open_browser:
+                # A browser that starts slowly must not delay the server.
+                await asyncio.to_thread(webbrowser.open, access.url)
+            tasks = []
+            if isinstance(stage.session, LiveSession):
+                tasks.append(asyncio.create_task(stage.session.pump()))
+            yield
+            for task in tasks:
+                task.cancel()
+
+        config = uvicorn.Config(
+            make_app(stage, access, lifespan),
+            ws="websockets-sansio",
+            ws_max_size=LARGEST_MESSAGE,
+            ws_per_message_deflate=False,
+            log_level="error",
+            access_log=False,
+            server_header=False,
+            proxy_headers=False,
+            limit_concurrency=MOST_CONNECTIONS,
+            timeout_graceful_shutdown=END_SECONDS,
+        )
+        uvicorn.Server(config).run(sockets=[listening])
+
+
+@contextmanager
+def staged(options: Options) -> Iterator[Stage]:
+    """Yield what the server shows; close everything at the end.
+
+    Raises:
+        CobotwireError: as :func:`serve`.
+    """
+    edition = editions.load(options.edition)
+    with ExitStack() as stack:
+        if options.source is not None and _is_recording(options.source):
+            session = RecordedSession(options.source, options.edition)
+            edition = _edition_of(session, edition)
+            stage = Stage(edition, session, Control(False))
+            stack.callback(stage.close)
+            yield stage
+            return
+        remarks: deque[tuple[float, str, str]] = deque(maxlen=REMARKS)
+        simulated = None
+        url = options.source
+        if url is None:
+
+            def remark(label: str, text: str) -> None:
+                remarks.append((time.monotonic(), label, text))
+
+            simulated = stack.enter_context(SimulatedLine(edition.TABLE, remark))
+            url = simulated.url
+        port = PortOptions(url, options.baudrate, options.record, options.address)
+        line = stack.enter_context(ArmLine(edition, port, options.rate))
+        if options.allow_motion:
+            stack.callback(_stop_at_end, line)
+        control = Control(options.allow_motion)
+        stage = Stage(edition, LiveSession(line, remarks), control, simulated, options.address)
+        stack.callback(stage.close)
+        yield stage
+
+
+def _stop_at_end(line: ArmLine) -> None:
+    # Nobody watches any longer. If it cannot be sent, the port is gone or the edition has none.
+    with suppress(CobotwireError):
+        line.stop()
+
+
+def _edition_of(session: RecordedSession, default: Edition) -> Edition:
+    name = session.codec.table.edition
+    return editions.load(name) if name in editions.names() else default
+
+
+def _is_recording(source: str) -> bool:
+    path = Path(source)
+    if not path.is_file():
+        return source.endswith(".pcapng")
+    with path.open("rb") as file:
+        start = file.read(12)
+    compressed = source.endswith((".gz", ".zst"))
+    return compressed or is_capture(start) or source.endswith(".pcapng")
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        return socket.create_server((host, port), family=family)
+    # A host that cannot be encoded as a name is a UnicodeError; a port that is too high, another.
+    except (OSError, UnicodeError, OverflowError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise LinkError(f"{host}:{port}", f"cannot listen: {reason}") from error

@@ -1,0 +1,167 @@
+"""What a server shows: a live session or a recording; and what its pages do to it."""
+
+from __future__ import annotations
+
+import asyncio
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from cobotwire import codec as codecs
+from cobotwire.editions import Edition
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.json_values import as_json_value
+from cobotwire.studio.describing import Describer
+from cobotwire.studio.explained import Explainer
+from cobotwire.studio.live import LiveSession
+from cobotwire.studio.recorded import RecordedSession
+from cobotwire.studio.robot_facts import robot_facts
+from cobotwire.studio.sending import Control, NotPermitted, Preparer
+from cobotwire.studio.simulated_line import SimulatedLine, scenarios
+from cobotwire.studio.viewers import Viewer
+
+# Requests of pages that wait for replies at a time.
+SENDERS = 4
+
+
+class Stage:
+    """One session, its control, and the pages that watch."""
+
+    def __init__(
+        self,
+        edition: Edition,
+        session: LiveSession | RecordedSession,
+        control: Control,
+        simulated: SimulatedLine | None = None,
+        address: int | str | None = None,
+    ) -> None:
+        self.table, self.session, self.control = edition.TABLE, session, control
+        self.explainer = Explainer(edition, codecs.load(self.table))
+        self.preparer = Preparer(self.table, address)
+        self.simulated = simulated
+        self._scenarios = scenarios(self.table) if simulated is not None else []
+        self._senders = ThreadPoolExecutor(SENDERS, "cobotwire-send")
+        # Stop has a thread of its own, so that it waits for no request.
+        self._stopper = ThreadPoolExecutor(1, "cobotwire-stop")
+        self.viewers: dict[str, Viewer] = {}
+
+    def close(self) -> None:
+        """Forget requests that were not sent yet."""
+        self._senders.shutdown(wait=False, cancel_futures=True)
+        self._stopper.shutdown(wait=True)
+
+    def describer(self) -> Describer:
+        """Return a new describer of the session's entries."""
+        return Describer(codecs.load(self.table))
+
+    def hello(self, viewer: Viewer) -> dict[str, Any]:
+        """Return what a page needs first."""
+        session, live = self.session, isinstance(self.session, LiveSession)
+        hello = {
+            "page": viewer.page,
+            "robot": robot_facts(self.table),
+            "mode": "live" if live else "recording",
+            "simulated": self.simulated is not None,
+            "motionPermitted": self.control.motion_permitted,
+            "scenarios": [choice._asdict() for choice in self._scenarios],
+            "startNs": str(session.start_ns),
+            "url": session.interface.url,
+        }
+        if isinstance(session, RecordedSession):
+            recording = {"name": session.name, "seconds": session.seconds}
+            hello["recording"] = recording | {"remarks": session.remarks}
+        return hello
+
+    def open(self, viewer: Viewer) -> None:
+        """Add a page."""
+        self.viewers[viewer.page] = viewer
+        viewer.show(hello=self.hello(viewer), **self.state())
+        if isinstance(self.session, LiveSession):
+            self.session.open(viewer)
+
+    def leave(self, viewer: Viewer) -> None:
+        """Remove a page; if it could send, others can now."""
+        self.viewers.pop(viewer.page, None)
+        if isinstance(self.session, LiveSession):
+            self.session.close(viewer)
+        self.control.release(viewer.page)
+        self._show()
+
+    def state(self) -> dict[str, Any]:
+        """Return who may send, and the scenario."""
+        control = {"page": self.control.page, "motion": self.control.motion}
+        scenario = self.simulated.scenario if self.simulated is not None else ""
+        return {"control": control, "watching": len(self.viewers), "scenario": scenario}
+
+    def set_control(self, page: str, take: bool) -> None:
+        """Let a page send, or let it send no longer.
+
+        Raises:
+            NotPermitted: another page may send, or there is no such page.
+        """
+        if page not in self.viewers:
+            raise NotPermitted("this page is not connected")
+        if take:
+            self._line()
+            self.control.take(page)
+        else:
+            self.control.release(page)
+        self._show()
+
+    def set_motion(self, page: str, on: bool) -> None:
+        """Turn the switch of a page.
+
+        Raises:
+            NotPermitted: it may not.
+        """
+        self.control.switch_motion(page, on)
+        self._show()
+
+    def choose_scenario(self, page: str, name: object) -> None:
+        """Begin a fault scenario, or end it.
+
+        Raises:
+            NotPermitted: the page may not, or the arm is not simulated.
+            UsageError: there is no such scenario.
+        """
+        self.control.check_page(page)
+        if self.simulated is None:
+            raise NotPermitted("faults are injected only into a simulated arm")
+        if not isinstance(name, str):
+            raise UsageError("scenario", name, "the name of a scenario, or an empty text")
+        self.simulated.choose(name)
+        self._show()
+
+    async def send(self, page: str, name: object, given: object, *, force: bool) -> Any:
+        """Send a command for a page; return its result as JSON values.
+
+        Raises:
+            NotPermitted: the page may not send it.
+            CobotwireError: an argument is wrong, or the arm does not obey or reply.
+        """
+        line = self._line()
+        command = self.preparer.command(name)
+        self.control.check(page, command)
+        arguments = self.preparer.arguments(command, given)
+        # A wrong value is reported before the arm is asked whether it obeys.
+        self.preparer.encoded(command, arguments)
+        loop = asyncio.get_running_loop()
+        result = await loop.run_in_executor(self._senders, line.call, command, arguments, force)
+        return as_json_value(result)
+
+    async def stop(self) -> None:
+        """Stop the arm: any page may, at any time, and nothing that waits delays it.
+
+        Raises:
+            UsageError: the edition has no stop.
+            LinkError: the port is gone.
+        """
+        await asyncio.get_running_loop().run_in_executor(self._stopper, self._line().stop)
+
+    def _line(self) -> Any:
+        if not isinstance(self.session, LiveSession):
+            raise NotPermitted("a recording cannot be sent anything")
+        return self.session.line
+
+    def _show(self) -> None:
+        for viewer in self.viewers.values():
+            viewer.show(**self.state())

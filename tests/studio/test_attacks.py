@@ -1,0 +1,268 @@
+"""Attack the server as other sites, other programs and other pages could: each attack by itself."""
+
+from __future__ import annotations
+
+import json
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin, Subprotocol
+
+from studio.studio_server import Studio, running
+
+HIDDEN = ["/../access.py", "/%2e%2e/access.py", "/vendor/../../access.py", "//etc/passwd", "/.git"]
+API = ["/api/table", "/api/entry/0", "/api/export"]
+POSTS = ["/api/preview", "/api/send", "/api/control", "/api/motion", "/api/scenario", "/api/stop"]
+FOREIGN = ["http://evil.example", "http://127.0.0.1:1", "http://localhost", "null", "file://"]
+
+
+@pytest.fixture(scope="module")
+def studio() -> Iterator[Studio]:
+    with running("--allow-motion", "--rate", "5") as server:
+        yield server
+
+
+@contextmanager
+def watching(
+    studio: Studio, origin: str | None = None, token: str | None = None
+) -> Iterator[ClientConnection]:
+    """Open the feed as a page does, or with another origin or token."""
+    secret = studio.token if token is None else token
+    with connect(
+        f"ws://127.0.0.1:{studio.port}/api/feed",
+        origin=Origin(studio.origin) if origin is None else Origin(origin) if origin else None,
+        subprotocols=[Subprotocol("cobotwire-studio"), Subprotocol(f"token.{secret}")],
+        compression=None,
+    ) as feed:
+        yield feed
+
+
+def state(feed: ClientConnection, name: str) -> Any:
+    """Return the next state of that name that the feed reports."""
+    while name not in (states := json.loads(feed.recv(timeout=20))["states"]):
+        pass
+    return states[name]
+
+
+@pytest.mark.parametrize("path", API)
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {},
+        {"authorization": "Bearer "},
+        {"authorization": "Bearer wrong"},
+        {"authorization": "Basic TOKEN"},
+        {"cookie": "token=TOKEN"},
+        {"referer": "http://127.0.0.1/#token=TOKEN"},
+    ],
+    ids=["none", "empty", "wrong", "other scheme", "as a cookie", "as a referer"],
+)
+def test_request_without_the_token_is_refused(
+    studio: Studio, path: str, headers: dict[str, str]
+) -> None:
+    given = {name: value.replace("TOKEN", studio.token) for name, value in headers.items()}
+    assert studio.request(path, headers=given).status == 401
+
+
+@pytest.mark.parametrize("path", POSTS)
+def test_post_without_the_token_is_refused(studio: Studio, path: str) -> None:
+    answer = studio.request(path, method="POST", headers={"origin": studio.origin}, body={})
+    assert answer.status == 401
+
+
+@pytest.mark.parametrize("path", ["/", *API])
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:PORT", "127.0.0.1", "127.0.0.1.evil.example:PORT", ""]
+)
+def test_name_that_was_rebound_to_this_machine_is_refused(
+    studio: Studio, path: str, host: str
+) -> None:
+    headers = {**studio.own, "host": host.replace("PORT", str(studio.port))}
+    assert studio.request(path, headers=headers).status in (400, 421)
+
+
+def test_second_host_does_not_hide_the_first(studio: Studio) -> None:
+    request = (
+        f"GET /api/table HTTP/1.1\r\nHost: evil.example:{studio.port}\r\n"
+        f"Host: 127.0.0.1:{studio.port}\r\nAuthorization: Bearer {studio.token}\r\n\r\n"
+    )
+    with socket.create_connection(("127.0.0.1", studio.port), 20) as raw:
+        raw.sendall(request.encode())
+        assert raw.recv(100).split()[1] in (b"400", b"421")
+
+
+@pytest.mark.parametrize("name", ["localhost", "127.0.0.1", "[::1]"])
+def test_names_of_this_machine_are_served(studio: Studio, name: str) -> None:
+    assert studio.request("/", headers={"host": f"{name}:{studio.port}"}).status == 200
+
+
+@pytest.mark.parametrize("origin", FOREIGN)
+@pytest.mark.parametrize("path", ["/", "/api/table"])
+def test_request_of_another_site_is_refused(studio: Studio, path: str, origin: str) -> None:
+    assert studio.request(path, headers={**studio.own, "origin": origin}).status == 403
+
+
+@pytest.mark.parametrize("path", POSTS)
+def test_post_of_another_site_is_refused(studio: Studio, path: str) -> None:
+    for origin in FOREIGN:
+        headers = {**studio.own, "origin": origin}
+        assert studio.request(path, method="POST", headers=headers, body={}).status == 403
+    headers = {"authorization": f"Bearer {studio.token}"}
+    assert studio.request(path, method="POST", headers=headers, body={}).status == 403
+
+
+def test_request_that_the_browser_marks_as_foreign_is_refused(studio: Studio) -> None:
+    for site in ("cross-site", "same-site", "anything"):
+        headers = {**studio.own, "sec-fetch-site": site}
+        assert studio.request("/api/table", headers=headers).status == 403
+    headers = {**studio.own, "sec-fetch-site": "same-origin"}
+    assert studio.request("/api/table", headers=headers).status == 200
+
+
+@pytest.mark.parametrize("origin", [*FOREIGN, ""], ids=[*FOREIGN, "no origin"])
+def test_socket_of_another_site_is_refused(studio: Studio, origin: str) -> None:
+    with pytest.raises(InvalidStatus) as refused, watching(studio, origin=origin):
+        pass
+    assert refused.value.response.status_code == 403
+
+
+@pytest.mark.parametrize("token", ["", "wrong"])
+def test_socket_without_the_token_is_refused(studio: Studio, token: str) -> None:
+    with pytest.raises(InvalidStatus) as refused, watching(studio, token=token):
+        pass
+    assert refused.value.response.status_code == 403
+
+
+@pytest.mark.parametrize("path", HIDDEN)
+def test_no_file_outside_of_the_page_is_served(studio: Studio, path: str) -> None:
+    assert studio.get(path).status == 404
+
+
+def test_every_answer_has_a_policy_without_inline_code(studio: Studio) -> None:
+    answers = [studio.get(path) for path in ("/", "/main.js", "/api/table", "/nowhere", "/.git")]
+    answers.append(studio.request("/api/table"))
+    for answer in answers:
+        policy = answer.headers["content-security-policy"]
+        assert policy.startswith("default-src 'none'; script-src 'self'; style-src 'self';")
+        assert "unsafe" not in policy
+        assert answer.headers["x-content-type-options"] == "nosniff"
+        assert answer.headers["referrer-policy"] == "no-referrer"
+        assert "access-control-allow-origin" not in answer.headers
+        assert "server" not in answer.headers
+
+
+def test_page_has_no_inline_code(studio: Studio) -> None:
+    page = studio.get("/").body.decode()
+    assert "style=" not in page
+    assert " on" + "click" not in page
+    assert page.count("<script") == 1
+    assert '<script type="module" src="main.js"></script>' in page
+
+
+def test_body_that_is_too_long_or_no_object_is_refused(studio: Studio) -> None:
+    assert studio.post("/api/preview", b"x" * (65 << 10)).status == 413
+    for body in (b"", b"[]", b"{", b"1", b"[" * 30_000, b"\xff"):
+        assert studio.post("/api/preview", body).status == 400
+    headers = {**studio.own, "transfer-encoding": "chunked"}
+    answer = studio.request("/api/preview", method="POST", headers=headers, body=b"0\r\n\r\n")
+    assert answer.status in (400, 411)
+
+
+def test_page_without_control_sends_nothing(studio: Studio) -> None:
+    query = {"command": "get_angles", "arguments": {}}
+    with watching(studio) as feed:
+        page = state(feed, "hello")["page"]
+        assert studio.post("/api/send", query, page).status == 403
+        assert studio.post("/api/send", query, "").status == 403
+        assert studio.post("/api/scenario", {"name": "panic"}, page).status == 403
+        assert studio.post("/api/control", {"take": True}, "made-up").status == 403
+        assert studio.post("/api/control", {"take": True}, page).status == 200
+        assert studio.post("/api/send", query, page).json["result"].keys() == {
+            *("j1", "j2", "j3", "j4", "j5", "j6")
+        }
+
+
+def test_one_page_at_a_time_may_send(studio: Studio) -> None:
+    query = {"command": "get_angles", "arguments": {}}
+    with watching(studio) as second:
+        other = state(second, "hello")["page"]
+        with watching(studio) as first:
+            page = state(first, "hello")["page"]
+            assert studio.post("/api/control", {"take": True}, page).status == 200
+            assert studio.post("/api/control", {"take": True}, other).status == 403
+            assert studio.post("/api/send", query, other).status == 403
+            assert studio.post("/api/send", query, page).status == 200
+        # A page that leaves gives up the control.
+        while state(second, "control")["page"]:
+            pass
+        assert studio.post("/api/control", {"take": True}, other).status == 200
+        assert studio.post("/api/send", query, other).status == 200
+
+
+def test_motion_needs_the_switch_of_the_page_as_well(studio: Studio) -> None:
+    power = {"command": "power_on", "arguments": {}}
+    with watching(studio) as feed:
+        page = state(feed, "hello")["page"]
+        assert studio.post("/api/motion", {"on": True}, page).status == 403
+        studio.post("/api/control", {"take": True}, page)
+        refused = studio.post("/api/send", power, page)
+        assert (refused.status, "allow motion" in refused.json["error"]) == (403, True)
+        assert studio.post("/api/motion", {"on": True}, page).status == 200
+        assert studio.post("/api/send", power, page).status == 200
+        studio.post("/api/control", {"take": False}, page)
+        studio.post("/api/control", {"take": True}, page)
+        assert studio.post("/api/send", power, page).status == 403
+
+
+def test_every_page_may_stop_the_arm(studio: Studio) -> None:
+    with watching(studio) as feed:
+        state(feed, "hello")
+        feed.send(json.dumps({"wish": "stop", "number": 7}))
+        assert state(feed, "stopped") == {"number": 7, "error": ""}
+    assert studio.post("/api/stop", {}).status == 200
+
+
+def test_values_that_the_edition_does_not_allow_are_not_sent(studio: Studio) -> None:
+    with watching(studio) as feed:
+        page = state(feed, "hello")["page"]
+        studio.post("/api/control", {"take": True}, page)
+        studio.post("/api/motion", {"on": True}, page)
+        for command, given in (
+            ("send_angles", {"angles": "0,0,0,0,0,0", "speed": "101"}),
+            ("send_angles", {"angles": "0,0,0", "speed": "10"}),
+            ("send_angles", {"angles": "0,0,0,0,0,0"}),
+            ("send_angles", {"angles": "<script>", "speed": "10"}),
+            ("send_angles", []),
+            ("__class__", {}),
+            ("close", {}),
+            (None, {}),
+        ):
+            body: dict[str, object] = {"command": command, "arguments": given}
+            assert studio.post("/api/send", body, page).status == 400, command
+        for name in ("../panic", "/etc/passwd", "panic.yaml", 1, None):
+            assert studio.post("/api/scenario", {"name": name}, page).status == 400
+
+
+def test_wishes_that_make_no_sense_are_ignored(studio: Studio) -> None:
+    with watching(studio) as feed:
+        state(feed, "hello")
+        for text in ("", "[]", "{", '{"wish":"play"}', '{"wish":"stop","number":[]}', "[" * 4000):
+            feed.send(text)
+        assert state(feed, "stopped") == {"number": 0, "error": ""}
+
+
+def test_without_allow_motion_only_queries_are_sent() -> None:
+    with running() as studio, watching(studio) as feed:
+        page = state(feed, "hello")["page"]
+        studio.post("/api/control", {"take": True}, page)
+        refused = studio.post("/api/motion", {"on": True}, page)
+        assert (refused.status, "--allow-motion" in refused.json["error"]) == (403, True)
+        power = {"command": "power_on", "arguments": {}}
+        assert studio.post("/api/send", power, page).status == 403
+        query = {"command": "is_power_on", "arguments": {}}
+        assert studio.post("/api/send", query, page).json == {"result": False}
