@@ -120,7 +120,7 @@ def test_importing_the_package_loads_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"
         "loaded = {name.split('.')[0] for name in sys.modules}\n"
-        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy starlette uvicorn'\n"
+        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy uvicorn'\n"
         "print(sorted(loaded & set(extras.split())))"
     )
     result = subprocess.run(

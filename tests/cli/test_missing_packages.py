@@ -57,6 +57,14 @@ def _imported(path: Path) -> set[str]:
             ["plot", "arm.pcapng", "-o", "arm.svg"],
             "plotting needs matplotlib: pip install 'cobotwire[plot]'",
         ),
+        *(
+            (
+                package,
+                ["studio", "--no-browser"],
+                f"cobotwire studio needs {package}: pip install 'cobotwire[studio]'",
+            )
+            for package in ("starlette", "uvicorn")
+        ),
     ],
 )
 def test_missing_package_is_named_in_one_sentence(

@@ -93,6 +93,8 @@ def _written(
             "l": entry.finding.kind,
             "x": entry.finding.describe()[:SHOWN_TEXT],
         }
+    if message is None and entry.direction == "sent":
+        return written | {"k": "noise", "l": "fill", "x": "fill bytes end a request that was cut"}
     if message is None:
         what = "not a frame of the edition" if error is None else str(error)
         return written | {"k": "noise", "l": "illegal", "x": what[:SHOWN_TEXT]}

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
+from weakref import WeakSet
 
 from cobotwire import codec as codecs
 from cobotwire.protocol.errors import CobotwireError, UsageError
@@ -37,7 +38,8 @@ class SimulatedLine:
         self._clock = RunningClock()
         self._arm = SimulatedArm(table, clock=self._clock, on_note=self._note)
         self._scenario: Scenario | None = None
-        self._peers: list[SwitchedPeer] = []
+        # Of every client, since others may connect to the arm too; forgotten when they leave.
+        self._peers: WeakSet[SwitchedPeer] = WeakSet()
         self._server = TcpServer(self._connect, clock=self._clock)
         self.url = self._server.url
 
@@ -66,13 +68,13 @@ class SimulatedLine:
         if name and name not in shipped():
             raise UsageError("scenario", name, ", ".join(shipped()))
         self._scenario = find(name, self.table) if name else None
-        for peer in self._peers:
+        for peer in tuple(self._peers):
             peer.wrap_next(self._wrapped)
 
     def _connect(self) -> Peer:
         peer = SwitchedPeer(self._arm.connect(lambda event, reply: None))
         peer.wrap_next(self._wrapped)
-        self._peers = [peer]
+        self._peers.add(peer)
         return peer
 
     def _wrapped(self, arm: ArmConnection) -> Peer:

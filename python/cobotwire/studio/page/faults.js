@@ -21,7 +21,7 @@ export class Faults {
       }
     });
     this.shown = [];
-    this.running = "";
+    this.running = null;
   }
 
   describe(name) {
@@ -30,7 +30,9 @@ export class Faults {
     byId("about").textContent = `${about ?? NO_FAULTS}${now}`;
   }
 
+  // Show the scenario that runs. What the user chooses meanwhile stays chosen.
   run(name) {
+    if (name === this.running) return;
     this.running = name;
     byId("faults").classList.toggle("running", name !== "");
     byId("scenario").value = name;

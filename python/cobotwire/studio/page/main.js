@@ -53,6 +53,7 @@ function begin(hello) {
   byId("faults").hidden = !hello.simulated;
   const what = hello.simulated ? "a simulated arm" : hello.recording?.name || hello.url;
   byId("source").textContent = `${what} · edition ${hello.robot.edition}`;
+  byId("source").title = hello.url;
   byId("stop").disabled = hello.robot.stop === "";
   byId("stop").title = hello.robot.stop ? "" : "This edition has no stop.";
   byId("no-geometry").hidden = !hello.robot.noGeometry;

@@ -1,0 +1,132 @@
+"""Drive the page in Chromium: wait for what it shows, press keys, take pictures."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from targets.decoder.browser import Tab
+
+SECONDS = 30
+KEYS = {"Tab": 9, "Enter": 13, "Escape": 27, " ": 32, "End": 35, "Home": 36, "ArrowUp": 38}
+KEYS |= {"ArrowDown": 40}
+# Wait in the page itself, since each question from here costs a round trip.
+UNTIL = """
+async (look) => {
+  const end = Date.now() + %d;
+  for (;;) {
+    const found = look();
+    if (found || Date.now() > end) return typeof found === "object" ? Boolean(found) : found;
+    await new Promise((go) => setTimeout(go, 30));
+  }
+}
+"""
+
+
+class Page:
+    """A page of the studio in a browser."""
+
+    def __init__(self, tab: Tab) -> None:
+        self.tab = tab
+        for domain in ("Runtime", "Log", "Network"):
+            tab.call(f"{domain}.enable")
+
+    def show(self, width: int = 1280, height: int = 900, *, dark: bool = False) -> None:
+        """Set the size of the screen, and its colours."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+        self.tab.call("Emulation.setDeviceMetricsOverride", **size)
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.tab.call("Emulation.setEmulatedMedia", features=[scheme])
+
+    def open(self, url: str) -> None:
+        """Open a page of the studio, and wait until it is connected."""
+        self.tab.open("about:blank")
+        self.tab.open(url)
+        self.until("document.documentElement.dataset.ready")
+
+    def get(self, expression: str) -> Any:
+        """Return the value of an expression, or of its promise."""
+        return self.tab.evaluate(expression)
+
+    def text(self, id: str) -> str:
+        """Return the text of an element."""
+        return str(self.get(f"document.getElementById({json.dumps(id)}).textContent"))
+
+    def until(self, expression: str) -> Any:
+        """Wait until an expression is true, and return its value."""
+        waiting = UNTIL % (1000 * SECONDS)
+        found = self.get(f"({waiting})(() => ({expression}))")
+        assert found, f"{expression} stays {found!r}"
+        return found
+
+    def click(self, selector: str) -> None:
+        """Click an element, as soon as it is there and can be clicked."""
+        element = f"document.querySelector({json.dumps(selector)})"
+        self.until(f"{element} && !{element}.disabled")
+        self.get(f"{element}.click()")
+
+    def choose(self, id: str, value: str) -> None:
+        """Write a value into a box, or choose it."""
+        self.get(
+            f"(() => {{ const box = document.getElementById({json.dumps(id)});"
+            f" box.value = {json.dumps(value)};"
+            " box.dispatchEvent(new Event('input', { bubbles: true })); })()"
+        )
+
+    def press(self, key: str) -> None:
+        """Press a key where the focus is."""
+        event: dict[str, Any] = {"key": key, "code": "Space" if key == " " else key}
+        event |= {"windowsVirtualKeyCode": KEYS[key]}
+        text = {"text": "\r" if key == "Enter" else " "} if key in ("Enter", " ") else {}
+        self.tab.call("Input.dispatchKeyEvent", type="keyDown", **event, **text)
+        self.tab.call("Input.dispatchKeyEvent", type="keyUp", **event)
+
+    def send(self, command: str, *numbers: float) -> str:
+        """Send a command through the form; return what the page says about it."""
+        self.until(f"document.querySelector('#command option[value={command}]')")
+        self.choose("command", command)
+        boxes = "document.querySelectorAll('#form .boxes input')"
+        for at, number in enumerate(numbers):
+            self.get(f"{boxes}[{at}].value = '{number}'")
+        self.click("#form .primary")
+        result = "document.querySelector('#form .result').textContent"
+        return str(self.until(f"{result} !== 'sending' && {result}"))
+
+    def control(self) -> None:
+        """Take control, and allow motion."""
+        self.until("document.getElementById('control').textContent === 'Take control'")
+        self.click("#control")
+        self.click("#motion")
+        self.until("document.getElementById('motion').checked")
+
+    def picture(self, path: Path, *, whole: bool = False) -> None:
+        """Write a picture of what the window shows, or of the whole page."""
+        found = self.tab.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
+        path.write_bytes(base64.b64decode(found["data"]))
+
+    @property
+    def complaints(self) -> list[str]:
+        """What the browser logged: errors of scripts, and violations of the policy."""
+        return [
+            json.dumps(event)
+            for event in self.tab.events
+            if event.get("method") in ("Runtime.exceptionThrown", "Log.entryAdded")
+        ]
+
+    @property
+    def hosts(self) -> set[str]:
+        """The hosts from which the page requested something."""
+        requests = [e for e in self.tab.events if e.get("method") == "Network.requestWillBeSent"]
+        urls = [str(event["params"]["request"]["url"]) for event in requests]
+        return {url.split("/")[2] for url in urls if url.startswith(("http:", "https:", "ws:"))}
+
+
+@contextmanager
+def browser() -> Iterator[Page]:
+    """Run a browser with one page."""
+    with Tab("about:blank") as tab:
+        yield Page(tab)

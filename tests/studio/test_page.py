@@ -1,0 +1,231 @@
+"""Drive the page in Chromium on a simulated arm, and compare what it says with a client."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cobotwire.editions.mycobot280 import MyCobot280
+from studio.driven_page import Page, browser
+from studio.studio_server import Studio, running
+from targets.comparison import ToolMissing
+from targets.decoder.browser import chromium
+from vectors import ROOT
+
+AXE = ROOT / "target" / "front-end" / "axe.min.js"
+TARGET = (40.0, -30.0, -50.0, 10.0, 20.0, -15.0)
+ANGLES = (
+    "[...document.querySelectorAll('#dials .value')].map((dial) => parseFloat(dial.textContent))"
+)
+ROWS = "[...document.querySelectorAll('.row:not([hidden])')]"
+WIDTHS = [(1280, False), (1280, True), (390, False), (390, True)]
+try:
+    chromium()
+    MISSING = ""
+except ToolMissing as error:
+    MISSING = str(error)
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[Page]:
+    with browser() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def studio() -> Iterator[Studio]:
+    with running("--allow-motion") as server:
+        yield server
+
+
+@pytest.fixture
+def opened(page: Page, studio: Studio) -> Page:
+    """Return the page on the simulated arm, at the width of a desktop."""
+    page.tab.events.clear()
+    page.show()
+    page.open(studio.url)
+    page.until(f"{ANGLES}.every(Number.isFinite)")
+    return page
+
+
+def test_page_drives_the_arm_and_says_what_a_client_says(opened: Page) -> None:
+    url = str(opened.get("document.getElementById('source').title"))
+    opened.control()
+    assert opened.send("power_on") == "sent"
+    assert opened.send("send_angles", *TARGET, 80) == "sent"
+    opened.until(f"{ANGLES}.every((angle, at) => Math.abs(angle - {json.dumps(TARGET)}[at]) < 0.1)")
+    with MyCobot280(url) as arm:
+        angles, coords = arm.get_angles(), arm.get_coords()
+    opened.until(f"{ANGLES}.join() === '{','.join(map(_plain, angles))}'")
+    shown = opened.text("coordinates")
+    assert shown == ", ".join(f"{name} {value:.1f}" for name, value in coords._asdict().items())
+    assert opened.send("get_angles").split() == [
+        word for name, angle in angles._asdict().items() for word in (name, _plain(angle))
+    ]
+    assert "near its limit" not in opened.text("dials")
+    opened.send("send_angles", 0, 0, 148, 0, 0, 0, 100)
+    opened.until("document.getElementById('dials').textContent.includes('near its limit')")
+    opened.until("document.getElementById('arm-canvas').ariaLabel.includes('Near a limit: j3')")
+    assert opened.complaints == []
+
+
+def _plain(number: float) -> str:
+    return f"{number:g}"
+
+
+def test_frame_is_shown_before_it_goes_and_a_wrong_value_is_named(opened: Page) -> None:
+    opened.until("document.querySelector('#command option[value=send_angle]')")
+    opened.choose("command", "send_angle")
+    preview = "document.querySelector('#form .preview').textContent"
+    strip = "document.querySelector('#form .strip').innerText.split(/\\s+/).join(' ')"
+    opened.until(f"{preview}.includes('send_angle') && {strip}.startsWith('FE FE 06 21 01')")
+    opened.get("document.querySelectorAll('#form .boxes input')[0].value = '7'")
+    opened.choose("form", "")
+    assert "joint is 7" in str(opened.until(f"{preview}.includes('joint is 7') && {preview}"))
+    assert opened.get("document.querySelector('#form .primary').disabled"), "it has no control"
+    opened.get(
+        "(() => { const box = document.getElementById('find'); box.value = 'gripper';"
+        " box.dispatchEvent(new Event('input')); })()"
+    )
+    names = opened.get("[...document.querySelectorAll('#command option')].map((o) => o.value)")
+    assert "get_gripper_value" in names
+    assert "send_angles" not in names
+
+
+def test_stop_needs_no_control_and_escape_stops(opened: Page) -> None:
+    opened.choose("by-command", "stop")
+    opened.click("#stop")
+    opened.until("document.getElementById('status').textContent === 'stop was sent'")
+    opened.choose("by-direction", "sent")
+    opened.until(
+        "[...document.querySelectorAll('#by-command option')].some((o) => o.value === 'stop')"
+    )
+    opened.choose("by-command", "stop")
+    opened.until(f"{ROWS}.length === 1")
+    opened.press("Escape")
+    opened.until(f"{ROWS}.length === 2")
+
+
+def test_line_is_filtered_searched_paused_and_explained(opened: Page) -> None:
+    opened.until("document.querySelectorAll('#by-command option').length > 2")
+    opened.choose("by-command", "get_coords")
+    opened.choose("by-direction", "received")
+    opened.until(
+        f"{ROWS}.length > 2 && {ROWS}.every((row) => row.children[2].textContent === 'get_coords')"
+    )
+    assert opened.get(f"{ROWS}.every((row) => row.children[1].textContent === '←')")
+    opened.click("#pause")
+    opened.until("document.getElementById('line-count').textContent.includes('more came')")
+    count = opened.get("document.getElementById('rows').firstElementChild.style.height")
+    opened.click(".row:not([hidden])")
+    details = "document.getElementById('details').textContent"
+    found = str(opened.until(f"{details}.includes('Specified in') && {details}"))
+    for word in ("CMD", "coords x", "millimetre", "spec/commands/coords.yaml", "footer"):
+        assert word in found
+    raw = opened.get("document.querySelectorAll('#details tbody tr')[3].children[3].textContent")
+    shown = opened.get("document.querySelectorAll('#details tbody tr')[3].children[4].textContent")
+    assert float(shown.split()[0]) == int(raw) / 10
+    assert opened.get("document.getElementById('rows').firstElementChild.style.height") == count
+    opened.click("#pause")
+    opened.choose("search", "no such text")
+    opened.until(f"{ROWS}.length === 0")
+    opened.choose("search", "fe fe 02 23")
+    opened.choose("by-direction", "sent")
+    opened.until(f"{ROWS}.length > 2")
+
+
+def test_page_is_used_with_the_keyboard_alone(opened: Page) -> None:
+    opened.until(f"{ROWS}.length > 5")
+    seen = []
+    for _ in range(40):
+        opened.press("Tab")
+        seen.append(opened.get("document.activeElement.id || document.activeElement.textContent"))
+        if seen[-1] == "rows":
+            break
+    assert {"control", "stop", "arm-canvas", "window", "pause", "search", "rows"} <= set(seen)
+    opened.press("Home")
+    opened.until(
+        "document.querySelector('.row.chosen') && document.getElementById('rows').scrollTop === 0"
+    )
+    opened.press("ArrowDown")
+    active = "document.getElementById('rows').getAttribute('aria-activedescendant')"
+    opened.until(f"{active} === document.querySelector('.row[data-index=\"1\"]').id")
+    opened.until("document.querySelector('#details table')")
+    opened.get("document.getElementById('control').focus()")
+    opened.press("Enter")
+    opened.until("document.getElementById('control').textContent === 'Release control'")
+    opened.get("document.getElementById('motion').focus()")
+    opened.press(" ")
+    opened.until("document.getElementById('motion').checked")
+
+
+def test_fault_scenario_is_seen_at_work(opened: Page) -> None:
+    opened.control()
+    opened.choose("scenario", "servo-leaks")
+    opened.click("#begin")
+    opened.until("document.querySelectorAll('#injected li').length > 3")
+    assert "fault" in opened.text("injected")
+    opened.choose("by-noise", "any")
+    opened.until(f"{ROWS}.some((row) => row.className.includes('noise'))")
+    opened.get(f"{ROWS}.find((row) => row.className.includes('noise')).click()")
+    opened.until("document.getElementById('details').textContent.includes('What to do')")
+    opened.choose("scenario", "")
+    opened.click("#begin")
+    opened.until("!document.getElementById('faults').classList.contains('running')")
+
+
+@pytest.mark.parametrize(("width", "dark"), WIDTHS)
+def test_page_fits_and_axe_finds_nothing_serious(opened: Page, width: int, dark: bool) -> None:
+    opened.show(width, 844, dark=dark)
+    opened.until(f"{ROWS}.length > 5")
+    opened.click(".row:not([hidden])")
+    opened.until("document.querySelector('#details table')")
+    assert opened.get(
+        "document.documentElement.scrollWidth <= document.documentElement.clientWidth"
+    )
+    visible = "document.getElementById('stop').getBoundingClientRect()"
+    assert opened.get(f"{visible}.top >= 0 && {visible}.bottom <= innerHeight")
+    # In the dark only colours differ.
+    rules = ", runOnly: ['color-contrast']" if dark else ""
+    opened.get(AXE.read_text())
+    found: list[dict[str, Any]] = opened.get(
+        f"axe.run({{ resultTypes: ['violations']{rules} }}).then((found) => found.violations)"
+    )
+    assert [_violation(each) for each in found if each["impact"] in ("serious", "critical")] == []
+    assert opened.complaints == []
+
+
+def _violation(found: dict[str, Any]) -> tuple[str, list[str]]:
+    return found["id"], [
+        node["html"][:160] + node["failureSummary"][-160:] for node in found["nodes"]
+    ]
+
+
+def test_token_leaves_the_address_bar_and_survives_a_reload(opened: Page, studio: Studio) -> None:
+    assert opened.get("location.href") == f"{studio.origin}/"
+    assert studio.token not in opened.get("document.documentElement.outerHTML + document.cookie")
+    opened.tab.open(f"{studio.origin}/")
+    opened.until("document.documentElement.dataset.ready")
+    assert opened.hosts == {f"127.0.0.1:{studio.port}"}
+
+
+def test_page_without_the_token_says_what_to_do(page: Page, studio: Studio) -> None:
+    page.tab.open("about:blank")
+    page.tab.open(f"http://localhost:{studio.port}/")
+    page.until("document.getElementById('notice').textContent.includes('Open the address')")
+
+
+def test_pictures_differ_while_the_arm_moves(opened: Page, tmp_path: Path) -> None:
+    opened.control()
+    opened.send("power_on")
+    drawn = "document.getElementById('arm-canvas').toDataURL()"
+    before = opened.get(drawn)
+    opened.send("send_angles", 90, -60, 0, 0, 0, 0, 60)
+    opened.until(f"{drawn} !== {json.dumps(before)}")
+    opened.picture(tmp_path / "moving.png")
+    assert (tmp_path / "moving.png").stat().st_size > 10_000
