@@ -11,7 +11,9 @@ from typing_extensions import Buffer
 
 from cobotwire.codec.columns import Columns, Scan
 from cobotwire.codec.interface import Counters, Data, DecodedMessage, Event, Listening, Noise
-from cobotwire.protocol.table import Command, Direction, FrameFormat, Table
+from cobotwire.diagnose.servo_bus import Vocabulary
+from cobotwire.diagnose.survey import Rest
+from cobotwire.protocol.table import Command, Direction, Table
 
 __all__ = [
     "Memory",
@@ -256,8 +258,8 @@ class NativeCaptureReader:
 class NativeSurvey:
     """Counts the messages and the noise of a stream, and writes lines of JSON.
 
-    ``bus`` is the format of the servo bus, ``lengths`` are the legal LENs of its packets. ``texts``
-    has the texts of the lines (:class:`cobotwire.diagnose.survey.LineTexts`); None: no lines.
+    ``bus`` says how packets of the servo bus are read. ``texts`` are the first four texts of the
+    lines (:class:`cobotwire.diagnose.survey.LineTexts`); None: no lines.
     :class:`cobotwire.diagnose.survey.StreamSurvey` uses it.
     """
 
@@ -266,21 +268,20 @@ class NativeSurvey:
         codec: NativeCodec,
         listening: Listening,
         accept_unknown: bool,
-        bus: FrameFormat,
-        lengths: Sequence[int],
+        bus: Vocabulary,
         texts: tuple[Any, ...] | None,
     ) -> NativeSurvey:
         """Start a stream."""
 
-    def feed(self, data: bytes) -> list[Noise | tuple[Any, ...] | None]:
-        """Take bytes; return what is not only counted, in the order of the stream.
+    def feed(self, data: bytes, rest: Rest) -> list[Noise | tuple[int, int, str]]:
+        """Take bytes; return what is certain and not only counted, in the order of the stream.
 
-        A part is noise to diagnose, ``(offset, bytes)`` of a frame without a legal message,
-        ``(offset, size, lines)`` of other frames and of noise with a fixed text, or None where no
-        later noise belongs to the noise before.
+        A part is noise to diagnose, or ``(offset, size, lines)`` of frames and of noise that was
+        diagnosed. ``rest`` does what is left to Python; it takes the parts before each noise whose
+        end has come.
         """
 
-    def flush(self) -> list[Noise | tuple[Any, ...] | None]:
+    def flush(self, rest: Rest) -> list[Noise | tuple[int, int, str]]:
         """Report everything, because no more bytes follow."""
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from itertools import combinations
 from typing import Any
 
 import pytest
@@ -24,6 +25,7 @@ from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
 from cobotwire.diagnose.survey import Lines, StreamSurvey
 from cobotwire.protocol.table import Number, Table, Variant
+from cobotwire.simulator.faults.noise import BOOT, PANIC, servo_packet
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
 # The two formats of the maker, and one with an address and a sum.
@@ -32,6 +34,7 @@ NATIVE = {
     for name in ("mycobot280", "mercury_b1", "mybuddy")
 }
 FORMATS = [codec for codec in diagnosed_formats.CODECS if StreamSurvey.reads(codec)]
+READABLE = "\t\n\r\x1b" + "".join(map(chr, range(0x20, 0x7F)))
 Result = tuple[list[str], dict[str, Any], list[list[Any]], bool]
 
 
@@ -141,6 +144,68 @@ def test_survey_finds_the_same_ends_of_damaged_frames(
     damaged = st.lists(strategies.received(codec.table, listening), max_size=6)
     stream = b"".join(received.data for received in data.draw(damaged))
     check(codec, listening, stream, data.draw(strategies.real_frames(codec.table)), data)
+
+
+FOOTERS = [found for size in range(1, 4) for found in combinations(range(-2, 3), size)]
+
+
+@pytest.mark.parametrize("footers", FOOTERS, ids=str)
+def test_survey_ends_damaged_frame_at_same_of_several_footers(footers: tuple[int, ...]) -> None:
+    # LEN is one less than that of a reply; the footers are near the end of an undamaged one.
+    frame = bytearray(b"\xfe\xfe\x0d\x20" + bytes(range(0x81, 0x90)))
+    for place in footers:
+        frame[16 + place] = 0xFA
+    codec = NATIVE["mycobot280"]
+    apart = codec.encode("get_angles", "request", []) * 20
+    data = (bytes(frame) + apart) * 2
+    assert surveyed(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
+
+
+def _read_of(servo: int, register: int, count: int) -> bytes:
+    return servo_packet(bytes([servo, 4, 2, register, count]))
+
+
+def _status_of(servo: int, size: int) -> bytes:
+    return servo_packet(bytes([servo, size + 2, 0]) + bytes(size))
+
+
+@given(st.data())
+@settings(max_examples=40)
+def test_survey_names_same_registers_if_python_diagnoses_noise_in_between(
+    data: st.DataObject,
+) -> None:
+    codec = NATIVE["mycobot280"]
+    servo, size = st.integers(1, 2), st.integers(1, 2)
+    packets = st.builds(_read_of, servo, st.sampled_from([0x38, 0x3C]), size)
+    packets |= st.builds(_status_of, servo, size)
+    packets |= st.just(servo_packet(bytes.fromhex("FE 06 82 38 02 01 02")))
+    # Python diagnoses panics and boots, and what is near them.
+    noise = st.sampled_from([b"", PANIC, BOOT, bytes(64)])
+    apart = st.sampled_from([0, 20]).map(lambda count: count * codec.encode("stop", "request", []))
+    pieces = data.draw(st.lists(st.tuples(packets, noise, packets, apart), min_size=2, max_size=6))
+    stream = b"".join(map(b"".join, pieces))
+    cut = data.draw(strategies.chunked(stream))
+    assert surveyed(codec, "both", False, cut) == diagnosed(codec, "both", False, stream)
+
+
+@given(st.lists(st.text(READABLE, max_size=70), min_size=1, max_size=8))
+@settings(max_examples=30)
+def test_lines_hold_texts_as_python_writes_them(texts: list[str]) -> None:
+    codec = NATIVE["mycobot280"]
+    apart = codec.encode("stop", "request", []) * 20
+    data = b"".join(b"text: " + text.encode() + b"\r\n" + apart for text in ["", *texts])
+    assert surveyed(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
+
+
+def test_survey_reads_servo_packets_in_noise_that_is_too_long_to_wait_for() -> None:
+    codec = NATIVE["mycobot280"]
+    apart = codec.encode("stop", "request", []) * 20
+    packets = _read_of(1, 0x38, 2) + _status_of(1, 2) + _read_of(2, 0x3C, 2)
+    # The long noise begins between a read and its status, and ends with a read.
+    data = packets + apart + packets + apart + _status_of(2, 2) + bytes(2**20 + 9)
+    data += _read_of(1, 0x38, 2) + apart + _status_of(1, 2)
+    chunks = [data[start : start + 65536] for start in range(0, len(data), 65536)]
+    assert surveyed(codec, "both", False, chunks) == diagnosed(codec, "both", False, data)
 
 
 @given(st.lists(st.floats(width=64), min_size=1, max_size=200))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cobotwire.codec.interface import Codec, Listening
-from cobotwire.diagnose.findings import Finding
+from cobotwire.codec.interface import Codec, Listening, NoiseReason
+from cobotwire.diagnose.findings import Finding, Span
 from cobotwire.diagnose.firmware import starts_message
 from cobotwire.diagnose.frames import DIRECTIONS, FrameStarts
 from cobotwire.diagnose.panic import PANIC
@@ -76,7 +76,10 @@ class DamagedFrames(FrameStarts):
         extent = self._extent(residue, at, id)
         if isinstance(extent, Wait):
             return extent
-        spans = residue.spans(at, extent)
+        return self.damaged(residue.spans(at, extent), reason, id)
+
+    def damaged(self, spans: tuple[Span, ...], reason: NoiseReason, id: int | None) -> DamagedFrame:
+        """Return what is left of a frame with that id, which is None if it is not known."""
         name = None if id is None else self._all_names[id]
         return DamagedFrame(spans=spans, reason=reason, command=name, id=id)
 
@@ -84,8 +87,7 @@ class DamagedFrames(FrameStarts):
         """Return the start of a frame that is cut before its id."""
         if residue.reason(at) != "truncated":
             return None
-        spans = residue.spans(at, limit)
-        return DamagedFrame(spans=spans, reason="truncated", command=None, id=None)
+        return self.damaged(residue.spans(at, limit), "truncated", None)
 
     def _extent(self, residue: Residue, at: int, id: int | None) -> int | Wait:
         """Return the end of the damaged frame: after a footer near a legal end, or else by LEN.

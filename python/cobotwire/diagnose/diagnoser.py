@@ -6,6 +6,7 @@ import re
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import TypeVar
 
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.diagnose import garbage
@@ -15,6 +16,7 @@ from cobotwire.diagnose.registry import RECOGNISERS
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 
 Item = Frame | Finding
+Kind = TypeVar("Kind", bound=Recogniser)
 
 # A packet or text may continue after frames of at most this many bytes together: an acknowledgement
 # and the longest reply, twice. After more bytes it is unlikely that the parts belong together.
@@ -45,6 +47,10 @@ class Diagnoser:
 
     def _starting_with(self, byte: bytes) -> tuple[Recogniser, ...]:
         return tuple(each for each in self._recognisers if re.match(each.starts, byte))
+
+    def recogniser(self, kind: type[Kind]) -> Kind:
+        """Return the recogniser of that type."""
+        return next(each for each in self._recognisers if isinstance(each, kind))
 
     def sent(self, data: bytes) -> None:
         """Note a request that was sent, so that its echo is recognised."""
@@ -143,7 +149,7 @@ class Diagnoser:
 
     def _unknown(self, start: int, end: int) -> Finding:
         self._plain = 0
-        return garbage.classify(self._residue, start, end)
+        return garbage.classify(self._residue.spans(start, end), self._residue.reason(start))
 
     def _recognise(self, at: int, after_text: bool) -> Verdict:
         residue = self._residue

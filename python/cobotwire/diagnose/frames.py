@@ -7,8 +7,8 @@ from collections import deque
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cobotwire.codec.interface import Codec, Frame, Listening
-from cobotwire.diagnose.findings import Finding
+from cobotwire.codec.interface import Codec, Frame, Framer, Listening, NoiseReason
+from cobotwire.diagnose.findings import Finding, Span
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 from cobotwire.protocol.frame_index import FrameIndex
@@ -142,25 +142,26 @@ class Frames(FrameStarts):
 
     def _complete(self, residue: Residue, at: int, end: int) -> Finding | None:
         data, spans, reason = residue.data[at:end], residue.spans(at, end), residue.reason(at)
-        if self._other is not None and self._other_framer is not None:
-            events = [*self._other_framer.feed(data), *self._other_framer.flush()]
-            if len(events) == 1 and isinstance(events[0], Frame):
-                name = self._name(data, self._other)
-                assert name is not None, "the framer accepted its id"
-                return OppositeFrame(
-                    spans=spans,
-                    reason=reason,
-                    command=name,
-                    direction=self._other,
-                    sent=False,
-                )
+        if self._other_framer is not None and _is_frame(self._other_framer, data):
+            return self.opposite(spans, reason)
         # Replies without an id are listed in any case.
         id = self._format.read_id(data)
         if any(index.has(id) for d, index in self._indexes.items() if d != self._other):
             return None
-        events = [*self._any_framer.feed(data), *self._any_framer.flush()]
-        if len(events) != 1 or not isinstance(events[0], Frame):
-            return None
+        return self.unlisted(spans, reason) if _is_frame(self._any_framer, data) else None
+
+    def opposite(self, spans: tuple[Span, ...], reason: NoiseReason) -> OppositeFrame:
+        """Return the legal frame of the other direction that ``spans`` hold."""
+        assert self._other is not None, "there is another direction"
+        name = self._name(_joined(spans), self._other)
+        assert name is not None, "the framer accepted its id"
+        return OppositeFrame(
+            spans=spans, reason=reason, command=name, direction=self._other, sent=False
+        )
+
+    def unlisted(self, spans: tuple[Span, ...], reason: NoiseReason) -> UnlistedFrame:
+        """Return the frame with an unlisted id that ``spans`` hold."""
+        id = self._format.read_id(_joined(spans))
         return UnlistedFrame(spans=spans, reason=reason, id=id, command=self._names.get(id))
 
     def _name(self, data: bytes, direction: Direction) -> str | None:
@@ -170,3 +171,13 @@ class Frames(FrameStarts):
         length, id = len(data) - self._format.overhead, self._format.read_id(data)
         found = self._indexes[direction].find(id, length)
         return found[0].command.name if found else self._names.get(id)
+
+
+def _is_frame(framer: Framer, data: bytes) -> bool:
+    """Return whether ``data`` is exactly one frame."""
+    events = [*framer.feed(data), *framer.flush()]
+    return len(events) == 1 and isinstance(events[0], Frame)
+
+
+def _joined(spans: tuple[Span, ...]) -> bytes:
+    return b"".join(span.data for span in spans)

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from math import comb
 from typing import ClassVar
 
-from cobotwire.diagnose.findings import SHOWN, Finding
+from cobotwire.codec.interface import NoiseReason
+from cobotwire.diagnose.findings import SHOWN, Finding, Span
 from cobotwire.diagnose.nuls import nuls
-from cobotwire.diagnose.residue import Residue
 
 # Unrecognised bytes are reported in pieces of this size.
 PIECE_LIMIT = 256
@@ -78,12 +78,11 @@ class Unrecognised(Finding):
         return f"{size} unrecognised byte{'s' * (size != 1)}"
 
 
-def classify(residue: Residue, start: int, end: int) -> Finding:
+def classify(spans: tuple[Span, ...], reason: NoiseReason) -> Finding:
     """Return the finding that fits best."""
-    data = residue.data[start:end]
+    data = b"".join(span.data for span in spans)
     if not any(data):
-        return nuls(residue, start, end)
-    spans, reason = residue.spans(start, end), residue.reason(start)
+        return nuls(spans, reason)
     fitting = sum(byte in _FITTING for byte in data)
     large = sum(byte in _FITTING and byte >= SMALL for byte in data)
     stretched = fitting >= GARBAGE_SHARE * len(data) and 2 * large >= len(data)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cobotwire.diagnose.findings import CHECK_CONTROLLER, Finding
+from cobotwire.codec.interface import NoiseReason
+from cobotwire.diagnose.findings import CHECK_CONTROLLER, Finding, Span
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 
@@ -58,11 +59,12 @@ class NulRuns(Recogniser):
         count = len(rest) - len(rest.lstrip(b"\0"))
         if at + count == limit and count < NUL_LIMIT and not final:
             return Wait.WAIT
-        return nuls(residue, at, at + count) if count >= NUL_MINIMUM else None
+        if count < NUL_MINIMUM:
+            return None
+        return nuls(residue.spans(at, at + count), residue.reason(at))
 
 
-def nuls(residue: Residue, start: int, end: int) -> Nuls:
-    """Return the run of NULs from ``start`` to ``end``, of any length."""
-    count = end - start
-    spans, reason = residue.spans(start, end), residue.reason(start)
+def nuls(spans: tuple[Span, ...], reason: NoiseReason) -> Nuls:
+    """Return a run of NULs of any length."""
+    count = sum(len(span.data) for span in spans)
     return Nuls(spans=spans, reason=reason, count=count, reboot=count >= REBOOT_NULS)

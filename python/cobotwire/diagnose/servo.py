@@ -18,6 +18,9 @@ from cobotwire.diagnose.residue import Residue, Verdict, Wait
 if TYPE_CHECKING:
     from cobotwire.diagnose.servo_bus import ServoBusReader
 
+# Servo id to the register and number of bytes that its next status packet holds.
+Expected = dict[int, tuple[int, int]]
+
 # The header, and an id, which FF is not. The table knows this too, but is loaded only where this
 # matches; see tests/diagnose/test_servo_bus.py.
 STARTS = rb"\xff(?:\xff(?:[^\xff]|\Z)|\Z)"
@@ -101,13 +104,16 @@ def packet_size(data: bytes, at: int) -> int | None:
 
 
 class ServoBus(Recogniser):
-    """Recognises packets; remembers instructions, as a status packet does not name its register."""
+    """Recognises packets; remembers instructions, as a status packet does not name its register.
+
+    Attributes:
+        expected: what the next status packets hold.
+    """
 
     starts = STARTS
 
     def __init__(self, codec: Codec, listening: Listening) -> None:
-        # Servo id to the register and number of bytes that its next status packet holds.
-        self._expected: dict[int, tuple[int | None, int]] = {}
+        self.expected: Expected = {}
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
         """Recognise the packet at ``at``; a frame may interrupt it, as its checksum is checked."""
@@ -125,8 +131,8 @@ class ServoBus(Recogniser):
         said = instruction or bus.unknown(code)
         register, count = said.register, said.size
         if is_status:
-            register, expected = self._expected.get(servo, (None, -1))
-            register = register if expected == len(parameters) else None
+            read, expected = self.expected.get(servo, (0, -1))
+            register = read if expected == len(parameters) else None
         return ServoPacket(
             spans=residue.spans(start, end),
             reason=residue.reason(start),
@@ -150,12 +156,9 @@ class ServoBus(Recogniser):
 
     def _remember(self, packet: ServoPacket) -> None:
         if packet.role == "status":
-            self._expected.pop(packet.servo, None)
-        elif packet.instruction == "sync read":
-            count = packet.count or 0
-            self._expected = {servo: (packet.register, count) for servo in packet.servos}
-        elif packet.instruction == "read":
-            self._expected = {packet.servo: (packet.register, packet.count or 0)}
-        else:
-            every = packet.servo == servo_bus().every
-            self._expected = {} if every else {packet.servo: (None, 0)}
+            self.expected.pop(packet.servo, None)
+            return
+        self.expected = {}
+        if packet.register is not None and packet.instruction in ("read", "sync read"):
+            servos = packet.servos or (packet.servo,)
+            self.expected = dict.fromkeys(servos, (packet.register, packet.count or 0))

@@ -1,4 +1,4 @@
-"""Survey a whole stream: only rare noise and illegal frames become Python objects.
+"""Survey a whole stream: only rare noise becomes Python objects.
 
 :class:`~cobotwire.diagnose.diagnoser.Diagnoser` diagnoses any stream. This module does the same for
 captures, hundreds of times as fast: the native codec counts the messages and the frequent classes
@@ -7,14 +7,23 @@ of noise, and writes the lines of ``cobotwire decode --json``.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
-from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
+from cobotwire.codec.interface import Codec, Frame, Listening, Noise, NoiseReason
+from cobotwire.diagnose import garbage, nuls
+from cobotwire.diagnose.damaged import DamagedFrames
 from cobotwire.diagnose.diagnoser import REACH, Diagnoser, Item
-from cobotwire.diagnose.servo import servo_bus
+from cobotwire.diagnose.findings import Finding, Span
+from cobotwire.diagnose.firmware import CommandError
+from cobotwire.diagnose.frames import Frames
+from cobotwire.diagnose.servo import Expected, ServoBus, servo_bus
 
 if TYPE_CHECKING:
     from cobotwire.codec.native import NativeSurvey
+
+# The native survey returns noise to diagnose, and lines as (offset, size, text).
+Part = Noise | tuple[int, int, str]
 
 
 class LineTexts(NamedTuple):
@@ -25,16 +34,14 @@ class LineTexts(NamedTuple):
         commands: the names of all commands.
         requests: the names of the fields, by command, variant and field.
         replies: those of the replies.
-        unrecognised: the text of unrecognised bytes.
-        command_error: the text of the firmware's error message.
+        describe: returns the text and the facts of a finding, as two members of an object.
     """
 
     first: str
     commands: list[str]
     requests: list[list[list[str]]]
     replies: list[list[list[str]]]
-    unrecognised: str
-    command_error: str
+    describe: Callable[[Finding], str]
 
 
 class Lines(Frame):
@@ -64,8 +71,7 @@ class StreamSurvey:
         texts: LineTexts | None = None,
     ) -> None:
         self.native = _native(codec, listening, accept_unknown, texts)
-        self._diagnoser = Diagnoser(codec, listening)
-        self._read_id = codec.table.frame.read_id
+        self._rest = Rest(codec, listening, texts)
 
     @staticmethod
     def reads(codec: Codec) -> bool:
@@ -73,29 +79,70 @@ class StreamSurvey:
         return codec.name == "native" and codec.table.frame.reply_has_id
 
     def feed(self, data: bytes) -> list[Item]:
-        """Take bytes; return lines, findings and illegal frames, in the order of the stream."""
-        return self._items(self.native.feed(data))
+        """Take bytes; return lines and findings, in the order of the stream."""
+        return self._rest.taken(self.native.feed(data, self._rest))
 
     def flush(self) -> list[Item]:
         """Return the rest, because no more bytes follow."""
-        return self._items(self.native.flush())
+        return self._rest.taken(self.native.flush(self._rest))
 
-    def _items(self, parts: list[Noise | tuple[Any, ...] | None]) -> list[Item]:
-        items: list[Item] = []
-        events: list[Event] = []
-        for part in parts:
-            if part is None:
-                items += self._diagnoser.feed(events) + self._diagnoser.flush()
-                events.clear()
-            else:
-                events.append(part if isinstance(part, Noise) else self._frame(*part))
-        return items + self._diagnoser.feed(events)
 
-    def _frame(self, offset: int, *rest: Any) -> Frame:
-        if len(rest) > 1:
-            return Lines(offset, *rest)
-        (data,) = rest
-        return Frame(offset, data, self._read_id(data))
+class Rest:
+    """Does what the native survey leaves to Python; the native survey calls it.
+
+    It diagnoses noise of rare classes, and describes noise that has few different descriptions.
+    """
+
+    def __init__(self, codec: Codec, listening: Listening, texts: LineTexts | None) -> None:
+        self._texts = texts
+        self._diagnoser = Diagnoser(codec, listening)
+        self._damaged_frames = self._diagnoser.recogniser(DamagedFrames)
+        self._frames = self._diagnoser.recogniser(Frames)
+        self._bus = self._diagnoser.recogniser(ServoBus)
+        self._items: list[Item] = []
+
+    def diagnose(self, parts: list[Part], closed: bool, expected: Expected) -> Expected:
+        """Diagnose the noise in ``parts``; if ``closed``, no later noise belongs to it.
+
+        ``expected`` is what the packets before it made the servo bus expect. Returns the same after
+        the noise.
+        """
+        self._bus.expected = expected
+        self._add(parts)
+        if closed:
+            self._items += self._diagnoser.flush()
+        return self._bus.expected
+
+    def taken(self, parts: list[Part]) -> list[Item]:
+        """Return all items that are certain, with those of ``parts``, which come last."""
+        self._add(parts)
+        items, self._items = self._items, []
+        return items
+
+    def _add(self, parts: list[Part]) -> None:
+        events = [part if isinstance(part, Noise) else Lines(*part) for part in parts]
+        self._items += self._diagnoser.feed(events)
+
+    def describe(self, kind: str, reason: NoiseReason, data: bytes, id: int | None) -> str:
+        """Return text and facts of noise that the native survey has found."""
+        assert self._texts is not None, "a survey without lines describes nothing"
+        return self._texts.describe(self._finding(kind, reason, data, id))
+
+    def _finding(self, kind: str, reason: NoiseReason, data: bytes, id: int | None) -> Finding:
+        spans = (Span(0, data),)
+        match kind:
+            case "damaged-frame":
+                return self._damaged_frames.damaged(spans, reason, id)
+            case "opposite-frame":
+                return self._frames.opposite(spans, reason)
+            case "unlisted-frame":
+                return self._frames.unlisted(spans, reason)
+            case "nuls":
+                return nuls.nuls(spans, reason)
+            case "cmd-len-error":
+                return CommandError(spans=spans, reason=reason)
+            case _:
+                return garbage.classify(spans, reason)
 
 
 def _native(
@@ -104,5 +151,5 @@ def _native(
     from cobotwire.codec.native import NativeCodec, NativeSurvey
 
     assert isinstance(codec, NativeCodec), "reads() tells whether a codec has a survey"
-    bus = servo_bus()
-    return NativeSurvey(codec, listening, accept_unknown, bus.table.frame, bus.lengths, texts)
+    names = None if texts is None else texts[:4]
+    return NativeSurvey(codec, listening, accept_unknown, servo_bus().vocabulary(), names)

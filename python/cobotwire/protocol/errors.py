@@ -84,12 +84,14 @@ class ProtocolError(CobotwireError):
         reason: a code for programs: a noise reason, ``bad-value``, ``trailing`` or ``bad-text``.
         offset: the index of the wrong byte in ``data``.
         data: the rejected bytes.
+        detail: what is wrong, without the place and the bytes.
     """
 
     def __init__(self, reason: str, offset: int, data: bytes, detail: str) -> None:
         self.reason = reason
         self.offset = offset
         self.data = data
+        self.detail = detail
         super().__init__(f"{detail} (at byte {offset} of {data.hex(' ').upper() or 'no bytes'})")
 
 

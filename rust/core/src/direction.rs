@@ -10,7 +10,7 @@ pub enum Direction {
 }
 
 /// The directions whose frames a framer accepts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Listening {
     /// Only one direction.
     To(Direction),

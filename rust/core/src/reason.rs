@@ -1,7 +1,7 @@
 //! Why bytes are not a frame.
 
 /// Why bytes are not a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reason {
     /// The header is missing.
     NoHeader,

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use cobotwire_core::{Kind, Packets, Reason, Sink, Survey, Texts};
+use cobotwire_core::{
+    DecodeError, Described, Direction, Expected, Instruction, Kind, Names as LineNames, Operand,
+    Reason, ServoBus, Sink, Survey, Texts,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyString};
 
@@ -20,41 +23,60 @@ pub struct NativeSurvey {
     core: Exclusive<Survey>,
 }
 
-/// The texts of lines: what starts each, the names of commands, the names of the fields of requests
-/// and of replies, and the texts of unrecognised bytes and of the firmware's error message.
-type GivenTexts = (String, Vec<String>, Fields, Fields, String, String);
+/// The texts of lines: what starts each, the names of commands, and the names of the fields of
+/// requests and of replies.
+type GivenTexts = (String, Vec<String>, Fields, Fields);
 type Fields = Vec<Vec<Vec<String>>>;
+
+/// The servo bus: the format and the legal LENs of its packets, and the words for what they say.
+#[derive(FromPyObject)]
+struct GivenBus<'py> {
+    frame: Bound<'py, PyAny>,
+    lengths: Vec<u16>,
+    every: u8,
+    errors: Vec<(String, u8)>,
+    registers: Vec<String>,
+    instructions: Vec<GivenInstruction>,
+}
+
+/// An instruction: its byte, its name, its legal LENs, its operands, and the largest id of a servo
+/// among them.
+#[derive(FromPyObject)]
+struct GivenInstruction {
+    code: u8,
+    name: String,
+    lengths: Vec<u16>,
+    operands: Vec<String>,
+    largest: u8,
+}
 
 #[pymethods]
 impl NativeSurvey {
     #[new]
-    #[pyo3(signature = (codec, listening, accept_unknown, bus, lengths, texts))]
+    #[pyo3(signature = (codec, listening, accept_unknown, bus, texts))]
     fn new(
         codec: &NativeCodec,
         listening: &Bound<'_, PyAny>,
         accept_unknown: bool,
-        bus: &Bound<'_, PyAny>,
-        lengths: Vec<u16>,
+        bus: GivenBus<'_>,
         texts: Option<GivenTexts>,
     ) -> PyResult<Self> {
         let edition = Arc::clone(&codec.edition);
         let rules = codec.rules(Some(listening), accept_unknown)?;
         let listening = listen(Some(listening))?;
-        let texts = texts.map(
-            |(first, commands, requests, replies, unrecognised, error)| Texts {
-                first,
+        let texts = texts.map(|(first, commands, requests, replies)| Texts {
+            first,
+            names: LineNames {
                 commands,
                 fields: [requests, replies],
-                unrecognised,
-                command_error: error,
             },
-        );
+        });
         let survey = Survey::new(
             Arc::clone(&edition.core),
             Arc::clone(edition.plans(listening)),
             rules,
             listening,
-            Packets::new(convert::format(bus)?, lengths),
+            Arc::new(servo_bus(bus)?),
             texts,
         );
         Ok(Self {
@@ -64,16 +86,20 @@ impl NativeSurvey {
     }
 
     /// Feed bytes; return what is not only counted, in the order of the stream.
-    fn feed<'py>(&self, data: &Bound<'py, PyBytes>) -> PyResult<Bound<'py, PyList>> {
-        let mut parts = Parts::new(data.py())?;
+    fn feed<'py>(
+        &self,
+        data: &Bound<'py, PyBytes>,
+        rest: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyList>> {
+        let mut parts = Parts::new(&self.edition, rest)?;
         self.core.get(data.py())?.feed(data.as_bytes(), &mut parts);
         parts.finish()
     }
 
     /// Report everything: no more bytes follow.
-    fn flush<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let mut parts = Parts::new(py)?;
-        self.core.get(py)?.flush(&mut parts);
+    fn flush<'py>(&self, rest: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
+        let mut parts = Parts::new(&self.edition, rest)?;
+        self.core.get(rest.py())?.flush(&mut parts);
         parts.finish()
     }
 
@@ -112,19 +138,49 @@ impl NativeSurvey {
     }
 }
 
-/// Collects the parts of a call as Python objects: a noise, lines as `(offset, size, text)`, a frame
-/// as `(offset, bytes)`, and None where noise ends.
-struct Parts<'py> {
+fn servo_bus(given: GivenBus<'_>) -> PyResult<ServoBus> {
+    Ok(ServoBus {
+        frame: convert::format(&given.frame)?,
+        lengths: given.lengths,
+        every: given.every,
+        errors: given.errors,
+        registers: given.registers,
+        instructions: given.instructions.into_iter().map(instruction).collect(),
+    })
+}
+
+fn instruction(given: GivenInstruction) -> Instruction {
+    let operand = |word: &String| match word.as_str() {
+        "register" => Operand::Register,
+        "count" => Operand::Count,
+        "servos" => Operand::Servos(given.largest),
+        _ => Operand::Data,
+    };
+    Instruction {
+        operands: given.operands.iter().map(operand).collect(),
+        code: given.code,
+        name: given.name,
+        lengths: given.lengths,
+    }
+}
+
+/// Collects the parts of a call as Python objects: noise, and lines as `(offset, size, text)`.
+struct Parts<'a, 'py> {
     names: &'static Names,
+    edition: &'a Edition,
+    /// What does the rest in Python: `cobotwire.diagnose.survey.Rest`.
+    rest: &'a Bound<'py, PyAny>,
     list: Bound<'py, PyList>,
     failed: Option<PyErr>,
 }
 
-impl<'py> Parts<'py> {
-    fn new(py: Python<'py>) -> PyResult<Self> {
+impl<'a, 'py> Parts<'a, 'py> {
+    fn new(edition: &'a Edition, rest: &'a Bound<'py, PyAny>) -> PyResult<Self> {
         Ok(Self {
-            names: Names::get(py)?,
-            list: PyList::empty(py),
+            names: Names::get(rest.py())?,
+            edition,
+            rest,
+            list: PyList::empty(rest.py()),
             failed: None,
         })
     }
@@ -133,10 +189,12 @@ impl<'py> Parts<'py> {
         self.failed.map_or(Ok(self.list), Err)
     }
 
-    fn add(&mut self, added: PyResult<()>) {
-        if let Err(error) = added {
+    /// Return what was made; if that failed, remember the first error.
+    fn made<T: Default>(&mut self, made: PyResult<T>) -> T {
+        made.unwrap_or_else(|error| {
             self.failed.get_or_insert(error);
-        }
+            T::default()
+        })
     }
 
     fn add_noise(&self, offset: u64, data: &[u8], reason: Reason) -> PyResult<()> {
@@ -149,28 +207,55 @@ impl<'py> Parts<'py> {
         let items = items.into_pyobject(py)?;
         self.list.append(self.names.make(&self.names.noise, items)?)
     }
+
+    fn diagnosed(&mut self, closed: bool, expected: &Expected) -> PyResult<Expected> {
+        let parts = std::mem::replace(&mut self.list, PyList::empty(self.rest.py()));
+        let found = self
+            .rest
+            .call_method1("diagnose", (parts, closed, expected.clone()))?;
+        found.extract()
+    }
+
+    fn described(&self, noise: &Described<'_>) -> PyResult<String> {
+        let py = self.rest.py();
+        let data = PyBytes::new(py, noise.data);
+        let reason = self.names.reason(py, noise.reason);
+        let given = (noise.kind.word(), reason, data, noise.id);
+        self.rest.call_method1("describe", given)?.extract()
+    }
+
+    fn detail_of(&self, way: Direction, error: DecodeError, data: &[u8]) -> PyResult<String> {
+        let py = self.rest.py();
+        let way = self.names.direction(py, way);
+        let error = self.edition.rejected(py, error, way, data);
+        error.value(py).getattr("detail")?.extract()
+    }
 }
 
-impl Sink for Parts<'_> {
+impl Sink for Parts<'_, '_> {
     fn lines(&mut self, offset: u64, size: u64, lines: &[u8]) {
         let text = PyString::from_bytes(self.list.py(), lines);
         let added = text.and_then(|text| self.list.append((offset, size, text)));
-        self.add(added);
-    }
-
-    fn frame(&mut self, offset: u64, data: &[u8]) {
-        let data = PyBytes::new(self.list.py(), data);
-        let added = self.list.append((offset, data));
-        self.add(added);
+        self.made(added);
     }
 
     fn noise(&mut self, offset: u64, data: &[u8], reason: Reason) {
         let added = self.add_noise(offset, data, reason);
-        self.add(added);
+        self.made(added);
     }
 
-    fn end(&mut self) {
-        let added = self.list.append(self.list.py().None());
-        self.add(added);
+    fn diagnose(&mut self, closed: bool, expected: &mut Expected) {
+        let found = self.diagnosed(closed, expected);
+        *expected = self.made(found);
+    }
+
+    fn detail(&mut self, way: Direction, error: DecodeError, data: &[u8]) -> String {
+        let detail = self.detail_of(way, error, data);
+        self.made(detail)
+    }
+
+    fn describe(&mut self, noise: &Described<'_>) -> String {
+        let described = self.described(noise);
+        self.made(described)
     }
 }

@@ -121,7 +121,6 @@ def line_texts(table: Table, file: str | None) -> LineTexts:
 
     ``file`` is the first value of each line; None: it has none.
     """
-    from cobotwire.diagnose import CommandError, Unrecognised
     from cobotwire.diagnose.survey import LineTexts
 
     requests, replies = (
@@ -136,23 +135,25 @@ def line_texts(table: Table, file: str | None) -> LineTexts:
         commands=[json.dumps(command.name) for command in table.commands],
         requests=requests,
         replies=replies,
-        unrecognised=json.dumps(Unrecognised(spans=(), reason="no-header").describe()),
-        command_error=json.dumps(CommandError(spans=(), reason="no-header").describe()),
+        describe=lambda finding: json.dumps(_description(finding))[1:-1],
     )
 
 
 def _finding_object(finding: Finding) -> dict[str, Any]:
+    return {
+        "finding": finding.kind,
+        **_description(finding),
+        "pieces": [[span.offset, len(span.data)] for span in finding.spans],
+        "continued": finding.continued,
+    }
+
+
+def _description(finding: Finding) -> dict[str, Any]:
     facts = {
         name: as_hex(fact) if isinstance(fact, bytes) else fact
         for name, fact in finding.facts.items()
     }
-    return {
-        "finding": finding.kind,
-        "text": finding.describe(),
-        "facts": facts,
-        "pieces": [[span.offset, len(span.data)] for span in finding.spans],
-        "continued": finding.continued,
-    }
+    return {"text": finding.describe(), "facts": facts}
 
 
 def _reading_object(reading: Reading) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from cobotwire.codec.reference.judge import Judge
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.frame_index import FrameIndex
 from cobotwire.protocol.loading import load_table
-from cobotwire.protocol.table import Field
+from cobotwire.protocol.table import Command, Field, FrameFormat
 
 # A polled arm repeats itself: this many different packets are remembered.
 REMEMBERED = 4096
@@ -41,6 +41,44 @@ class Instruction(NamedTuple):
     servos: tuple[int, ...] = ()
 
 
+class InstructionForm(NamedTuple):
+    """The form of an instruction's packets.
+
+    Attributes:
+        code: the byte of the instruction.
+        name: its name.
+        lengths: the legal LENs.
+        operands: the names of its parameters: ``register``, ``count``, ``data``, ``servos``.
+        largest: the largest id in ``servos``.
+    """
+
+    code: int
+    name: str
+    lengths: list[int]
+    operands: list[str]
+    largest: int
+
+
+class Vocabulary(NamedTuple):
+    """What the native survey needs to read packets.
+
+    Attributes:
+        frame: the format of packets.
+        lengths: the legal LENs.
+        every: the id that stands for all servos.
+        errors: the names and masks of the error bits of status packets.
+        registers: the name of each register; empty if it has none.
+        instructions: the instructions.
+    """
+
+    frame: FrameFormat
+    lengths: list[int]
+    every: int
+    errors: list[tuple[str, int]]
+    registers: list[str]
+    instructions: list[InstructionForm]
+
+
 class ServoBusReader:
     """Finds packets, and reads them as instructions and as status packets."""
 
@@ -61,6 +99,28 @@ class ServoBusReader:
         self._sizes: dict[bytes, int] = {}
         self.status = lru_cache(512)(self._status)
         self.instruction = lru_cache(REMEMBERED)(self._instruction)
+
+    def vocabulary(self) -> Vocabulary:
+        """Return what the native survey needs to read packets."""
+        return Vocabulary(
+            frame=self.table.frame,
+            lengths=self.lengths,
+            every=self.every,
+            errors=[(bit.name, (1 << bit.bits) - 1 << bit.shift) for bit in self._errors],
+            registers=[self.register_name(register) for register in range(256)],
+            instructions=[self._form(command) for command in self.table.commands],
+        )
+
+    def _form(self, command: Command) -> InstructionForm:
+        frame, fields = self.table.frame, command.request[0].fields
+        servos = [field.cases[0].numbers[0] for field in fields if field.name == "servos"]
+        return InstructionForm(
+            code=command.id,
+            name=self._names[command.id],
+            lengths=[frame.length(variant.size) for variant in command.request],
+            operands=[field.name for field in fields],
+            largest=max((number.maximum for number in servos), default=0),
+        )
 
     def size(self, data: bytes, at: int) -> int | None:
         """Return the size of the packet at ``at``; 0 if there is none, None for too few bytes."""

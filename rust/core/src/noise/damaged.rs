@@ -111,7 +111,7 @@ impl Diagnosis {
     fn stops(&self, cluster: &Cluster<'_>, at: usize) -> bool {
         let rest = cluster.data.get(at..).unwrap_or_default();
         let starts = rest.first().map_or(0, |byte| self.starts_with(*byte));
-        starts & PACKET != 0 && self.packets.end(cluster.data, at).is_some()
+        starts & PACKET != 0 && self.bus.end(cluster.data, at).is_some()
             || starts & TEXT != 0 && firmware::starts_message(rest)
             || starts & FRAME != 0 && self.damaged_lengths(cluster, at).is_some()
     }

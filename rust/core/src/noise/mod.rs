@@ -12,7 +12,11 @@ mod plain;
 mod servo;
 
 pub(crate) use cluster::{Cluster, reason};
-pub use servo::Packets;
+pub(crate) use plain::fitting;
+pub(crate) use servo::Packet;
+pub use servo::{Expected, Instruction, Operand, ServoBus};
+
+use std::sync::Arc;
 
 use crate::direction::{Direction, Listening};
 use crate::judge::Rules;
@@ -20,7 +24,7 @@ use crate::table::Table;
 use damaged::Lengths;
 
 /// A class of noise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Bytes in which nothing is found.
     Unrecognised,
@@ -111,7 +115,7 @@ pub(crate) struct Diagnosis {
     /// The rules that accept any id.
     any: Rules,
     lengths: Lengths,
-    packets: Packets,
+    bus: Arc<ServoBus>,
     /// What can start with each byte, but plain noise: a sum of `FRAME`, `PACKET`, `NUL`, `TEXT`.
     starts: Box<[u8; 256]>,
 }
@@ -122,7 +126,12 @@ const NUL: u8 = 4;
 const TEXT: u8 = 8;
 
 impl Diagnosis {
-    pub(crate) fn new(table: &Table, listening: Listening, rules: Rules, packets: Packets) -> Self {
+    pub(crate) fn new(
+        table: &Table,
+        listening: Listening,
+        rules: Rules,
+        bus: Arc<ServoBus>,
+    ) -> Self {
         let listed = table.rules(listening).clone();
         let other = match listening {
             Listening::To(Direction::Request) => Some(Direction::Reply),
@@ -134,7 +143,7 @@ impl Diagnosis {
         for (byte, all) in (0..=u8::MAX).zip(starts.iter_mut()) {
             let can = |is: bool, start: u8| if is { start } else { 0 };
             *all = can(byte == header, FRAME)
-                | can(byte == packets.first(), PACKET)
+                | can(byte == bus.first(), PACKET)
                 | can(byte == 0, NUL)
                 | can(firmware::readable(byte), TEXT);
         }
@@ -144,9 +153,14 @@ impl Diagnosis {
             any: listed.clone().accepting_unknown(),
             listed,
             lengths: Lengths::new(table),
-            packets,
+            bus,
             starts,
         }
+    }
+
+    /// Return the id of what starts like a frame; `None` if the bytes end before it.
+    pub(crate) fn id(&self, cluster: &Cluster<'_>, at: usize) -> Option<u16> {
+        self.heading(cluster.rest(at)).map(|(_, id)| id)
     }
 
     /// Find the classes of all bytes of a cluster. Return false if one of them is for Python.
@@ -216,7 +230,7 @@ impl Diagnosis {
     }
 
     fn packet(&self, cluster: &Cluster<'_>, at: usize) -> Verdict {
-        Some((Kind::Servo, self.packets.end(cluster.data, at)?))
+        Some((Kind::Servo, self.bus.end(cluster.data, at)?))
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn classify(cluster: &Cluster<'_>, start: usize, end: usize) -> Kind 
     }
     let (mut fitting, mut large) = (0, 0);
     for byte in data {
-        let fits = usize::from(FITS.get(usize::from(*byte)) == Some(&true));
+        let fits = usize::from(fits(*byte));
         fitting += fits;
         large += if *byte >= LARGE { fits } else { 0 };
     }
@@ -50,6 +50,15 @@ pub(super) fn classify(cluster: &Cluster<'_>, start: usize, end: usize) -> Kind 
     } else {
         Kind::Unrecognised
     }
+}
+
+/// Return how many bytes look as if they were sent at a lower rate.
+pub(crate) fn fitting(data: &[u8]) -> usize {
+    data.iter().filter(|byte| fits(**byte)).count()
+}
+
+fn fits(byte: u8) -> bool {
+    FITS.get(usize::from(byte)) == Some(&true)
 }
 
 /// Whether each byte is even, not zero, and its ones are consecutive.

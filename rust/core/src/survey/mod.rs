@@ -1,25 +1,35 @@
 //! Surveys a whole stream: counts its messages and its noise, and writes lines of JSON if wanted.
 //!
-//! Legal messages and the frequent classes of noise never reach Python. The rest is handed over:
-//! frames without a legal message, noise of other classes, and the first noise of each class.
+//! Frames and the frequent classes of noise never reach Python. The rest is handed over: noise of
+//! other classes, and the first noise of each class. Python also writes the texts of errors and of
+//! most noise, each once.
 
 mod clusters;
+mod firmware_text;
 mod lines;
+mod memo;
+mod readings;
+mod report;
 mod repr;
+mod servo_text;
+mod values;
 
 use std::sync::Arc;
 
-pub use lines::Texts;
+pub use lines::{Described, Texts};
+pub use readings::Names;
 
 use crate::bulk::{Census, Counted, Plans, Stream};
-use crate::direction::Listening;
-use crate::judge::{Rules, Verdict};
-use crate::noise::{Cluster, Diagnosis, Finding, Kind, Packets, reason};
+use crate::decode::DecodeError;
+use crate::direction::{Direction, Listening};
+use crate::judge::Rules;
+use crate::noise::{Diagnosis, Expected, ServoBus};
 use crate::reason::Reason;
 use crate::table::Table;
 use crate::tally::Tally;
 use clusters::{Clusters, Span};
-use lines::{Noise, Writer};
+use lines::Writer;
+use report::Report;
 
 /// Receives what a survey does not only count, in the order of the stream.
 pub trait Sink {
@@ -27,14 +37,18 @@ pub trait Sink {
     /// was handed over.
     fn lines(&mut self, offset: u64, size: u64, lines: &[u8]);
 
-    /// Receive a frame without a legal message.
-    fn frame(&mut self, offset: u64, data: &[u8]);
-
     /// Receive noise to diagnose.
     fn noise(&mut self, offset: u64, data: &[u8], reason: Reason);
 
-    /// No later noise belongs to the noise before.
-    fn end(&mut self);
+    /// Diagnose the noise before; `closed`: no later noise belongs to it. `expected` changes as the
+    /// packets of the servo bus in it demand.
+    fn diagnose(&mut self, closed: bool, expected: &mut Expected);
+
+    /// Return what is wrong with bytes that are not a legal message.
+    fn detail(&mut self, way: Direction, error: DecodeError, data: &[u8]) -> String;
+
+    /// Return text and facts of noise, as they are in a line of JSON.
+    fn describe(&mut self, noise: &Described<'_>) -> String;
 }
 
 /// How much noise of one class there is.
@@ -85,7 +99,7 @@ impl Survey {
         plans: Arc<Plans>,
         rules: Rules,
         listening: Listening,
-        packets: Packets,
+        bus: Arc<ServoBus>,
         texts: Option<Texts>,
     ) -> Self {
         Self {
@@ -94,18 +108,11 @@ impl Survey {
             buffer: Vec::new(),
             base: 0,
             clusters: Clusters::default(),
-            report: Report {
-                diagnosis: Diagnosis::new(&table, listening, rules.clone(), packets),
-                writer: texts.map(|texts| Writer::new(texts, listening)),
-                table,
+            report: Report::new(
+                Diagnosis::new(&table, listening, rules.clone(), Arc::clone(&bus)),
+                texts.map(|texts| Writer::new(texts, table, listening, bus)),
                 rules,
-                frames: Vec::new(),
-                lines: Vec::new(),
-                lines_from: 0,
-                extents: Default::default(),
-                known: Default::default(),
-                scratch: Scratch::default(),
-            },
+            ),
         }
     }
 
@@ -124,7 +131,7 @@ impl Survey {
     /// Return how much noise was not handed over, by class, in the order of [`Kind::ALL`].
     #[must_use]
     pub fn extents(&self) -> &[Extent] {
-        &self.report.extents
+        self.report.extents()
     }
 
     /// Feed bytes.
@@ -147,9 +154,7 @@ impl Survey {
             base: self.base,
         };
         let (clusters, report) = (&mut self.clusters, &mut self.report);
-        report
-            .frames
-            .append(self.census.frames.as_mut().unwrap_or(&mut Vec::new()));
+        report.add_frames(self.census.frames.as_mut());
         let noise = self.stream.take_noise();
         for (from, size) in noise.offsets.into_iter().zip(noise.sizes) {
             if clusters.is_apart(from) {
@@ -164,207 +169,12 @@ impl Survey {
             report.close(clusters, bytes, sink);
         }
         if let Some(spans) = clusters.spill(open) {
-            report.hand_over(&spans, bytes, sink);
+            report.hand_over(&spans, false, bytes, sink);
         }
         let until = clusters.start().unwrap_or(next);
         report.write_frames(until, bytes, sink);
         report.end_lines(until, sink);
         self.buffer.drain(..(until - self.base) as usize);
         self.base = until;
-    }
-}
-
-/// Counts and writes what is certain.
-struct Report {
-    table: Arc<Table>,
-    rules: Rules,
-    diagnosis: Diagnosis,
-    writer: Option<Writer>,
-    /// The positions of the frames that are not written yet.
-    frames: Vec<u64>,
-    /// Lines for the sink, and the position in the stream at which they start.
-    lines: Vec<u8>,
-    lines_from: u64,
-    extents: [Extent; Kind::ALL.len()],
-    /// The classes of which Python has seen the first finding.
-    known: [bool; Kind::ALL.len()],
-    scratch: Scratch,
-}
-
-/// Memory that is used again.
-#[derive(Default)]
-struct Scratch {
-    findings: Vec<Finding>,
-    data: Vec<u8>,
-    marks: Vec<usize>,
-}
-
-impl Report {
-    /// Report the noise that waits, with the frames up to its end.
-    fn close(&mut self, clusters: &mut Clusters, bytes: Bytes<'_>, sink: &mut impl Sink) {
-        let Some((spans, spilled)) = clusters.take() else {
-            return;
-        };
-        if spilled || !self.diagnose(&spans, bytes, sink) {
-            self.hand_over(&spans, bytes, sink);
-            sink.end();
-        }
-        clusters.reuse(spans);
-    }
-
-    /// Count and write noise; return false if it is for Python.
-    fn diagnose(&mut self, spans: &[Span], bytes: Bytes<'_>, sink: &mut impl Sink) -> bool {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        scratch.marks.clear();
-        scratch.data.clear();
-        let mut size = 0;
-        for span in spans {
-            size += (span.1 - span.0) as usize;
-            scratch.marks.push(size);
-            if spans.len() > 1 {
-                scratch.data.extend_from_slice(bytes.span(*span));
-            }
-        }
-        let cluster = Cluster {
-            data: match spans {
-                [span] => bytes.span(*span),
-                _ => &scratch.data,
-            },
-            marks: &scratch.marks,
-            spans,
-            stream: bytes.bytes,
-            base: bytes.base,
-        };
-        let findings = &mut scratch.findings;
-        let known = self.diagnosis.run(&cluster, findings) && self.are_known(&cluster, findings);
-        if known {
-            self.count(findings);
-            self.write_noise(&cluster, findings, bytes, sink);
-        }
-        self.scratch = scratch;
-        known
-    }
-
-    /// Return whether Python need not see any of the findings. If not, it will see all of them.
-    fn are_known(&mut self, cluster: &Cluster<'_>, findings: &[Finding]) -> bool {
-        let is_known = |finding: &Finding| {
-            self.known.get(finding.kind as usize) == Some(&true)
-                && (self.writer.is_none() || self.has_fixed_text(cluster, finding))
-        };
-        let all = findings.iter().all(is_known);
-        if !all {
-            for finding in findings {
-                if let Some(known) = self.known.get_mut(finding.kind as usize) {
-                    *known = true;
-                }
-            }
-        }
-        all
-    }
-
-    /// Return whether the line of a finding needs nothing that Python finds out.
-    fn has_fixed_text(&self, cluster: &Cluster<'_>, finding: &Finding) -> bool {
-        let data = cluster.data.get(finding.start..).unwrap_or_default();
-        matches!(finding.kind, Kind::Unrecognised | Kind::CommandError)
-            && !data.starts_with(&self.rules.frame().header)
-    }
-
-    fn count(&mut self, findings: &[Finding]) {
-        for finding in findings {
-            if let Some(extent) = self.extents.get_mut(finding.kind as usize) {
-                extent.count += u64::from(!finding.continued);
-                extent.bytes += (finding.end - finding.start) as u64;
-            }
-        }
-    }
-
-    /// Write the lines of findings, and of the frames before them.
-    fn write_noise(
-        &mut self,
-        cluster: &Cluster<'_>,
-        findings: &[Finding],
-        bytes: Bytes<'_>,
-        sink: &mut impl Sink,
-    ) {
-        if self.writer.is_none() {
-            return;
-        }
-        for finding in findings {
-            let spans = cluster.spans_of(finding.start, finding.end);
-            let from = spans.first().map_or(0, |(from, _)| *from);
-            self.write_frames(from, bytes, sink);
-            let noise = Noise {
-                kind: finding.kind,
-                data: cluster
-                    .data
-                    .get(finding.start..finding.end)
-                    .unwrap_or_default(),
-                reason: reason(&self.rules, bytes.from(from)),
-                spans: &spans,
-                continued: finding.continued,
-            };
-            if let Some(writer) = &self.writer {
-                writer.noise(&mut self.lines, &noise);
-            }
-        }
-    }
-
-    /// Hand over noise, with the frames before and in between.
-    fn hand_over(&mut self, spans: &[Span], bytes: Bytes<'_>, sink: &mut impl Sink) {
-        for (from, to) in spans {
-            self.write_frames(*from, bytes, sink);
-            self.pass_lines(*from, sink);
-            let mut at = *from;
-            while at < *to {
-                let why = reason(&self.rules, bytes.from(at));
-                let alike = |place: &u64| reason(&self.rules, bytes.from(*place)) == why;
-                let end = (at + 1..*to).find(|place| !alike(place)).unwrap_or(*to);
-                sink.noise(at, bytes.span((at, end)), why);
-                at = end;
-            }
-            self.lines_from = *to;
-        }
-    }
-
-    /// Write the lines of the frames before `until`, and hand over those without a legal message.
-    fn write_frames(&mut self, until: u64, bytes: Bytes<'_>, sink: &mut impl Sink) {
-        let Some(writer) = &self.writer else {
-            return;
-        };
-        let count = self.frames.iter().take_while(|at| **at < until).count();
-        let mut rejected = Vec::new();
-        for at in self.frames.iter().take(count) {
-            let Verdict::Frame(frame) = self.rules.judge(bytes.from(*at)) else {
-                continue;
-            };
-            if !writer.frame(&mut self.lines, &self.table, *at, frame) {
-                rejected.push((*at, self.lines.len(), frame.bytes()));
-            }
-        }
-        self.frames.drain(..count);
-        let mut start = 0;
-        for (at, end, data) in rejected {
-            let lines = self.lines.get(start..end).unwrap_or_default();
-            sink.lines(self.lines_from, at - self.lines_from, lines);
-            sink.frame(at, data);
-            self.lines_from = at + data.len() as u64;
-            start = end;
-        }
-        self.lines.drain(..start);
-    }
-
-    /// Pass on all lines; those of the stream before `until` are complete.
-    fn pass_lines(&mut self, until: u64, sink: &mut impl Sink) {
-        sink.lines(self.lines_from, until - self.lines_from, &self.lines);
-        self.lines.clear();
-        self.lines_from = until;
-    }
-
-    fn end_lines(&mut self, until: u64, sink: &mut impl Sink) {
-        if self.lines.is_empty() {
-            self.lines_from = until;
-        } else {
-            self.pass_lines(until, sink);
-        }
     }
 }

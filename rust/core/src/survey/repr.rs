@@ -92,6 +92,12 @@ fn general(out: &mut Vec<u8>, real: f64) {
 /// Append a text in quotes, in ASCII.
 pub(super) fn text(out: &mut Vec<u8>, text: impl Iterator<Item = char>) {
     out.push(b'"');
+    characters(out, text);
+    out.push(b'"');
+}
+
+/// Append what is between the quotes of a text.
+pub(super) fn characters(out: &mut Vec<u8>, text: impl Iterator<Item = char>) {
     for char in text {
         match char {
             '"' => out.extend_from_slice(b"\\\""),
@@ -109,7 +115,30 @@ pub(super) fn text(out: &mut Vec<u8>, text: impl Iterator<Item = char>) {
             }
         }
     }
-    out.push(b'"');
+}
+
+/// Append a list.
+pub(super) fn list<T>(
+    out: &mut Vec<u8>,
+    elements: impl Iterator<Item = T>,
+    write: impl Fn(&mut Vec<u8>, T),
+) {
+    out.push(b'[');
+    for (index, element) in elements.enumerate() {
+        if index > 0 {
+            out.extend_from_slice(b", ");
+        }
+        write(out, element);
+    }
+    out.push(b']');
+}
+
+/// Append a value, or `null`.
+pub(super) fn optional<T>(out: &mut Vec<u8>, value: Option<T>, write: impl Fn(&mut Vec<u8>, T)) {
+    match value {
+        Some(value) => write(out, value),
+        None => out.extend_from_slice(b"null"),
+    }
 }
 
 /// Append bytes as pairs of hex digits, with spaces.
