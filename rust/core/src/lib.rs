@@ -2,7 +2,7 @@
 //!
 //! A [`Table`] defines the messages; [`encode`] and [`decode`] turn values into bytes and back, and
 //! a [`Framer`] cuts frames out of a stream. This crate knows no command by name, does no I/O,
-//! reads no clock and writes no text: an error is a kind and a place. The Python reference in
+//! reads no clock and writes no error texts: an error is a kind and a place. The Python reference in
 //! `python/cobotwire/codec/reference` is the specification; this crate returns the same results.
 
 mod bulk;

@@ -89,9 +89,6 @@ impl Readings {
             fitting.into_iter().map(read).collect()
         };
         let any_message = found.iter().any(|(_, reading)| reading.is_ok());
-        // A bad value in one direction says more than a LEN that does not fit the other.
-        let is_value = |reading: &_| matches!(reading, Err(DecodeError::Raw(_)));
-        let any_value = found.iter().any(|(_, reading)| is_value(reading));
         let start = out.len();
         for (way, reading) in found {
             match reading {
@@ -99,7 +96,7 @@ impl Readings {
                     separate(out, start);
                     self.message(out, &message);
                 }
-                Err(error) if !any_message && (!any_value || is_value(&reading)) => {
+                Err(error) if !any_message => {
                     separate(out, start);
                     self.error(out, way, error, data, sink);
                 }
