@@ -47,8 +47,8 @@ port.serve()
 TURNS, CALLS, WARM_UP = 20, 50, 5
 SETTERS = 1000
 FASTEST_BAUD = 1_000_000
-LIMITS = {"blocking": 2.0, "asyncio": 3.0, "simulated arm": 3.0}
-TIMES_FASTER = 8.0
+LIMITS = {"blocking": 1.35, "asyncio": 3.0, "simulated arm": 3.0}
+TIMES_FASTER = 5.0
 # The layer with the maker's names against the client that it calls.
 LAYER_LIMIT = 1.3
 
@@ -91,7 +91,7 @@ def _round_trips(url: str, simulated: str) -> None:
     for name, seconds in best.items():
         ratio = seconds / best["floor"]
         limit = LIMITS.get(name)
-        verdict = "" if limit is None else f"   {within(ratio <= limit)} {limit:.0f} x"
+        verdict = "" if limit is None else f"   {within(ratio <= limit)} {limit:g} x"
         print(f"get_angles, {name:22} {seconds * 1e6:6.0f} us   {ratio:5.1f} x floor{verdict}")
     faster = best["pymycobot"] / best["blocking"]
     verdict = within(faster >= TIMES_FASTER)

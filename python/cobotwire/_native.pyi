@@ -4,13 +4,22 @@ It reads a table's objects once, when a codec is made. ``rust/core`` decides wha
 ``cobotwire.protocol.rejection`` makes the sentences of the errors.
 """
 
+import threading
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, final
 
 from typing_extensions import Buffer
 
 from cobotwire.codec.columns import Columns, Scan
-from cobotwire.codec.interface import Counters, Data, DecodedMessage, Event, Listening, Noise
+from cobotwire.codec.interface import (
+    Counters,
+    Data,
+    DecodedMessage,
+    Event,
+    Frame,
+    Listening,
+    Noise,
+)
 from cobotwire.diagnose.servo_bus import Vocabulary
 from cobotwire.diagnose.survey import Rest
 from cobotwire.protocol.table import Command, Direction, Table
@@ -23,6 +32,8 @@ __all__ = [
     "NativeFrame",
     "NativeFramer",
     "NativeSurvey",
+    "read_within",
+    "write_now",
 ]
 
 @final
@@ -131,6 +142,36 @@ class NativeFramer:
 
     def flush(self) -> list[Event]:
         """Refute what still waits, because the line is idle; return it and what follows it."""
+
+    def swap(
+        self,
+        descriptor: int,
+        alarm: int,
+        timeout: float,
+        request: bytes,
+        of: str,
+        writing: threading.Lock,
+        finish: Callable[[bytes, int], object],
+        /,
+    ) -> tuple[Frame, dict[str, Any]] | list[Event] | None:
+        """Send a request, and feed what comes first: the exchange of a request that is alone.
+
+        Args:
+            descriptor: the line, which never blocks.
+            alarm: becomes readable to end the wait.
+            timeout: seconds to wait for the first bytes.
+            request: the frame to send.
+            of: the name of its command.
+            writing: the lock that is held while a thread writes to the line.
+            finish: called with the request and the number of bytes that were taken, if these are
+                not all; the lock is held meanwhile.
+
+        Returns:
+            The reply and its fields by name, if all that came is one frame that the command allows
+            as its reply, and no copy of the request. Otherwise the events, perhaps none. None if
+            nothing was sent, because the line is not free: bytes have come, a thread writes, or the
+            system takes no bytes.
+        """
 
     @property
     def pending(self) -> int:
@@ -302,3 +343,21 @@ class NativeSurvey:
 @final
 class Memory(Buffer):
     """Numbers in memory, for memoryviews, NumPy and Arrow; read-only."""
+
+def read_within(descriptor: int, timeout: float, alarm: int, /) -> bytes | None:
+    """Read what has come on a descriptor that never blocks, as soon as there is something.
+
+    Returns:
+        The bytes, empty at the end of the data; None if nothing came within ``timeout`` seconds, or
+        before ``alarm`` became readable. A timeout of 0 or less does not wait, and needs no alarm.
+
+    Raises:
+        OSError: the system cannot read it.
+    """
+
+def write_now(descriptor: int, data: bytes, /) -> int:
+    """Write to a descriptor that never blocks; return how many bytes were taken at once.
+
+    Raises:
+        OSError: the system cannot write it.
+    """

@@ -16,9 +16,9 @@ from serial.tools import list_ports
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import open_transport
-from cobotwire.transport.descriptor import SELECTABLE, Waiter
 from cobotwire.transport.serial.opening import request_low_latency
 from cobotwire.transport.serial.port import keep_others_out
+from cobotwire.transport.waiting import SELECTABLE, Waiter
 from transport.ends import FAST, Line, PtyEnd
 
 OPEN = """

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from cobotwire.transport import descriptor as waiters
-from cobotwire.transport.descriptor import Waiter
+from cobotwire.transport import waiting as waiters
+from cobotwire.transport.waiting import Waiter
 
 PLATFORMS = ["linux", "macos"]
 

@@ -283,8 +283,7 @@ class Client:
         _, wait, retry = self._settings
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
-        done = self._connection.request(encoded, retry, wait)
-        return result_of(request, done.result())
+        return result_of(request, self._connection.call(encoded, retry, wait))
 
     def _send(self, request: Request[None], ack_within: float | None = None) -> None:
         """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says."""

@@ -16,15 +16,18 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
+from cobotwire.codec.interface import Event, Frame
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
-from cobotwire.session.exchange import DRAIN_SECONDS
+from cobotwire.session.exchange import DRAIN_SECONDS, Alone
 from cobotwire.transport import forks
-from cobotwire.transport.interface import PollableTransport
+from cobotwire.transport.interface import LendingTransport, PollableTransport, Transport
 from cobotwire.transport.timing import times_of
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
@@ -35,6 +38,13 @@ TURN_SECONDS = 0.0005
 SLOW_WRITE_SECONDS = 0.005
 # The longest that the others wait before they check whether a thread reads.
 CHECK_SECONDS = 0.05
+
+
+# Sends a request that is alone: its arguments are those of ``NativeFramer.swap`` after the alarm.
+Swap = Callable[
+    [float, bytes, str, threading.Lock, Callable[[bytes, int], object]],
+    tuple[Frame, dict[str, Any]] | list[Event] | None,
+]
 
 
 class Connection:
@@ -70,6 +80,7 @@ class Connection:
         # How often leaders have read; a leader that does not count on is gone.
         self._turns = 0
         self._followers: list[threading.Lock] = []
+        self._swap = _swap_of(self._transport, exchange)
         self._memory = PortMemory(self._transport)
         exchange.take_over(self._memory.recall())
         forks.watch(self)
@@ -83,7 +94,7 @@ class Connection:
             align = self._write(data)
         self.listeners.sent(align, data)
         if pending is not None:
-            self._await(pending, SLICE_SECONDS)
+            self._await(pending)
             pending.result()
             return
         try:
@@ -91,6 +102,89 @@ class Connection:
                 self._drain(now + DRAIN_SECONDS)
         finally:
             self._resign()
+
+    def call(
+        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
+    ) -> dict[str, Any]:
+        """Send a request, and return the fields of its reply.
+
+        Raises:
+            CobotwireError: the reason why there is no reply.
+        """
+        swap = self._swap
+        if swap is not None and request.plain and self.listeners.silent:
+            fields = self._call_alone(swap, request, policy, wait)
+            if fields is not None:
+                return fields
+        return self.request(request, policy, wait).result()
+
+    def _call_alone(
+        self, swap: Swap, request: EncodedRequest, policy: RetryPolicy, wait: float | None
+    ) -> dict[str, Any] | None:
+        """Do what :meth:`call` does, with one native call that writes, waits, reads and decodes.
+
+        If anything but the reply comes, the request goes on as any other does.
+
+        Returns:
+            None if the request was not sent, because it is not alone on the line.
+        """
+        exchange = self._exchange
+        alone: Alone | None = None
+        pending: PendingRequest | None = None
+        seconds = request.command.deadline_ms / 1000 if wait is None else wait
+        # The first attempt takes at least the share of all of them.
+        attempt = seconds / policy.attempts
+        try:
+            with self._state:
+                if self._leader is None:
+                    alone = exchange.begin_alone(request, self.now(), policy.grace)
+                if alone is None:
+                    return None
+                self._leader = threading.get_ident()
+            with self._reading:
+                self._turns += 1
+                found = swap(
+                    attempt if attempt < SLICE_SECONDS else SLICE_SECONDS,
+                    request.frame,
+                    request.command.name,
+                    self._writing,
+                    self._finish_write,
+                )
+                if found is None:
+                    exchange.end_unsent()
+                    return None
+                if isinstance(found, tuple):
+                    frame, fields = found
+                    if exchange.end_alone(frame):
+                        return fields
+                    found = [frame]
+                with self._state:
+                    now = self.now()
+                    pending = PendingRequest(request, wait, policy, alone[1])
+                    events = exchange.resume(alone, pending, found, now)
+                self.listeners.received(events, now)
+            self._wait(pending)
+            return pending.result()
+        finally:
+            if pending is not None:
+                self._leave(pending)
+            elif alone is not None:
+                if exchange.is_alone:
+                    with self._state:
+                        exchange.settle(alone)
+                self._resign()
+
+    def _finish_write(self, request: bytes, written: int) -> None:
+        """Write the rest of a request of which so many bytes were taken; the lock is held."""
+        assert isinstance(self._transport, LendingTransport), "it has lent its descriptor"
+        try:
+            self._transport.finish_write(request, written)
+        except LinkError as error:
+            error.written = self._alignment.cut(b"", request, error.written)
+            raise
+        except BaseException:
+            self._alignment.cut(b"", request, None)
+            raise
 
     def request(
         self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
@@ -101,8 +195,11 @@ class Connection:
             LinkError: the transport is gone.
         """
         pending = PendingRequest(request, wait, policy, self.now())
-        # What has come already is read first, without waiting.
-        self._await(pending, 0.0, queued=False)
+        try:
+            self._start(pending)
+            self._wait(pending)
+        finally:
+            self._leave(pending)
         return pending
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
@@ -144,24 +241,51 @@ class Connection:
         self._leader, self._followers = None, []
         self._memory.leave_to_parent()
 
-    def _await(self, pending: Pending, longest: float, queued: bool = True) -> None:
+    def _await(self, pending: Pending) -> None:
         try:
-            if not queued:
-                assert isinstance(pending, PendingRequest)
-                with self._state:
-                    self._exchange.enqueue(pending)
-            while not pending.done:
-                if self._leads():
-                    self._turn(longest)
-                    longest = SLICE_SECONDS
-                else:
-                    self._follow(pending)
+            self._wait(pending)
         finally:
-            # Ctrl-C and a vanished transport leave everything ready for the next call.
-            if not pending.done:
+            self._leave(pending)
+
+    def _wait(self, pending: Pending) -> None:
+        while not pending.done:
+            if self._leads():
+                self._turn(SLICE_SECONDS)
+            else:
+                self._follow(pending)
+
+    def _leave(self, pending: Pending) -> None:
+        """Have Ctrl-C and a vanished transport leave everything ready for the next call."""
+        if not pending.done:
+            with self._state:
+                self._exchange.give_up(pending)
+        self._resign()
+
+    def _start(self, pending: PendingRequest) -> None:
+        """Send a request at once if nothing else is under way; otherwise queue it.
+
+        What has come already is read first, without waiting.
+        """
+        exchange = self._exchange
+        if not self._leads():
+            with self._state:
+                exchange.enqueue(pending)
+            return
+        with self._reading:
+            self._turns += 1
+            data = self._read(0.0)
+            if data or self._writing.locked():
                 with self._state:
-                    self._exchange.give_up(pending)
-            self._resign()
+                    exchange.enqueue(pending)
+                self._advance(data)
+                return
+            with self._writing:
+                with self._state:
+                    now = self.now()
+                    frame = exchange.begin(pending, now)
+                align = self._write_request(pending, frame, now) if frame else None
+            if align is not None:
+                self.listeners.sent(align, frame)
 
     def _leads(self) -> bool:
         """Return whether this thread leads; it does from now on if no other one does."""
@@ -179,34 +303,33 @@ class Connection:
 
     def _turn(self, longest: float) -> None:
         """Read once, let time pass, and send the request that is next."""
-        exchange = self._exchange
         with self._reading:
             self._turns += 1
-            if longest:
-                with self._state:
-                    idle = exchange.idle_seconds(self.now())
-                if idle is not None and idle < longest:
-                    longest = idle
-            try:
-                data = self._transport.read(longest)
-            except LinkError as error:
-                self._lose(error)
-                raise
-            now = self.now()
             with self._state:
-                # What has come is received before time passes, or it would count as late.
-                events = exchange.receive(data, now) if data else []
-                events += exchange.wake(now)
-                outgoing = exchange.has_outgoing(now)
-            if outgoing:
-                if self._writing.locked():
-                    # Another thread writes, perhaps to a full line. Deadlines go on meanwhile.
-                    time.sleep(TURN_SECONDS)
-                else:
-                    self._send_request(drained=not data)
-            if events:
-                self._wake_followers()
-                self.listeners.received(events, now)
+                idle = self._exchange.idle_seconds(self.now())
+            self._advance(self._read(longest if idle is None else min(idle, longest)))
+
+    def _read(self, longest: float) -> bytes:
+        try:
+            return self._transport.read(longest)
+        except LinkError as error:
+            self._lose(error)
+            raise
+
+    def _advance(self, data: bytes) -> None:
+        """Take what was read, let time pass, and send the request that is next."""
+        exchange, now = self._exchange, self.now()
+        with self._state:
+            events, outgoing = exchange.advance(data, now)
+        if outgoing:
+            if self._writing.locked():
+                # Another thread writes, perhaps to a full line. Deadlines go on meanwhile.
+                time.sleep(TURN_SECONDS)
+            else:
+                self._send_request(drained=not data)
+        if events:
+            self._wake_followers()
+            self.listeners.received(events, now)
 
     def _send_request(self, drained: bool) -> None:
         with self._writing:
@@ -216,18 +339,26 @@ class Connection:
                 pending = self._exchange.sent_last
             if not data or pending is None:
                 return
-            try:
-                align = self._write_if_free(data) if pending.repeated else self._write(data)
-            except LinkError as error:
-                with self._state:
-                    self._exchange.fail_waiting(error)
-                return
-            finally:
-                if self.now() - now > SLOW_WRITE_SECONDS:
-                    with self._state:
-                        self._exchange.written(pending, self.now())
+            align = self._write_request(pending, data, now)
         if align is not None:
             self.listeners.sent(align, data)
+
+    def _write_request(self, pending: PendingRequest, data: bytes, now: float) -> bytes | None:
+        """Write a request that the exchange gave at ``now``; the caller holds the lock.
+
+        Returns:
+            As :meth:`_write`; None if the request was not written.
+        """
+        try:
+            return self._write_if_free(data) if pending.repeated else self._write(data)
+        except LinkError as error:
+            with self._state:
+                self._exchange.fail_waiting(error)
+            return None
+        finally:
+            if self.now() - now > SLOW_WRITE_SECONDS:
+                with self._state:
+                    self._exchange.written(pending, self.now())
 
     def _write(self, request: bytes) -> bytes:
         """Write a request; the caller holds the lock.
@@ -311,3 +442,11 @@ class Connection:
             batons, self._followers = self._followers, []
         for baton in batons:
             baton.release()
+
+
+def _swap_of(transport: Transport, exchange: Exchange) -> Swap | None:
+    """Return the native function that sends a request and takes its reply; None: there is none."""
+    native: Any = getattr(exchange.framer, "swap", None)
+    if native is None or not isinstance(transport, LendingTransport) or not transport.lends:
+        return None
+    return partial(transport.lend, native)

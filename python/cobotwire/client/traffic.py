@@ -56,6 +56,11 @@ class TrafficListeners:
         self._url = url
         self._now = now
 
+    @property
+    def silent(self) -> bool:
+        """Whether frames are reported to nobody: there is no listener, and no log of frames."""
+        return not self._listeners and not self._logger.isEnabledFor(self._debug)
+
     def add(self, listener: TrafficListener) -> Callable[[], None]:
         """Call this listener too, until the function that is returned is called."""
         self._listeners = (*self._listeners, listener)

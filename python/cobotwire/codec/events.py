@@ -26,7 +26,7 @@ class DecodedMessage(NamedTuple):
     @property
     def fields(self) -> dict[str, Any]:
         """The values by field name, without fields that this variant of the message leaves out."""
-        return {field.name: value for field, value in zip(self.variant.fields, self.values)}
+        return dict(zip(self.variant.names, self.values))
 
     @property
     def typed(self) -> Request[Any] | Reply[Any]:

@@ -176,11 +176,23 @@ class Field:
         return lowest <= min(number.maximum, other_number.maximum)
 
 
+class _Named:
+    """Has a place for the names of a variant's fields, which are no part of the record."""
+
+    __slots__ = ("names",)
+
+    names: tuple[str, ...]
+
+
 @dataclass(frozen=True, slots=True)
-class Variant:
-    """The data bytes of one variant of a message."""
+class Variant(_Named):
+    """The data bytes of one variant of a message; ``names`` are those of its fields."""
 
     fields: tuple[Field, ...]
+
+    def __post_init__(self) -> None:
+        # Every decoded message needs them.
+        object.__setattr__(self, "names", tuple([field.name for field in self.fields]))
 
     @property
     def size(self) -> int:

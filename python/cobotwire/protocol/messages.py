@@ -18,6 +18,7 @@ this reason neither ``dataclasses`` nor the run-time part of ``typing.Generic`` 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -95,6 +96,8 @@ class Message:
 
         def __init__(self, *arguments: Any, **named: Any) -> None:
             names = self._names
+            if not names and not arguments and not named:
+                return
             if named or len(arguments) != len(names):
                 arguments = _arranged(type(self), arguments, named)
             fields = self.__dict__
@@ -128,9 +131,7 @@ class Message:
         Numbers become enum members, rows become named tuples, and degrees become radians, as the
         class declares. Names that the class does not have are ignored.
         """
-        converters = cls._converters
-        if converters is None:
-            cls._converters = converters = _converters_of(cls)
+        converters = cls._converters or cls._make_converters()
         message = cls.__new__(cls)
         own = message.__dict__
         for name in cls._names:
@@ -139,6 +140,13 @@ class Message:
                 value = converters[name](value)
             own[name] = value
         return message
+
+    @classmethod
+    def _make_converters(cls) -> Mapping[str, Callable[[Any], Any]]:
+        """Return the functions that convert decoded values, by field; they are made once."""
+        if cls._converters is None:
+            cls._converters = _converters_of(cls)
+        return cls._converters
 
     @property
     def fields(self) -> dict[str, Any]:
@@ -276,6 +284,19 @@ class Reply(Message, Generic[Result]):
             found = own[names[0]]
         return found  # type: ignore[no-any-return]  # Result is the annotation of these fields
 
+    @classmethod
+    def result_from(cls, fields: Mapping[str, Any]) -> Any:
+        """Return the ``result`` of the reply with these fields, which the codec has decoded.
+
+        Most replies have one result, and no client needs the reply itself.
+        """
+        if cls._result_type is not None or not cls._results:
+            return cls.from_fields(fields).result
+        name = cls._results[0]
+        value = fields.get(name)
+        convert = (cls._converters or cls._make_converters()).get(name)
+        return value if value is None or convert is None else convert(value)
+
     @property
     def values(self) -> tuple[Any, ...]:
         """The values of the frame in the order of the wire, without fields that are None."""
@@ -353,7 +374,8 @@ def _converter(hint: Any) -> Callable[[Any], Any] | None:
         inner = [_converter(each) for each in get_type_hints(hint).values()]
         if any(inner):
             return lambda row: hint(*[f(v) if f else v for f, v in zip(inner, row)])
-        return hint._make  # type: ignore[no-any-return]
+        # As ``_make`` does, without counting the values: the codec has decoded them.
+        return partial(tuple.__new__, hint)
     if hint is bool:
         return bool
     members = getattr(hint, "_value2member_map_", None)

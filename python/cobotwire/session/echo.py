@@ -40,8 +40,13 @@ class EchoDetector:
 
     def sent(self, request: EncodedRequest, offset: int) -> None:
         """Note a request that goes out; its copy can begin at ``offset`` of the stream."""
-        self._request = _Sent(request.frame, offset)
-        self._restart()
+        sent = self._request
+        if sent is not None and sent.frame is request.frame:
+            sent.offset, sent.copies = offset, 1
+        else:
+            self._request = _Sent(request.frame, offset)
+        if not self.proven:
+            self._noise = b""
 
     def sent_one_way(self, request: EncodedRequest, offset: int) -> None:
         """Note a one-way request that goes out, likewise."""
@@ -76,16 +81,22 @@ class EchoDetector:
         Each sending has one copy; one that comes beyond that is the arm's own frame.
         """
         self._noise = b""
+        data = frame.data
         for sent in (self._request, self._one_way):
             if (
                 sent is not None
+                and data == sent.frame
                 and sent.copies
                 and frame.offset >= sent.offset
-                and frame.data == sent.frame
             ):
                 sent.copies -= 1
                 return True
         return False
+
+    def sent_no_other(self, frame: Frame) -> bool:
+        """Return whether a frame, which is no copy of the last request, is no other copy either."""
+        self._noise = b""
+        return self._one_way is None or frame.data != self._one_way.frame
 
     def _restart(self) -> None:
         if not self.proven:

@@ -43,7 +43,7 @@ from cobotwire.session.events import (
 from cobotwire.session.leftover import LateFrame, Leftover
 from cobotwire.session.matching import can_come_from, repeats_arguments, replies_elsewhere
 from cobotwire.session.other_frames import OtherFrames
-from cobotwire.session.outstanding import OutstandingReplies, late_replies
+from cobotwire.session.outstanding import OutstandingReplies, OutstandingReply, late_replies
 from cobotwire.session.pending import Pending, PendingRequest
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.request import EncodedRequest, as_call, request_of
@@ -52,13 +52,17 @@ from cobotwire.session.request import EncodedRequest, as_call, request_of
 DRAIN_SECONDS = 0.05
 NOT_SENT = "more than can be read; a late reply may be among it"
 
+# A request that is alone on its line: when it began, how many bytes had been fed by then, and for
+# how many seconds after that its late reply is expected.
+Alone = tuple[EncodedRequest, float, int, float]
+
 
 class Exchange:
     """Requests that take turns, one-way requests, and the frames that come back."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
-        self._framer = codec.framer("reply")
+        self.framer = codec.framer("reply")
         self._format = codec.table.frame
         self._replying_ids = {c.id for c in codec.table.commands if c.requires_reply}
         self.alignment = Alignment(codec)
@@ -68,6 +72,7 @@ class Exchange:
         self._queue: list[PendingRequest] = []
         # The request that was sent last; it waits for its reply unless it is done.
         self._last: PendingRequest | None = None
+        self._alone: Alone | None = None
         self._outstanding = OutstandingReplies()
         self._acks = Acks(codec)
         self._echo = EchoDetector()
@@ -95,11 +100,11 @@ class Exchange:
         The second is there if ``ack_within`` says how many seconds its acknowledgement is waited
         for, and the edition has one.
         """
-        self._echo.sent_one_way(request, self._framer.fed)
+        self._echo.sent_one_way(request, self.framer.fed)
         self._sent_last = request.frame
         if not request.command.ack or request.replier == NOBODY:
             return request.frame + request.text, None
-        ack, pending = self._acks.expect(request, now, self._framer.fed, ack_within)
+        ack, pending = self._acks.expect(request, now, self.framer.fed, ack_within)
         if request.command.id in self._replying_ids:
             self._outstanding.expect(request, ack.until)
         return request.frame + request.text, pending
@@ -120,7 +125,7 @@ class Exchange:
             What the bytes are that still waited: what comes after the transport is open again does
             not complete them.
         """
-        events = self._sort(self._framer.flush(), now)
+        events = self._sort(self.framer.flush(), now)
         if self._sent_last:
             self.alignment.lose(self._sent_last)
             self._sent_last = b""
@@ -147,6 +152,9 @@ class Exchange:
         replies = [reply for reply in self._outstanding.replies if reply.until > now]
         if waiting is not None:
             replies += late_replies(waiting, 0)
+        if self._alone is not None:
+            request, sent_at, _, grace = self._alone
+            replies.append(OutstandingReply(request, sent_at + grace))
         late = (LateFrame(reply.request.frame, reply.until) for reply in replies)
         return Leftover(tuple(late), self.alignment.held)
 
@@ -161,10 +169,29 @@ class Exchange:
 
     # What the client's loop does.
 
+    def advance(self, data: bytes, now: float) -> tuple[list[SessionEvent], bool]:
+        """Take received bytes, then let time pass: :meth:`receive` and :meth:`wake`.
+
+        What has come is received before time passes, or it would count as late.
+
+        Returns:
+            What happened, and what :meth:`has_outgoing` returns now.
+        """
+        events = self.receive(data, now) if data else []
+        last = self._last
+        if last is None or last.done:
+            # So it is after each reply.
+            if self._acks.waiting:
+                self._acks.wake(now, self._echo.proven)
+            return events, bool(self._queue)
+        events += self.wake(now)
+        return events, self.has_outgoing(now)
+
     def receive(self, data: bytes, now: float) -> list[SessionEvent]:
         """Take received bytes; return what they are."""
-        self._chunk_at = self._framer.fed
-        return self._sort(self._framer.feed(data), now)
+        self._chunk_at = self.framer.fed
+        events = self.framer.feed(data)
+        return self._sort(events, now) if events else []
 
     def wake(self, now: float) -> list[SessionEvent]:
         """Let time pass; return what ends by it. Receive first what has come by now."""
@@ -213,6 +240,7 @@ class Exchange:
         ``drained``: whether everything that has come by now was received. A request is sent on a
         drained line, so that earlier bytes cannot pass for its reply.
         """
+        self.settle()
         waiting = self._waiting()
         if waiting is not None:
             return self._next_attempt(waiting, now)
@@ -230,11 +258,88 @@ class Exchange:
                 return b""
         if self._outstanding.replies:
             self._outstanding.drop_expired(now)
-        self._echo.sent(pending.request, self._framer.fed)
-        pending.begin(now, self._framer.fed)
-        self._last, self._sent_last = pending, pending.request.frame
+        self._begin(pending, now)
         self._queue.remove(pending)
         return pending.request.frame
+
+    def begin(self, pending: PendingRequest, now: float) -> bytes:
+        """Return the bytes of a request if nothing else is under way; otherwise queue it.
+
+        Everything that has come by now was received. This is :meth:`enqueue` and :meth:`outgoing`
+        in one step.
+        """
+        self.settle()
+        if self._waiting() is not None or self._queue or self._outstanding.replies:
+            self._queue.append(pending)
+            return b""
+        self._begin(pending, now)
+        return pending.request.frame
+
+    # A request that is alone, for which the client writes and reads in one call.
+
+    def begin_alone(self, request: EncodedRequest, now: float, grace: float) -> Alone | None:
+        """Begin a request if nothing else is under way, nor any reply outstanding.
+
+        The caller sends it on a drained line, feeds ``framer`` what comes first, and calls
+        :meth:`end_alone` or :meth:`resume`, or :meth:`end_unsent` if it could not send it. If it
+        does none of these, after Ctrl-C, say, it calls :meth:`settle`.
+        """
+        last = self._last
+        if (
+            (last is not None and not last.done)
+            or self._queue
+            or self._outstanding.replies
+            or self._acks.waiting
+            or self._alone is not None
+            or self.alignment.align
+        ):
+            return None
+        fed = self.framer.fed
+        self._echo.sent(request, fed)
+        self._sent_last = request.frame
+        self._alone = alone = request, now, fed, grace
+        return alone
+
+    def end_alone(self, frame: Frame) -> bool:
+        """Return whether the only frame that came is the reply; the codec has decoded it as such.
+
+        If it may be a copy of another request, the caller resumes the request with the frame.
+        """
+        if not self._echo.sent_no_other(frame):
+            return False
+        self._alone = None
+        return True
+
+    @property
+    def is_alone(self) -> bool:
+        """Whether a request began alone, and has neither ended nor been resumed."""
+        return self._alone is not None
+
+    def end_unsent(self) -> None:
+        """Note that a request that had begun alone was not sent."""
+        self._alone = None
+
+    def resume(
+        self, alone: Alone, pending: PendingRequest, received: Sequence[Event], now: float
+    ) -> list[SessionEvent]:
+        """Go on with a request that began alone as with any other; return what was received."""
+        _, sent_at, offset, _ = alone
+        pending.begin(sent_at, offset)
+        self._last, self._alone = pending, None
+        self._chunk_at = offset
+        return self._sort(received, now)
+
+    def settle(self, alone: Alone | None = None) -> None:
+        """Expect the reply to a request that began alone, and whose caller is gone."""
+        if self._alone is not None and (alone is None or alone is self._alone):
+            (request, sent_at, _, grace), self._alone = self._alone, None
+            self._outstanding.expect(request, sent_at + grace)
+
+    def _begin(self, pending: PendingRequest, now: float) -> None:
+        request, fed = pending.request, self.framer.fed
+        self._echo.sent(request, fed)
+        pending.begin(now, fed)
+        self._last, self._sent_last = pending, request.frame
 
     # Requests that are queued or wait.
 
@@ -301,7 +406,7 @@ class Exchange:
             waiting.reply(fields, now)
             return [ReplyMatched(request.command, fields, None)]
         # The framer gives up what waits in it, so that a frame hidden after it still counts.
-        events = self._sort(self._framer.flush(), now)
+        events = self._sort(self.framer.flush(), now)
         if waiting.done or now < waiting.ends_at:
             return events
         candidate = waiting.candidate
@@ -316,21 +421,21 @@ class Exchange:
     # What received bytes are.
 
     def _sort(self, received: Sequence[Event], now: float) -> list[SessionEvent]:
-        events: list[SessionEvent] = []
-        for event in received:
-            if isinstance(event, Noise):
-                self._others.take_noise(event, self._waiting(), now)
-                events.append(event)
-            else:
-                events.append(self._match(event, now))
-        return events
+        return [
+            self._take_noise(event, now) if isinstance(event, Noise) else self._match(event, now)
+            for event in received
+        ]
+
+    def _take_noise(self, noise: Noise, now: float) -> Noise:
+        self._others.take_noise(noise, self._waiting(), now)
+        return noise
 
     def _match(self, frame: Frame, now: float) -> SessionEvent:
         """Find out what a frame is; end the request that it replies to."""
         is_copy = self._echo.take_copy(frame)
-        waiting = self._waiting()
-        if waiting is None or not waiting.accepts(frame):
-            return self._match_other(frame, waiting, now, is_copy)
+        waiting = self._last
+        if waiting is None or waiting.done or not waiting.accepts(frame):
+            return self._match_other(frame, self._waiting(), now, is_copy)
         request = waiting.request
         if request.replier is not None:
             address = self._format.address(frame.data)

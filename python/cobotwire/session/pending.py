@@ -116,10 +116,17 @@ class PendingRequest(Pending):
         self, request: EncodedRequest, wait: float | None, policy: RetryPolicy, now: float
     ) -> None:
         """Queue a request; ``wait`` is its deadline in seconds, None: that of the edition."""
-        super().__init__(request)
+        # As the base class does: a call of its constructor takes as long as all of this.
+        self.request = request
+        self.done = False
+        self._fields = {}
+        self._error = None
+        self._on_done = None
+        self._received = None
         command = request.command
         self._wait = command.deadline_ms / 1000 if wait is None else wait
-        self._attempts = policy.attempts_of(command, self._wait)
+        # Counted when it is first needed, while the reply is on its way.
+        self._attempts = 0
         self._deadline = 0.0
         self._undrained_since: float | None = None
         self.policy = policy
@@ -151,6 +158,8 @@ class PendingRequest(Pending):
         An attempt that was sent late still gets its full time.
         """
         times = self.attempt_times
+        if not self._attempts:
+            self._attempts = self.policy.attempts_of(self.request.command, self._wait)
         if len(times) >= self._attempts:
             return None
         at = times[-1] + self._wait / self._attempts
@@ -187,8 +196,9 @@ class PendingRequest(Pending):
 
     def accepts(self, frame: Frame) -> bool:
         """Return whether a frame has its command id and began after it was sent."""
-        expected = frame.offset >= self.offset and bool(self.request.command.reply)
-        return expected and self.request.can_have_reply(frame)
+        request = self.request
+        expected = frame.offset >= self.offset and bool(request.command.reply)
+        return expected and request.can_have_reply(frame)
 
     def keep_candidate(self, message: DecodedMessage) -> None:
         """Keep a copy of the request, which counts if no other reply comes."""

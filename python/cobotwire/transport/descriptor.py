@@ -5,27 +5,23 @@ from __future__ import annotations
 import errno
 import logging
 import os
-import select
-import sys
 import threading
 import time
 from abc import ABC, abstractmethod
-from typing import NoReturn
+from collections.abc import Callable
+from typing import NoReturn, TypeVar
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
-from cobotwire.transport.alarm import Alarm, new_alarm
+from cobotwire.transport.waiting import Waiter, native_calls
 
 READ_SIZE = 4096
 # A write may take this long, and twice the time besides that the line needs for the bytes.
 WRITE_SECONDS = 1.0
 # Start bit, eight data bits, stop bit.
 BITS_A_BYTE = 10
-# macOS's poll() refuses terminals, and Windows has none. There select() waits, which fails for
-# descriptors from this number on.
-SELECTABLE = 1024
-POLLS = hasattr(select, "poll")
-POLLS_TERMINALS = POLLS and sys.platform != "darwin"
+
+T = TypeVar("T")
 
 _log = logging.getLogger("cobotwire.transport")
 
@@ -49,6 +45,7 @@ class DescriptorTransport(ABC):
         # -1 while it is closed, which no wait takes.
         self._descriptor = -1
         self._waiter = Waiter()
+        self._native = native_calls()
         # Reentrant, since a signal may close the transport in the very thread that waits for it.
         self._reading = threading.RLock()
         self._writing = threading.RLock()
@@ -60,36 +57,64 @@ class DescriptorTransport(ABC):
 
     def read(self, timeout: float) -> bytes:
         """Return what has come, as soon as there is something."""
-        deadline = time.monotonic() + timeout
         with self._reading:
-            self._must_be_open("cannot be read")
+            if self._closed:
+                self._must_be_open("cannot be read")
             try:
-                while self._waiter.wait(self._descriptor, timeout):
-                    if self._closed:
-                        break
-                    try:
-                        data = self._receive(READ_SIZE)
-                    except BlockingIOError:
-                        timeout = deadline - time.monotonic()
-                        if timeout > 0:
-                            continue
-                        return b""
-                    if not data:
-                        raise LinkError(self.url, f"cannot be read: {self._end_of_data()}")
-                    return data
-            except LinkError:
-                raise
+                if self._native is None:
+                    data = self._read_within(timeout)
+                else:
+                    alarm = self._waiter.alarm() if timeout > 0 else -1
+                    data = (
+                        None
+                        if alarm is None
+                        else self._native.read_within(self._descriptor, timeout, alarm)
+                    )
             except (OSError, ValueError) as error:
                 self._fail("cannot be read", error)
+            if data:
+                return data
+            if data is not None:
+                raise LinkError(self.url, f"cannot be read: {self._end_of_data()}")
             self._must_be_open("cannot be read", "it was closed meanwhile")
             return b""
+
+    @property
+    def lends(self) -> bool:
+        """Whether native functions can wait for the descriptor."""
+        return self._native is not None
+
+    def lend(self, call: Callable[..., T], *arguments: object) -> T | None:
+        """Return the result of ``call(descriptor, alarm, *arguments)``; None if it is closed."""
+        with self._reading:
+            alarm = self._waiter.alarm()
+            if self._closed or alarm is None:
+                return None
+            return call(self._descriptor, alarm, *arguments)
+
+    def _read_within(self, timeout: float) -> bytes | None:
+        """Return what has come; None: nothing has. Empty bytes are the end of the data."""
+        deadline = time.monotonic() + timeout
+        while self._waiter.wait(self._descriptor, timeout) and not self._closed:
+            try:
+                return self._receive(READ_SIZE)
+            except BlockingIOError:
+                timeout = deadline - time.monotonic()
+                if timeout <= 0:
+                    break
+        return None
 
     def write(self, data: bytes) -> None:
         """Send all of ``data``; if it fails, the LinkError's ``written`` says how much was sent."""
         with self._writing:
-            written = self.write_some(data)
+            written = self._write_now(data)
             if written < len(data):
                 self._write_rest(data, written)
+
+    def finish_write(self, data: bytes, written: int) -> None:
+        """Send what follows the first ``written`` bytes of ``data``, as :meth:`write` does."""
+        with self._writing:
+            self._write_rest(data, written)
 
     def _write_rest(self, data: bytes, written: int) -> None:
         limit = write_limit(len(data), self._baudrate)
@@ -121,13 +146,19 @@ class DescriptorTransport(ABC):
     def write_some(self, data: bytes) -> int:
         """Send as much of ``data`` as possible without waiting; return how many bytes."""
         with self._writing:
+            return self._write_now(data)
+
+    def _write_now(self, data: bytes) -> int:
+        if self._closed:
             self._must_be_open("cannot be written")
-            try:
-                return self._send(data)
-            except BlockingIOError:
-                return 0
-            except (OSError, ValueError) as error:
-                self._fail("cannot be written", error)
+        try:
+            if self._native is not None:
+                return self._native.write_now(self._descriptor, data)
+            return self._send(data)
+        except BlockingIOError:
+            return 0
+        except (OSError, ValueError) as error:
+            self._fail("cannot be written", error)
 
     def fileno(self) -> int | None:
         """Return the descriptor that an event loop can wait for."""
@@ -189,79 +220,6 @@ class DescriptorTransport(ABC):
 
     def _send(self, data: bytes) -> int:
         return os.write(self._descriptor, data)
-
-
-class Waiter:
-    """Waits until a descriptor can be read or written, the time is over, or :meth:`wake`.
-
-    The first wait that takes time opens what :meth:`wake` needs: one descriptor on Linux, two
-    elsewhere. So a transport that an event loop watches needs none.
-    """
-
-    def __init__(self) -> None:
-        self._woken = False
-        # At most one. A list, since adding to it is atomic: two threads may begin to wait at once.
-        self._alarms: list[Alarm] = []
-
-    def wait(self, descriptor: int, timeout: float, *, writing: bool = False) -> bool:
-        """Return whether it is ready, or gone: reading or writing it tells that.
-
-        A timeout of zero or less does not wait. After :meth:`wake` every wait ends at once; its
-        result means nothing then.
-        """
-        if timeout <= 0:
-            return is_ready(descriptor, 0, writing=writing)
-        if not self._alarms:
-            # Two threads that begin at once open two alarms; both wait for the first.
-            self._alarms.append(new_alarm())
-        # Checked after the alarm exists: a wake() from now on finds it.
-        if self._woken:
-            return True
-        return is_ready(
-            descriptor, timeout, writing=writing, or_readable=self._alarms[0].descriptor
-        )
-
-    def wake(self) -> None:
-        """End the wait, and every later one."""
-        self._woken = True
-        for alarm in self._alarms:
-            alarm.set()
-
-    def close(self) -> None:
-        """Close what the waits opened. Closing twice is harmless."""
-        self._woken = True
-        for alarm in self._alarms:
-            alarm.close()
-
-    def __del__(self) -> None:
-        # A transport that was not closed warns for itself; the alarm is not the user's concern.
-        self.close()
-
-
-def is_ready(
-    descriptor: int, timeout: float, *, writing: bool = False, or_readable: int | None = None
-) -> bool:
-    """Wait until a descriptor is ready or gone, or until the one in ``or_readable`` is.
-
-    Returns:
-        False if neither is after ``timeout`` seconds.
-
-    Raises:
-        OSError, ValueError: the system cannot wait for the descriptor.
-    """
-    highest = descriptor if or_readable is None else max(descriptor, or_readable)
-    if POLLS_TERMINALS or (POLLS and highest >= SELECTABLE):
-        poll = select.poll()
-        poll.register(descriptor, select.POLLOUT if writing else select.POLLIN)
-        if or_readable is not None:
-            poll.register(or_readable, select.POLLIN)
-        # Python rounds up to whole milliseconds.
-        return bool(poll.poll(max(0.0, timeout) * 1000))
-    incoming = [] if or_readable is None else [or_readable]
-    outgoing: list[int] = []
-    (outgoing if writing else incoming).append(descriptor)
-    read, write, _ = select.select(incoming, outgoing, [], max(0.0, timeout))
-    return bool(read or write)
 
 
 def reason_of(error: BaseException | None) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeVar, runtime_checkable
 
 from cobotwire.protocol.errors import LinkError
+
+T = TypeVar("T")
 
 
 @runtime_checkable
@@ -52,6 +54,28 @@ class PollableTransport(Transport, Protocol):
         Raises:
             LinkError: the transport is gone.
         """
+        ...
+
+
+@runtime_checkable
+class LendingTransport(PollableTransport, Protocol):
+    """A transport whose descriptor a function of the native module may read and write itself."""
+
+    @property
+    def lends(self) -> bool:
+        """Whether the descriptor can be used so on this system."""
+        ...
+
+    def lend(self, call: Callable[..., T], *arguments: object) -> T | None:
+        """Return the result of ``call(descriptor, alarm, *arguments)``; None if it is closed.
+
+        The call may wait until the descriptor is readable, or the alarm. Until it returns, no other
+        thread can read, and none can close the descriptor.
+        """
+        ...
+
+    def finish_write(self, data: bytes, written: int) -> None:
+        """Send what follows the first ``written`` bytes of ``data``, as :meth:`write` does."""
         ...
 
 

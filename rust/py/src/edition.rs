@@ -3,8 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use cobotwire_core::{DecodeError, Direction, Listening, Plans, Table, VariantId};
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::names::Names;
 use crate::objects::Commands;
@@ -54,6 +55,23 @@ impl Edition {
         let direction = names.direction(py, id.direction);
         let items = (command.object.bind(py), direction, variant, values, address);
         names.make(&names.message, items.into_pyobject(py)?)
+    }
+
+    /// Return the values of a message by the names of their fields.
+    pub fn fields<'py>(
+        &self,
+        id: VariantId,
+        values: &Bound<'py, PyTuple>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let py = values.py();
+        let command = self.commands.get(id.command)?;
+        let variant = command.variant(py, id.direction, id.variant)?;
+        let names = variant.getattr(intern!(py, "names"))?;
+        let fields = PyDict::new(py);
+        for (name, value) in names.cast::<PyTuple>()?.iter().zip(values) {
+            fields.set_item(name, value)?;
+        }
+        Ok(fields)
     }
 
     /// Return the error to raise for bytes that were not decoded.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use cobotwire_core::{Decoded, Direction, Frame, Listening, OwnedFrame, Rules};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::edition::Edition;
 use crate::names::Names;
@@ -67,6 +67,30 @@ impl NativeFrame {
                 Err(error) => error,
             }
         })
+    }
+
+    /// Return the fields of the reply of a command that it is; None if it is not a legal one.
+    pub fn fields_of<'py>(
+        &self,
+        py: Python<'py>,
+        of: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Edition {
+            table,
+            core,
+            commands,
+            ..
+        } = &*self.origin.edition;
+        let of = commands.find(table, of)?;
+        let rules = core.rules(Listening::To(Direction::Reply));
+        match cobotwire_core::read(core, rules, self.frame(), Some(of)) {
+            Ok(decoded) => {
+                let values = objects(py, &decoded.values)?;
+                let edition = &self.origin.edition;
+                edition.fields(decoded.variant, &values).map(Some)
+            }
+            Err(_) => Ok(None),
+        }
     }
 
     /// Return the message, as Python's named tuple; `values` are those of `decoded`.

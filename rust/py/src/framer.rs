@@ -6,8 +6,10 @@ use cobotwire_core::{Framer, Reason, Tally};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 
+#[cfg(unix)]
+use crate::descriptor::{Line, Swapped};
 use crate::events::Events;
-use crate::frame::Origin;
+use crate::frame::{NativeFrame, Origin};
 use crate::names::Names;
 
 /// Cuts frames out of a byte stream.
@@ -45,6 +47,38 @@ impl NativeFramer {
         events.finish()
     }
 
+    /// Send a request, and read what comes first, in one call: the exchange of a request that is
+    /// alone on its line. Bytes that are one frame, and a reply of the command `of`, are decoded.
+    #[cfg(unix)]
+    #[pyo3(signature = (descriptor, alarm, timeout, request, of, writing, finish, /))]
+    #[allow(clippy::too_many_arguments)] // an object for them would cost more than the call
+    fn swap<'py>(
+        slf: &Bound<'py, Self>,
+        descriptor: i32,
+        alarm: i32,
+        timeout: f64,
+        request: &[u8],
+        of: &Bound<'py, PyAny>,
+        writing: &Bound<'py, PyAny>,
+        finish: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let (py, line) = (
+            slf.py(),
+            Line {
+                descriptor,
+                alarm,
+                writing,
+                finish,
+            },
+        );
+        let take = |data: &[u8]| slf.try_borrow_mut()?.take_reply(py, data, request, of);
+        match line.swap(py, request, timeout, take)? {
+            Swapped::NotSent => Ok(None),
+            Swapped::Sent(Some(taken)) => taken.map(Some),
+            Swapped::Sent(None) => Ok(Some(PyList::empty(py).into_any())),
+        }
+    }
+
     /// The number of bytes fed that no event covers yet.
     #[getter]
     fn pending(&self) -> usize {
@@ -61,6 +95,32 @@ impl NativeFramer {
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         counters(py, self.core.tally())
+    }
+}
+
+impl NativeFramer {
+    /// Feed what came after a request. Return the frame and its fields if all of it is one frame
+    /// that replies to the command `of` and is no copy of the request; otherwise the events.
+    fn take_reply<'py>(
+        &mut self,
+        py: Python<'py>,
+        data: &[u8],
+        request: &[u8],
+        of: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut events = Events::new(py, &self.origin)?;
+        let whole = self.core.pending() == 0 && data != request;
+        self.core.feed(data, |event| events.add(event));
+        let events = events.finish()?;
+        if whole && self.core.pending() == 0 && events.len() == 1 {
+            let event = events.get_item(0)?;
+            if let Ok(frame) = event.cast::<NativeFrame>()
+                && let Some(fields) = frame.get().fields_of(py, of)?
+            {
+                return Ok((event, fields).into_pyobject(py)?.into_any());
+            }
+        }
+        Ok(events.into_any())
     }
 }
 

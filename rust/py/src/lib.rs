@@ -10,6 +10,8 @@ mod capture;
 mod codec;
 mod column;
 mod convert;
+#[cfg(unix)]
+mod descriptor;
 mod edition;
 mod errors;
 mod events;
@@ -38,5 +40,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<capture::NativeCaptureReader>()?;
     module.add_class::<frame::NativeFrame>()?;
     module.add_class::<survey::NativeSurvey>()?;
-    module.add_class::<framer::NativeFramer>()
+    module.add_class::<framer::NativeFramer>()?;
+    #[cfg(unix)]
+    descriptor::add_to(module)?;
+    Ok(())
 }

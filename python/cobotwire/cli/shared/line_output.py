@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable
 
 from cobotwire.cli.shared.output import discard_output, print_line
-from cobotwire.transport.descriptor import is_ready
+from cobotwire.transport.waiting import is_ready
 
 # Bytes that are kept for a reader that is slow: some thousand lines.
 KEPT = 1 << 20

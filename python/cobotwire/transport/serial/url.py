@@ -13,8 +13,9 @@ import serial
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
-from cobotwire.transport.descriptor import READ_SIZE, Waiter, reason_of, write_limit
+from cobotwire.transport.descriptor import READ_SIZE, reason_of, write_limit
 from cobotwire.transport.serial.opening import configure, opening, request_low_latency
+from cobotwire.transport.waiting import Waiter
 
 # A backend without a descriptor is read in slices of this length.
 SLICE_SECONDS = 0.01

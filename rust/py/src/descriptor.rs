@@ -1,0 +1,229 @@
+//! Reads, writes and waits for descriptors that never block: serial ports and sockets.
+//!
+//! `cobotwire.transport.descriptor` does the same in Python and is the specification. A call here
+//! releases the interpreter's lock only while it waits, so it never loses its turn to a busy thread
+//! for nothing.
+
+#![allow(unsafe_code)] // Python passes descriptors as numbers
+
+use std::mem::MaybeUninit;
+use std::os::fd::{BorrowedFd, RawFd};
+use std::time::{Duration, Instant};
+
+use pyo3::exceptions::PyOSError;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::{Errno, read, write};
+
+/// The most bytes that one call reads.
+const READ_SIZE: usize = 4096;
+/// No wait takes longer than this many seconds, which every clock can add.
+const LONGEST: f64 = 1e9;
+const AT_ONCE: Timespec = Timespec {
+    tv_sec: 0,
+    tv_nsec: 0,
+};
+
+/// Add the functions of this file to the module.
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(write_now, module)?)?;
+    module.add_function(wrap_pyfunction!(read_within, module)?)
+}
+
+/// Write what the system takes at once; return how many bytes that was.
+#[pyfunction]
+#[pyo3(signature = (descriptor, data, /))]
+pub fn write_now(py: Python<'_>, descriptor: RawFd, data: &[u8]) -> PyResult<usize> {
+    let descriptor = borrow(descriptor)?;
+    loop {
+        match write(descriptor, data) {
+            Ok(count) => return Ok(count),
+            Err(Errno::AGAIN) => return Ok(0),
+            Err(Errno::INTR) => py.check_signals()?,
+            Err(error) => return Err(failed(error)),
+        }
+    }
+}
+
+/// Read what has come, as soon as there is something; `b""` is the end of the data. Return None if
+/// nothing came within `timeout` seconds, or before `alarm` became readable.
+#[pyfunction]
+#[pyo3(signature = (descriptor, timeout, alarm, /))]
+pub fn read_within<'py>(
+    py: Python<'py>,
+    descriptor: RawFd,
+    timeout: f64,
+    alarm: RawFd,
+) -> PyResult<Option<Bound<'py, PyBytes>>> {
+    let wait = Wait::new(timeout, alarm)?;
+    let data = receive(py, borrow(descriptor)?, wait.as_ref(), |data| {
+        PyBytes::new(py, data)
+    })?;
+    Ok(data)
+}
+
+/// A line to write a request to and to read its reply from.
+pub struct Line<'a, 'py> {
+    pub descriptor: RawFd,
+    /// Becomes readable to end the wait.
+    pub alarm: RawFd,
+    /// The lock that Python holds while it writes to the line.
+    pub writing: &'a Bound<'py, PyAny>,
+    /// Called with a request of which a part was taken, and the size of this part, to write the rest.
+    pub finish: &'a Bound<'py, PyAny>,
+}
+
+impl Line<'_, '_> {
+    /// Write a request, and return what `take` makes of the bytes that come within `timeout`
+    /// seconds.
+    pub fn swap<T>(
+        &self,
+        py: Python<'_>,
+        request: &[u8],
+        timeout: f64,
+        take: impl FnOnce(&[u8]) -> T,
+    ) -> PyResult<Swapped<T>> {
+        let (descriptor, wait) = (borrow(self.descriptor)?, Wait::new(timeout, self.alarm)?);
+        // The lock of the interpreter is held from here until the request is written, so no other
+        // thread of Python begins to write meanwhile.
+        let busy = self.writing.call_method0(intern!(py, "locked"))?;
+        if busy.is_truthy()? || !matches!(is_ready(py, descriptor, None), Ok(false)) {
+            return Ok(Swapped::NotSent);
+        }
+        match write(descriptor, request) {
+            Ok(0) | Err(_) => return Ok(Swapped::NotSent),
+            Ok(written) if written < request.len() => self.write_rest(py, request, written)?,
+            Ok(_) => (),
+        }
+        match receive(py, descriptor, wait.as_ref(), take) {
+            Ok(taken) => Ok(Swapped::Sent(taken)),
+            // The next read fails in the same way, and reports it.
+            Err(Fault::System(_)) => Ok(Swapped::Sent(None)),
+            Err(Fault::Handler(error)) => Err(error),
+        }
+    }
+
+    fn write_rest(&self, py: Python<'_>, request: &[u8], written: usize) -> PyResult<()> {
+        self.writing
+            .call_method1(intern!(py, "acquire"), (false,))?;
+        let done = self.finish.call1((PyBytes::new(py, request), written));
+        self.writing.call_method0(intern!(py, "release"))?;
+        done.map(|_| ())
+    }
+}
+
+/// What became of a request.
+pub enum Swapped<T> {
+    /// The line was not free: bytes had come, or a thread wrote, or the system took no bytes.
+    NotSent,
+    /// It was written; what was made of the bytes that came then, if any came.
+    Sent(Option<T>),
+}
+
+/// Return what `take` makes of what has come, as soon as there is something.
+fn receive<T>(
+    py: Python<'_>,
+    descriptor: BorrowedFd<'_>,
+    wait: Option<&Wait<'_>>,
+    take: impl FnOnce(&[u8]) -> T,
+) -> Result<Option<T>, Fault> {
+    let mut space = [MaybeUninit::uninit(); READ_SIZE];
+    // A terminal without data reads as if the data had ended, so it is read only when it is ready.
+    while is_ready(py, descriptor, wait)? {
+        match read(descriptor, &mut space) {
+            Ok((data, _)) => return Ok(Some(take(data))),
+            // Another reader was faster.
+            Err(Errno::AGAIN) if wait.is_some() => (),
+            Err(Errno::AGAIN) => break,
+            Err(Errno::INTR) => py.check_signals().map_err(Fault::Handler)?,
+            Err(error) => return Err(Fault::System(error)),
+        }
+    }
+    Ok(None)
+}
+
+/// A wait that takes time.
+struct Wait<'fd> {
+    until: Instant,
+    /// Ends the wait when it becomes readable.
+    alarm: BorrowedFd<'fd>,
+}
+
+impl Wait<'_> {
+    /// Return a wait of that many seconds; None if it takes no time.
+    fn new(timeout: f64, alarm: RawFd) -> PyResult<Option<Self>> {
+        Ok(if timeout > 0.0 {
+            Some(Self {
+                until: Instant::now() + Duration::from_secs_f64(timeout.min(LONGEST)),
+                alarm: borrow(alarm)?,
+            })
+        } else {
+            None
+        })
+    }
+}
+
+/// Return whether a descriptor can be read, or is gone; wait for that if `wait` says so.
+fn is_ready(
+    py: Python<'_>,
+    descriptor: BorrowedFd<'_>,
+    wait: Option<&Wait<'_>>,
+) -> Result<bool, Fault> {
+    let Some(Wait { until, alarm }) = wait else {
+        let mut polled = [PollFd::new(&descriptor, PollFlags::IN)];
+        return match poll(&mut polled, Some(&AT_ONCE)) {
+            Ok(count) => Ok(count > 0),
+            Err(error) => Err(Fault::System(error)),
+        };
+    };
+    let mut polled = [descriptor, *alarm].map(|each| PollFd::from_borrowed_fd(each, PollFlags::IN));
+    loop {
+        let left = until.saturating_duration_since(Instant::now());
+        let left = Timespec::try_from(left).unwrap_or(AT_ONCE);
+        match py.detach(|| poll(&mut polled, Some(&left))) {
+            Ok(0) => return Ok(false),
+            Ok(_) => {
+                let [_, alarm] = &polled;
+                return Ok(alarm.revents().is_empty());
+            }
+            // A signal came. Its handler runs here, and may raise KeyboardInterrupt.
+            Err(Errno::INTR) => py.check_signals().map_err(Fault::Handler)?,
+            Err(error) => return Err(Fault::System(error)),
+        }
+    }
+}
+
+/// Return the descriptor with that number.
+fn borrow<'fd>(number: RawFd) -> PyResult<BorrowedFd<'fd>> {
+    if number < 0 {
+        return Err(failed(Errno::BADF));
+    }
+    // SAFETY: the number is not -1. `DescriptorTransport` holds a lock during the call, and takes it
+    // before it closes the descriptor. Any other number is as harmless as in Python's `os.read`: the
+    // descriptor is used only during the call, only by system calls, and they refuse closed ones.
+    Ok(unsafe { BorrowedFd::borrow_raw(number) })
+}
+
+/// Why a wait or a read failed.
+enum Fault {
+    System(Errno),
+    /// The handler of a signal raised it.
+    Handler(PyErr),
+}
+
+impl From<Fault> for PyErr {
+    fn from(fault: Fault) -> Self {
+        match fault {
+            Fault::System(error) => failed(error),
+            Fault::Handler(error) => error,
+        }
+    }
+}
+
+/// Return an error of the system as Python's `OSError`, of the class that fits its number.
+fn failed(error: Errno) -> PyErr {
+    let text = std::io::Error::from(error).to_string();
+    PyOSError::new_err((error.raw_os_error(), text))
+}

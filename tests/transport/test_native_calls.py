@@ -1,0 +1,188 @@
+"""Waiting, reading and writing in the native module has the results of waiting in Python."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Noise
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.protocol.errors import LinkError
+from cobotwire.transport.descriptor import DescriptorTransport
+from transport.ends import Line
+
+pytestmark = pytest.mark.skipif(not codecs.native_available(), reason="there is no native module")
+ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+REQUEST = bytes.fromhex("FE FE 02 20 FA")
+
+
+@pytest.fixture(params=[("native", "serial"), ("native", "socket"), ("reference", "serial")])
+def line(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Line]:
+    monkeypatch.setenv(codecs.VARIABLE, request.param[0])
+    with Line(request.param[1]) as open_line:
+        assert isinstance(open_line.transport, DescriptorTransport)
+        assert open_line.transport.lends == (request.param[0] == "native")
+        yield open_line
+
+
+def test_signal_handler_ends_a_read_with_its_exception(line: Line) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    started = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            line.transport.read(30.0)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert time.monotonic() - started < 10
+    line.end.send(b"after")
+    assert line.transport.read(5.0) == b"after"
+
+
+def test_handler_that_returns_does_not_end_a_read(line: Line) -> None:
+    calls: list[int] = []
+    before = signal.signal(signal.SIGALRM, lambda *_: calls.append(1))
+    signal.setitimer(signal.ITIMER_REAL, 0.02)
+    sending = threading.Timer(0.2, line.end.send, [b"x"])
+    sending.start()
+    try:
+        assert line.transport.read(30.0) == b"x"
+    finally:
+        signal.signal(signal.SIGALRM, before)
+        sending.join()
+    assert calls
+
+
+def test_close_ends_a_read_in_another_thread(line: Line) -> None:
+    closing = threading.Timer(0.05, line.transport.close)
+    closing.start()
+    with pytest.raises(LinkError, match="it was closed meanwhile"):
+        line.transport.read(30.0)
+    closing.join()
+
+
+class Swapping:
+    """One end of a pair of sockets whose framer exchanges requests; the test has the other end."""
+
+    def __init__(self) -> None:
+        self.ours, self.peer = socket.socketpair()
+        self.ours.setblocking(False)
+        self.alarm = os.eventfd(0)
+        self.framer: Any = codecs.load(TABLE, "native").framer("reply")
+        self.writing = threading.Lock()
+        self.finished: list[tuple[bytes, int, bool]] = []
+        self.error: Exception | None = None
+
+    def swap(self, request: bytes = REQUEST, timeout: float = 5.0) -> Any:
+        return self.framer.swap(
+            self.ours.fileno(),
+            self.alarm,
+            timeout,
+            request,
+            "get_angles",
+            self.writing,
+            self.finish,
+        )
+
+    def finish(self, request: bytes, written: int) -> None:
+        self.finished.append((request, written, self.writing.locked()))
+        if self.error is not None:
+            raise self.error
+
+    def close(self) -> None:
+        self.ours.close()
+        self.peer.close()
+        os.close(self.alarm)
+
+
+@pytest.fixture
+def swapping() -> Iterator[Swapping]:
+    made = Swapping()
+    yield made
+    made.close()
+
+
+def test_swap_returns_the_only_frame_and_its_fields(swapping: Swapping) -> None:
+    answering = threading.Timer(0.02, swapping.peer.send, [ANGLES])
+    answering.start()
+    frame, fields = swapping.swap()
+    answering.join()
+    assert swapping.peer.recv(99) == REQUEST
+    assert frame.data == ANGLES
+    assert fields == frame.decode("reply", of="get_angles").fields
+
+
+@pytest.mark.parametrize(
+    "received", [ANGLES + b"x", b"x" + ANGLES, ANGLES * 2, ANGLES[:9], REQUEST], ids=bytes.hex
+)
+def test_swap_returns_events_if_more_or_less_than_the_reply_comes(
+    swapping: Swapping, received: bytes
+) -> None:
+    plain = codecs.load(TABLE, "native").framer("reply")
+    answering = threading.Timer(0.02, swapping.peer.send, [received])
+    answering.start()
+    events = swapping.swap()
+    answering.join()
+    assert events == plain.feed(received)
+    assert swapping.framer.pending == plain.pending
+    assert swapping.framer.fed == len(received)
+
+
+def test_swap_sends_nothing_on_a_line_that_is_not_free(swapping: Swapping) -> None:
+    with swapping.writing:
+        assert swapping.swap() is None
+    swapping.peer.send(b"earlier")
+    assert swapping.swap() is None
+    assert swapping.ours.recv(99) == b"earlier"
+    swapping.peer.setblocking(False)
+    with pytest.raises(BlockingIOError):
+        swapping.peer.recv(99)
+    assert swapping.framer.fed == 0
+
+
+def test_swap_returns_no_events_after_its_time_at_the_end_or_by_the_alarm(
+    swapping: Swapping,
+) -> None:
+    started = time.monotonic()
+    assert swapping.swap(timeout=0.05) == []
+    assert time.monotonic() - started >= 0.05
+    os.eventfd_write(swapping.alarm, 1)
+    assert swapping.swap(timeout=60) == []
+    swapping.peer.close()
+    assert swapping.swap(timeout=60) is None
+    assert time.monotonic() - started < 30
+
+
+def test_rest_of_a_request_is_written_with_the_lock_held(swapping: Swapping) -> None:
+    large = bytes(10_000_000)
+    assert swapping.swap(large, 0.01) == []
+    [(request, written, locked)] = swapping.finished
+    assert request == large
+    assert 0 < written < len(large)
+    assert locked
+    assert not swapping.writing.locked()
+
+
+def test_error_of_writing_the_rest_is_raised_and_frees_the_lock(swapping: Swapping) -> None:
+    swapping.error = LinkError("port", "is stuck", 3)
+    with pytest.raises(LinkError, match="is stuck"):
+        swapping.swap(bytes(10_000_000), 0.01)
+    assert not swapping.writing.locked()
+
+
+def test_noise_before_a_reply_is_an_event(swapping: Swapping) -> None:
+    threading.Timer(0.02, swapping.peer.send, [b"boot\r\n" + ANGLES]).start()
+    noise, frame = swapping.swap()
+    assert isinstance(noise, Noise)
+    assert frame.data == ANGLES
