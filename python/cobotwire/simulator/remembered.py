@@ -4,12 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire.protocol.fields import named_fields
 from cobotwire.protocol.table import Command, Table
 
 Arguments = frozenset[tuple[str, Any]]
+
+
+class _PartAndRow(NamedTuple):
+    """A query of one part by its number, the query of all parts, and their fields."""
+
+    part: str
+    argument: str
+    part_field: str
+    row: str
+    row_field: str
+    size: int
+
+
+def _part_and_row(part: Command, row: Command) -> _PartAndRow | None:
+    """Return how two queries of the same quantity correspond; None if not as part and row."""
+    arguments, parts, rows = list(named_fields(part.request)), _reported(part), _reported(row)
+    if len(arguments) != 1 or len(parts) != 1 or len(rows) != 1 or named_fields(row.request):
+        return None
+    one, many = (named_fields(c.reply)[n][0] for c, n in ((part, parts[0]), (row, rows[0])))
+    numbers = many.cases[0].numbers
+    if one.many or not many.many or numbers[0].unit != one.cases[0].numbers[0].unit:
+        return None
+    return _PartAndRow(part.name, arguments[0], parts[0], row.name, rows[0], len(numbers))
 
 
 @dataclass
@@ -36,8 +59,33 @@ class Remembered:
         }
         asked = set(named_fields(query.request))
         key = (query.name, _hashable({n: v for n, v in fields.items() if n in asked}))
+        self._keep(key, stated)
+        for other in table.commands:
+            if query.name in other.agrees_with and (both := _part_and_row(other, query)):
+                self._keep_parts(both, stated)
+            elif other.name in query.agrees_with and (both := _part_and_row(query, other)):
+                self._keep_in_row(both, dict(key[1]), stated)
+
+    def _keep(self, key: tuple[str, Arguments], stated: dict[str, Any]) -> None:
         # Newest last, so that it is found last.
         self.values[key] = {**self.values.pop(key, {}), **stated}
+
+    def _keep_parts(self, both: _PartAndRow, stated: Mapping[str, Any]) -> None:
+        """Let the query of one part report the parts of a row."""
+        for at, value in enumerate(stated.get(both.row_field, ()), 1):
+            key = (both.part, _hashable({both.argument: at}))
+            self._keep(key, {both.part_field: value})
+
+    def _keep_in_row(
+        self, both: _PartAndRow, arguments: Mapping[str, Any], stated: Mapping[str, Any]
+    ) -> None:
+        """Let the query of the row report one part of it."""
+        key = (both.row, _hashable({}))
+        row = list(self.values.get(key, {}).get(both.row_field, [0] * both.size))
+        at = arguments.get(both.argument, 0)
+        if both.part_field in stated and 1 <= at <= len(row):
+            row[at - 1] = stated[both.part_field]
+            self._keep(key, {both.row_field: tuple(row)})
 
     def begin(self, query: str, field: str, value: Any) -> None:
         """Let a query report a value until something else is set."""

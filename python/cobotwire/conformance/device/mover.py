@@ -7,10 +7,11 @@ from functools import partial
 from typing import Any
 
 from cobotwire.conformance.device.device import Device, NotSupported
+from cobotwire.conformance.device.permissions import Range
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.response import ReceivedReply
 from cobotwire.protocol.messages import Request
-from cobotwire.protocol.roles import targets_request
+from cobotwire.protocol.roles import row_index, targets_request
 from cobotwire.protocol.table import Command, Role, Table
 
 Pose = tuple[float, ...]
@@ -72,9 +73,20 @@ class Mover:
             self.go(self.pose(which))
         self.near = which
 
+    @property
+    def ranges(self) -> list[Range]:
+        """The workspace, as far as the edition allows targets there; degrees for each joint."""
+        row = self.targets.request[0].fields[row_index(self.targets.request[0])]
+        legal = ((n.physical(n.minimum), n.physical(n.maximum)) for n in row.cases[0].numbers)
+        found = []
+        for (low, high), (least, most) in zip(self.device.permissions.workspace, legal):
+            near = max(low, least), min(high, most)
+            found.append(near if near[0] < near[1] else (least, most))
+        return found
+
     def pose(self, which: int) -> Pose:
         """Return one of the poses, in degrees."""
-        ranges = self.device.permissions.workspace
+        ranges = self.ranges
         shares = (POSES[which][at % len(POSES[which])] for at in range(len(ranges)))
         return tuple(
             round(low + share * (high - low), 2) for share, (low, high) in zip(shares, ranges)

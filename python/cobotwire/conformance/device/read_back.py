@@ -10,6 +10,7 @@ from cobotwire.conformance.device.requests import (
     Limits,
     as_row,
     gentle_values,
+    limits_of,
     requests,
     revealing,
 )
@@ -52,11 +53,7 @@ class Setting:
     @property
     def _limits(self) -> Limits:
         """The limits of the arguments whose legal numbers are not all harmless."""
-        names = {field.name for field in self.variant.fields}
-        for samples in self.command.samples:
-            if {name for name, _ in samples} <= names:
-                return dict(samples)
-        return {}
+        return limits_of(self.command, self.variant)
 
     def again(self, query: Request[Any], reply: Reply[Any], speed: int = 1) -> Request[Any]:
         """Return the request that sets what a query has reported."""

@@ -78,6 +78,15 @@ def requests(
     return [_typed(command, _arguments(variant, raw_values)) for raw_values in found]
 
 
+def limits_of(command: Command, variant: Variant) -> Limits:
+    """Return the limits of the arguments of a variant whose legal numbers are not all harmless."""
+    names = {field.name for field in variant.fields}
+    for samples in command.samples:
+        if {name for name, _ in samples} <= names:
+            return dict(samples)
+    return {}
+
+
 def harmless(command: Command) -> list[Request[Any]]:
     """Return requests of a command's shortest variant, within the limits of the edition."""
     return requests(command, command.request[-1], limits=dict(*command.samples[-1:]))

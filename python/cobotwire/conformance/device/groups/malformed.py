@@ -92,13 +92,13 @@ def _out_of_range(probe: Probe) -> None:
 
 def _wrong_values(table: Table, command: Command, data: bytes) -> Iterator[tuple[str, bytes]]:
     """Yield a request with a number outside each field's range or list, if bytes can hold it."""
-    if table.frame.check is not None:
-        return
+    frame, rest = table.frame, table.frame.data(data)
+    id, address = frame.read_id(data), frame.address(data)
     for place in places(command.request[0]):
-        at, width = table.frame.data_at + place.start, place.number.width
+        at, width = place.start, place.number.width
         for value in _forbidden(place):
-            wrong = value.to_bytes(width, place.number.order)
-            yield f"{place.name} = {value}", data[:at] + wrong + data[at + width :]
+            wrong = rest[:at] + value.to_bytes(width, place.number.order) + rest[at + width :]
+            yield f"{place.name} = {value}", frame.enclose(id, wrong, address)
 
 
 def _forbidden(place: Place) -> list[int]:
@@ -164,12 +164,11 @@ def _unknown_ids(probe: Probe) -> None:
         c for c in table.commands if _is_framed_query(table, c) and not c.request[0].fields
     )
     request = probe.device.requester.prepare(carrier.request_type())
-    if table.frame.check is not None:
-        return
     sender = MalformedSender(probe, request)
     for id in _free_ids(table):
         for data in (b"", b"\x01"):
-            sender.send(UNKNOWN_ID, f"the unknown id {id:02X}", table.frame.enclose(id, data))
+            whole = table.frame.enclose(id, data, table.frame.address(request.frame))
+            sender.send(UNKNOWN_ID, f"the unknown id {id:02X}", whole)
     sender.expect_all_kept()
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import as_row, requests
+from cobotwire.conformance.device.requests import as_row, limits_of, requests
 from cobotwire.conformance.device.response import ReceivedReply, Response
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.suite import Group, TestCase
@@ -46,7 +46,11 @@ def _query(probe: Probe) -> None:
     """Request with each set of arguments, and with the last one again."""
     command = probe.command
     known = probe.device.known(command)
-    every = [query for variant in command.request for query in requests(command, variant, known)]
+    every = [
+        query
+        for variant in command.request
+        for query in requests(command, variant, known, limits_of(command, variant))
+    ]
     for query in every:
         first = probe.device.request(query)
         _judge(probe, first)

@@ -81,7 +81,15 @@ def _is_unread(table: Table, command: Command) -> bool:
 
 def _send_unread(probe: Probe) -> None:
     """Send the command once, with the mildest arguments, and judge what comes."""
+    power = probe.command.safety == "power"
+    if power:
+        give_power(probe.device)
     request_change(probe, gentle(probe.command))
+    powered = probe.device.command("powered")
+    on = probe.device.setter(powered, 1) if power and powered else None
+    if on is not None:
+        # It may have left the arm with power, but with joints that are not held.
+        probe.device.request(on.request_type())
     stop = probe.device.command("stop")
     if probe.command.safety == "motion" and stop is not None:
         probe.device.request(stop.request_type())
