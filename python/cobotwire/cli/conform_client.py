@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -18,8 +18,11 @@ from cobotwire.cli.shared.conform_report import (
     exit_if_not_testable,
     report_options,
 )
+from cobotwire.cli.shared.earlier_reports import earlier_report
 from cobotwire.cli.shared.serving import serve
-from cobotwire.conformance.client import FAULTS, Referee, ScriptLine, faulty_replies
+from cobotwire.cli.shared.started_client import started_client
+from cobotwire.conformance.client import FAULTS, ClientOptions, Referee, ScriptLine
+from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.inspect.call_arguments import parse, request_values, variant_of
 from cobotwire.protocol.errors import UsageError
@@ -64,6 +67,17 @@ from cobotwire.simulator.tcp import address
 @click.option("--no-acks", is_flag=True, help="Send no acknowledgements, as older firmware does.")
 @click.option("--seconds", type=float, help="End after this many seconds.")
 @click.option("--idle", type=float, help="End after this many seconds without a request.")
+@click.option(
+    "--command",
+    metavar="COMMAND",
+    help="Start this client ({port} becomes the port), and end when it ends.",
+)
+@click.option(
+    "--again",
+    type=click.Path(),
+    metavar="REPORT",
+    help="Repeat the run of a JSON report, with its options and script.",
+)
 @report_options
 @click.pass_obj
 def client(
@@ -77,6 +91,8 @@ def client(
     no_acks: bool,
     seconds: float | None,
     idle: float | None,
+    command: str | None,
+    again: str | None,
     files: ReportFiles,
 ) -> None:
     """Serve an arm, and judge the client that controls it.
@@ -92,23 +108,29 @@ def client(
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     with exit_if_not_testable():
         table = editions.load(edition).TABLE
-        for name, value in (("delay", delay), ("patience", patience)):
-            if not 0 <= value <= 60_000:
-                raise UsageError(name, value, "0..60000 milliseconds")
-        faults = [word for word in misbehave.split(",") if word]
+        text = "" if expect is None else _text(expect)
+        options = ClientOptions(misbehave, every, delay, patience, no_acks, text, expect or "")
+        earlier = earlier_report(None, again, options.for_report(), edition, "client")
+        if earlier is not None:
+            options = ClientOptions.of_report(earlier.options)
         referee = Referee(
             table,
-            subject=f"client on {listen}",
-            scenario=faulty_replies(delay / 1000, faults, every),
-            script=None if expect is None else list(read_script(table, expect)),
-            acks=not no_acks,
-            patience=patience / 1000,
+            subject=f"client on {listen}" if command is None else f"command {command}",
+            scenario=options.scenario(),
+            script=_script(table, options),
+            acks=not options.no_acks,
+            patience=options.patience / 1000,
             sources=spec_lines(edition),
         )
+        referee.report.options = options.for_report()
         # An import while the client waits would delay a reply, and a retry would look hasty.
         prepare()
         server = _server(listen, referee)
-        serve(server, between=[_Ending(server, referee, seconds, idle).check])
+        identify(referee.report, edition, port=server.url)
+        with started_client(command, server.url) as ended:
+            ending = _Ending(server, referee, seconds, idle, ended)
+            serve(server, between=[ending.check])
+            referee.report.stopped = ending.why
     conclude(referee.finish(), files)
 
 
@@ -116,16 +138,26 @@ class _Ending:
     """Ends the run when its time is over or the client has disconnected."""
 
     def __init__(
-        self, server: Server, referee: Referee, seconds: float | None, idle: float | None
+        self,
+        server: Server,
+        referee: Referee,
+        seconds: float | None,
+        idle: float | None,
+        ended: Callable[[], str | None],
     ) -> None:
         self._server, self._referee, self._idle = server, referee, idle
+        self._ended = ended
+        # Why the run ends before its end; empty: it does not.
+        self.why = ""
         self._end = None if seconds is None else time.monotonic() + seconds
         self._over = False
 
     def check(self) -> None:
         """Stop the server if the run is over."""
-        if not self._over and (self._late() or self._silent() or self._gone()):
-            self._over = True
+        ended = self._ended()
+        over = ended is not None or self._late() or self._silent() or self._gone()
+        if over and not self._over:
+            self._over, self.why = True, ended or ""
             self._server.stop()
 
     def _late(self) -> bool:
@@ -156,18 +188,28 @@ def _server(listen: str, referee: Referee) -> Server:
     return server
 
 
-def read_script(table: Table, path: str) -> Iterator[ScriptLine]:
-    """Yield the calls in a file.
-
-    Raises:
-        UsageError: the file cannot be read, or a line is not a call.
-    """
+def _text(path: str) -> str:
     try:
-        lines = Path(path).read_text(encoding="utf-8").splitlines()
+        return Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeError) as error:
         raise unusable_file("expect", path, error) from error
-    for number, line in enumerate(lines, 1):
-        place = f"{path}:{number}"
+
+
+def _script(table: Table, options: ClientOptions) -> list[ScriptLine] | None:
+    """Return the calls that the client makes; None if they are not known."""
+    if not options.script_name:
+        return None
+    return list(read_script(table, options.script, options.script_name))
+
+
+def read_script(table: Table, text: str, name: str) -> Iterator[ScriptLine]:
+    """Yield the calls in the text of a file.
+
+    Raises:
+        UsageError: a line is not a call.
+    """
+    for number, line in enumerate(text.splitlines(), 1):
+        place = f"{name}:{number}"
         try:
             if words := shlex.split(line, comments=True):
                 yield _script_line(table, words, place)

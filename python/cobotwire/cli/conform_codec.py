@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fnmatch import fnmatchcase
+import shlex
 from pathlib import Path
 
 import click
@@ -15,15 +15,16 @@ from cobotwire.cli.shared.conform_report import (
     exit_if_not_testable,
     report_options,
 )
-from cobotwire.conformance.codec import Program, Run, derive_questions, read_expectations
-from cobotwire.conformance.codec.expected import Expectation
+from cobotwire.cli.shared.earlier_reports import earlier_report
+from cobotwire.conformance.codec import CodecOptions, Program, Run, read_expectations
+from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.protocol.errors import UsageError
 
 
 # Our options come before COMMAND; everything after it belongs to COMMAND.
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
-@click.argument("command", nargs=-1, required=True)
+@click.argument("command", nargs=-1)
 @click.option(
     "--expected",
     type=click.Path(),
@@ -37,6 +38,12 @@ from cobotwire.protocol.errors import UsageError
 @click.option(
     "--repeat", type=int, default=1, show_default=True, help="How often to send each question."
 )
+@click.option(
+    "--again",
+    type=click.Path(),
+    metavar="REPORT",
+    help="Repeat the run of a JSON report, with its command and options.",
+)
 @report_options
 @click.pass_obj
 def codec(
@@ -46,6 +53,7 @@ def codec(
     only: str | None,
     timeout: float,
     repeat: int,
+    again: str | None,
     files: ReportFiles,
 ) -> None:
     """Test a codec, which COMMAND runs, against an edition.
@@ -58,26 +66,32 @@ def codec(
       cobotwire --edition mycobot280 conform codec -- ./my-codec --stdio
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     with exit_if_not_testable():
-        if repeat < 1:
-            raise UsageError("repeat", repeat, "a whole number from 1")
-        known = _expectations(expected)
+        text = "" if expected is None else _text(expected)
+        words = shlex.join(command)
+        options = CodecOptions(words, text, expected or "", only or "", timeout, repeat)
+        earlier = earlier_report(None, again, options.for_report(), edition, "codec")
+        if earlier is not None:
+            options = CodecOptions.of_report(earlier.options)
+        if not options.command:
+            raise UsageError("COMMAND", message="name the command that runs the codec, after --")
+        if options.repeat < 1:
+            raise UsageError("repeat", options.repeat, "a whole number from 1")
+        known = read_expectations(options.expected, options.expected_name)
         table = editions.load(edition).TABLE
-        every = derive_questions(table)
-        questions = [each for each in every if only is None or fnmatchcase(each.name, only)]
-        with Program(command, timeout=timeout) as program:
-            run = Run(table, program, expected=known, repeat=repeat, sources=spec_lines(edition))
+        with Program(options.words, timeout=options.timeout) as program:
+            lines = spec_lines(edition)
+            run = Run(table, program, expected=known, repeat=options.repeat, sources=lines)
+            run.report.options = options.for_report()
+            identify(run.report, edition, port=options.command)
             try:
-                run.ask_all(questions)
+                run.ask_all(options.questions(table))
             except KeyboardInterrupt:
                 click.echo("interrupted", err=True)
     conclude(run.report, files)
 
 
-def _expectations(path: str | None) -> list[Expectation]:
-    if path is None:
-        return []
+def _text(path: str) -> str:
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        return Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeError) as error:
         raise unusable_file("expected", path, error) from error
-    return read_expectations(text, path)

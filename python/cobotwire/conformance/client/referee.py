@@ -111,7 +111,8 @@ class Referee:
         due = self._history.missing_text()
         if due is not None:
             self._observe(missing_text(due), due)
-        self.report.finished = self.requests > 0
+        self.report.finished = self.requests > 0 and not self.report.stopped
+        self.report.seconds = self._now()
         self.report.results = [*self._tally.results(), *self._script_results()]
         return self.report
 

@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any, Protocol, Self
 
 from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.conformance.last_words import ending
 from cobotwire.protocol.errors import CobotwireError, LinkError
 
 # A longer line is not an answer: real answers need less than a hundredth of it.
@@ -185,10 +186,7 @@ class Program:
             code = process.wait(1.0)
         except subprocess.TimeoutExpired:
             return "it closed its output but is still running"
-        self._diagnostics.seek(0)
-        words = self._diagnostics.read().decode(errors="replace").strip().splitlines()
-        last = f"; its last diagnostics: {words[-1][:200]}" if words else ""
-        return f"it ended with code {code}{last}"
+        return ending(code, self._diagnostics)
 
 
 def _is_deeper(value: Any, levels: int) -> bool:

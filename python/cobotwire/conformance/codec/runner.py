@@ -97,24 +97,36 @@ class Run:
 
         The report holds the results so far, even if an exception ends the run.
         """
+        left = iter(questions)
         try:
-            for question in questions:
+            for question in left:
                 self._ask(question)
                 if until_failure and self._tally.failed:
                     break
+                if self._crashes >= MOST_CRASHES:
+                    self.report.stopped = f"the codec had ended or hung {MOST_CRASHES} times"
+                    break
             else:
                 self.report.finished = True
+        except KeyboardInterrupt:
+            self.report.stopped = "the run was interrupted"
+            raise
         finally:
+            if self.report.stopped:
+                self._leave_out(left)
             self.report.results = self._results()
+            self.report.seconds = self._clock() - self._started
         return self.report
+
+    def _leave_out(self, questions: Iterable[Question]) -> None:
+        """Report the test cases of questions that were not asked as not run."""
+        for case, command in {(each.case, each.command) for each in questions}:
+            reason = f"{self.report.stopped}."
+            self._tally.excuse(case, command, Cause.RUN_ENDED, reason)
 
     def _ask(self, question: Question) -> None:
         if question.needs not in self.greeting.can:
             self._unsupported(question, f"it does not offer to {question.needs}")
-            return
-        if self._crashes >= MOST_CRASHES:
-            complaint = f"not asked: it had ended or hung {MOST_CRASHES} times"
-            self._observe(question, [Observation(ANSWERS, complaint)], ())
             return
         first: list[Observation] | None = None
         for _ in range(self._repeat):
