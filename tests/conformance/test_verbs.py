@@ -12,7 +12,7 @@ import pytest
 import in_process
 import vectors
 from cobotwire.cli.app import app
-from cobotwire.conformance import Verdict
+from cobotwire.conformance import Cause, Verdict
 from cobotwire.conformance.reports import from_json
 from cobotwire.editions.mycobot280 import MyCobot280
 from in_process import Ended
@@ -198,3 +198,73 @@ def test_simulated_arm_of_unknown_geometry_conforms_without_coordinates(edition:
     words = ("--edition", edition, "conform", "device", "--simulated")
     ended = in_process.run(app, "cobotwire", *words, folder=vectors.ROOT)
     assert ended.returncode == 0, ended.stdout
+
+
+def test_statement_of_an_edition_is_printed_and_selects_test_cases(tmp_path: Path) -> None:
+    printed = _run("statement", "--edition", "mycobot")
+    assert printed.returncode == 0
+    assert "edition: mycobot\n" in printed.stdout
+    path, report = tmp_path / "arm.yaml", tmp_path / "report.json"
+    text = _run("statement").stdout
+    path.write_text(text.replace("get_tof_distance: implemented", "get_tof_distance: absent"))
+    ended = _run("device", "--simulated", "--statement", str(path), "--json", str(report))
+    assert ended.returncode == 1
+    assert "get_tof_distance is declared absent" in ended.stdout
+    # The report has the statement: the file is not needed to repeat the run.
+    path.unlink()
+    again = _run("device", "--simulated", "--again", str(report))
+    assert again.returncode == 1
+    assert again.stdout == ended.stdout
+
+
+def test_mistake_in_a_statement_ends_with_2_before_anything_is_sent(tmp_path: Path) -> None:
+    path = tmp_path / "arm.yaml"
+    path.write_text("statement: 1\nedition: mycobot280\ncommands: {get_angels: absent}\n")
+    ended = _run("device", "--simulated", "--statement", str(path))
+    assert ended.returncode == 2
+    assert f"{path}:3:12: commands has no key get_angels; did you mean get_angles?" in ended.stderr
+
+
+def test_run_on_a_codec_is_repeated_from_its_report(tmp_path: Path) -> None:
+    first, second = tmp_path / "first.json", tmp_path / "second.json"
+    words = ("--only", "encode-bytes/get_encoder/*", "--json", str(first), "--", *ADAPTER, "native")
+    assert _run("codec", *words).returncode == 0
+    assert _run("codec", "--again", str(first), "--json", str(second)).returncode == 0
+    one, other = (from_json(path.read_text()) for path in (first, second))
+    assert [(r.case, r.command, r.outcome) for r in one.results] == [
+        (r.case, r.command, r.outcome) for r in other.results
+    ]
+    assert one.options == other.options
+    assert one.edition_digest == other.edition_digest != ""
+
+
+def test_codec_that_always_crashes_ends_the_run(tmp_path: Path) -> None:
+    script, file = tmp_path / "codec.py", tmp_path / "report.json"
+    script.write_text(
+        "import json\nq = json.loads(input())\nprint(json.dumps({'id': q['id'], 'protocol': 1,"
+        " 'edition': 'mycobot280', 'can': ['encode request']}), flush=True)\n"
+    )
+    ended = _run("codec", "--json", str(file), "--", sys.executable, str(script))
+    assert ended.returncode == 1
+    report = from_json(file.read_text())
+    assert not report.finished
+    assert report.stopped == "the codec had ended or hung 5 times"
+    left = [result for result in report.results if result.cause is Cause.RUN_ENDED]
+    assert len(left) > 100
+
+
+@pytest.mark.parametrize("code", [0, 3])
+def test_client_that_is_started_ends_the_run_when_it_ends(code: int, tmp_path: Path) -> None:
+    script, file = tmp_path / "client.py", tmp_path / "report.json"
+    script.write_text(
+        "import sys\nfrom cobotwire import MyCobot280\n"
+        f"with MyCobot280(sys.argv[1]) as arm:\n    arm.get_angles()\nsys.exit({code})\n"
+    )
+    command = f"{sys.executable} {script} {{port}}"
+    words = [*CONFORM, "client", "--command", command, "--json", str(file)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=120)
+    report = from_json(file.read_text())
+    assert report.failures == []
+    assert report.finished is (code == 0)
+    assert done.returncode == (2 if code else 0)
+    assert ("ended with code 3" in report.stopped) is (code == 3)

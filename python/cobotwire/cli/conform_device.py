@@ -20,7 +20,7 @@ from cobotwire.cli.shared.conform_report import (
     report_options,
 )
 from cobotwire.cli.shared.earlier_reports import earlier_report
-from cobotwire.cli.shared.subject_connection import Lacking, Subject, connected
+from cobotwire.cli.shared.subject_connection import STARTING, Lacking, Subject, connected
 from cobotwire.conformance.device import (
     ATTACH,
     PERMISSIONS,
@@ -150,6 +150,8 @@ def device(
                 connection, table, spec_lines(edition), declared, lacking.reasons
             )
             identify(tester.report, edition, port=connection.name)
+            if subject.command is not None:
+                tester.device.await_start(STARTING)
             _run(tester, plan)
     conclude(tester.report, files)
 

@@ -59,6 +59,10 @@ class Lacking:
             self.reasons |= dict.fromkeys(same, self._why)
 
 
+# How long a program may take until it replies, in seconds.
+STARTING = 10.0
+
+
 @contextmanager
 def connected(table: Table, subject: Subject, lacking: Lacking) -> Iterator[DeviceConnection]:
     """Yield the connection with the device; a program that was started is stopped in the end.

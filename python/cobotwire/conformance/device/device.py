@@ -85,6 +85,27 @@ class Device:
         self.restore_after_body: dict[str, Restore] = {}
         self.restore_at_end: dict[str, Restore] = {}
 
+    def await_start(self, seconds: float) -> bool:
+        """Repeat a query until a device that has just been started replies; return whether it does.
+
+        Replies to the earlier queries are received, so that none is taken for another one.
+        """
+        query = self.command("powered") or self.command("joints")
+        if query is None:
+            return False
+        request, until = self.requester.prepare(query.request_type()), self.connection.now + seconds
+        sent = 1
+        response = self.requester.send(request)
+        while not response.replies and self.connection.now < until:
+            sent += 1
+            response = self.requester.send(request)
+        while response.replies and len(response.replies) < sent and self.connection.now < until:
+            received = len(response.replies)
+            self.requester.listen(response, self.connection.now, self.timing.grace)
+            if len(response.replies) == received:
+                break
+        return bool(response.replies)
+
     def command(self, role: Role) -> Command | None:
         """Return the first command in a role; None if the edition has none."""
         return self.table.find_role(role)

@@ -79,6 +79,7 @@ class StartedDevice:
         self._diagnostics = tempfile.TemporaryFile()  # noqa: SIM115  (closed by stop)
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  (closed by stop)
         self._ends: list[int] = []
+        self._how = ""
         try:
             self._process, inner = self._start(list(command), attach, baudrate)
         except BaseException:
@@ -100,12 +101,15 @@ class StartedDevice:
     def ended(self) -> str:
         """Return how the program ended; empty while it runs."""
         code = self._process.poll()
-        return "" if code is None else ending(code, self._diagnostics)
+        if not self._how and code is not None:
+            self._how = ending(code, self._diagnostics)
+        return self._how
 
     def stop(self) -> None:
         """Close the line and end the program, with the programs that it has started."""
         self.transport.close()
         _end(self._process)
+        self.ended()
         self._release()
 
     def _start(

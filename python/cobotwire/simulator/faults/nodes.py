@@ -53,6 +53,8 @@ def parse(
         message = f"the file has more than {MOST_CHARACTERS} characters, the limit"
         raise failed([f"{Place(name, 1, 1)}: {message}"])
     yaml = YAML(typ="safe", pure=True)
+    # The later anchor counts, as YAML says; that is no reason for a warning.
+    yaml.composer.warn_double_anchors = False
     yaml.max_depth = _DEEPEST + 5  # deeper files are not parsed; the others get a better message
     try:
         # Only nodes and single scalars are read, so that no tag can construct an object.
