@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
 
 import pytest
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import ClientConnection, connect
-from websockets.typing import Origin, Subprotocol
 
+from studio.feeds import watching
 from studio.studio_server import Studio, running
 
 HIDDEN = ["/../access.py", "/%2e%2e/access.py", "/vendor/../../access.py", "//etc/passwd", "/.git"]
@@ -25,28 +21,6 @@ FOREIGN = ["http://evil.example", "http://127.0.0.1:1", "http://localhost", "nul
 def studio() -> Iterator[Studio]:
     with running("--allow-motion", "--rate", "5") as server:
         yield server
-
-
-@contextmanager
-def watching(
-    studio: Studio, origin: str | None = None, token: str | None = None
-) -> Iterator[ClientConnection]:
-    """Open the feed as a page does, or with another origin or token."""
-    secret = studio.token if token is None else token
-    with connect(
-        f"ws://127.0.0.1:{studio.port}/api/feed",
-        origin=Origin(studio.origin) if origin is None else Origin(origin) if origin else None,
-        subprotocols=[Subprotocol("cobotwire-studio"), Subprotocol(f"token.{secret}")],
-        compression=None,
-    ) as feed:
-        yield feed
-
-
-def state(feed: ClientConnection, name: str) -> Any:
-    """Return the next state of that name that the feed reports."""
-    while name not in (states := json.loads(feed.recv(timeout=20))["states"]):
-        pass
-    return states[name]
 
 
 @pytest.mark.parametrize("path", API)
@@ -176,7 +150,7 @@ def test_body_that_is_too_long_or_no_object_is_refused(studio: Studio) -> None:
 def test_page_without_control_sends_nothing(studio: Studio) -> None:
     query = {"command": "get_angles", "arguments": {}}
     with watching(studio) as feed:
-        page = state(feed, "hello")["page"]
+        page = feed.state("hello")["page"]
         assert studio.post("/api/send", query, page).status == 403
         assert studio.post("/api/send", query, "").status == 403
         assert studio.post("/api/scenario", {"name": "panic"}, page).status == 403
@@ -190,15 +164,15 @@ def test_page_without_control_sends_nothing(studio: Studio) -> None:
 def test_one_page_at_a_time_may_send(studio: Studio) -> None:
     query = {"command": "get_angles", "arguments": {}}
     with watching(studio) as second:
-        other = state(second, "hello")["page"]
+        other = second.state("hello")["page"]
         with watching(studio) as first:
-            page = state(first, "hello")["page"]
+            page = first.state("hello")["page"]
             assert studio.post("/api/control", {"take": True}, page).status == 200
             assert studio.post("/api/control", {"take": True}, other).status == 403
             assert studio.post("/api/send", query, other).status == 403
             assert studio.post("/api/send", query, page).status == 200
         # A page that leaves gives up the control.
-        while state(second, "control")["page"]:
+        while second.state("control")["page"]:
             pass
         assert studio.post("/api/control", {"take": True}, other).status == 200
         assert studio.post("/api/send", query, other).status == 200
@@ -207,7 +181,7 @@ def test_one_page_at_a_time_may_send(studio: Studio) -> None:
 def test_motion_needs_the_switch_of_the_page_as_well(studio: Studio) -> None:
     power = {"command": "power_on", "arguments": {}}
     with watching(studio) as feed:
-        page = state(feed, "hello")["page"]
+        page = feed.state("hello")["page"]
         assert studio.post("/api/motion", {"on": True}, page).status == 403
         studio.post("/api/control", {"take": True}, page)
         refused = studio.post("/api/send", power, page)
@@ -221,15 +195,15 @@ def test_motion_needs_the_switch_of_the_page_as_well(studio: Studio) -> None:
 
 def test_every_page_may_stop_the_arm(studio: Studio) -> None:
     with watching(studio) as feed:
-        state(feed, "hello")
-        feed.send(json.dumps({"wish": "stop", "number": 7}))
-        assert state(feed, "stopped") == {"number": 7, "error": ""}
+        feed.state("hello")
+        feed.wish("stop", number=7)
+        assert feed.state("stopped") == {"number": 7, "error": ""}
     assert studio.post("/api/stop", {}).status == 200
 
 
 def test_values_that_the_edition_does_not_allow_are_not_sent(studio: Studio) -> None:
     with watching(studio) as feed:
-        page = state(feed, "hello")["page"]
+        page = feed.state("hello")["page"]
         studio.post("/api/control", {"take": True}, page)
         studio.post("/api/motion", {"on": True}, page)
         for command, given in (
@@ -250,15 +224,15 @@ def test_values_that_the_edition_does_not_allow_are_not_sent(studio: Studio) -> 
 
 def test_wishes_that_make_no_sense_are_ignored(studio: Studio) -> None:
     with watching(studio) as feed:
-        state(feed, "hello")
+        feed.state("hello")
         for text in ("", "[]", "{", '{"wish":"play"}', '{"wish":"stop","number":[]}', "[" * 4000):
-            feed.send(text)
-        assert state(feed, "stopped") == {"number": 0, "error": ""}
+            feed.connection.send(text)
+        assert feed.state("stopped") == {"number": 0, "error": ""}
 
 
 def test_without_allow_motion_only_queries_are_sent() -> None:
     with running() as studio, watching(studio) as feed:
-        page = state(feed, "hello")["page"]
+        page = feed.state("hello")["page"]
         studio.post("/api/control", {"take": True}, page)
         refused = studio.post("/api/motion", {"on": True}, page)
         assert (refused.status, "--allow-motion" in refused.json["error"]) == (403, True)

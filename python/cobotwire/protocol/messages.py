@@ -156,10 +156,10 @@ class Message:
             fields[name] = to_degrees(fields[name])
         return fields
 
-    @property
-    def fields_in_radians(self) -> frozenset[str]:
-        """The names of the fields in radians; the wire carries them in degrees."""
-        return self._radians
+    @classmethod
+    def fields_in_radians(cls) -> frozenset[str]:
+        """Return the names of the fields in radians; the wire carries them in degrees."""
+        return cls._radians
 
     @property
     def values(self) -> tuple[Any, ...]:

@@ -167,7 +167,7 @@ def _unanswered(name: str, address: Address | None) -> UsageError:
 def _in_units_of_caller(error: UsageError, command: Command, request: Request[Any]) -> UsageError:
     """Return the error in radians if the caller gave radians."""
     name = error.argument.partition(".")[0].partition("[")[0]
-    if name not in request.fields_in_radians:
+    if name not in request.fields_in_radians():
         return error
     fields = (field for variant in command.request for field in variant.fields)
     field = next(field for field in fields if field.name == name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -25,10 +26,11 @@ def _form(command: Command) -> Form:
         for name, found in fields.items()
         if len(found) < len(command.request) or any(f.default is not None for f in found)
     }
+    radians = command.request_type.fields_in_radians()
     arguments = [
         {"name": name, "kind": "text", "doc": "", "optional": False}
         if name in texts
-        else _argument(command, fields[name][0], name in optional)
+        else _argument(command, fields[name][0], name in optional, name in radians)
         for name in command.argument_names
     ]
     return {
@@ -44,7 +46,7 @@ def _form(command: Command) -> Form:
     }
 
 
-def _argument(command: Command, field: Field, optional: bool) -> Form:
+def _argument(command: Command, field: Field, optional: bool, radians: bool) -> Form:
     numbers = [] if field.kind in ("bytes", "text") else field.cases[0].numbers
     form: Form = {
         "name": field.name,
@@ -52,7 +54,9 @@ def _argument(command: Command, field: Field, optional: bool) -> Form:
         "doc": field.doc,
         "many": field.many,
         "optional": optional,
-        "elements": _elements(numbers),
+        "elements": [_in_radians(each) for each in _elements(numbers)]
+        if radians
+        else _elements(numbers),
         "choices": _choices(field),
     }
     if field.each or field.sizes:
@@ -82,6 +86,13 @@ def _elements(numbers: Sequence[Number]) -> list[Form]:
         else {"name": number.name, "unit": number.units, "low": None, "high": None, "step": "any"}
         for number in numbers
     ]
+
+
+def _in_radians(element: Form) -> Form:
+    """Return a number as callers give it, if the wire has degrees."""
+    # Rounded towards zero, so that the ends are allowed.
+    low, high = (math.trunc(math.radians(element[end]) * 1e4) / 1e4 for end in ("low", "high"))
+    return element | {"unit": "radians", "low": low, "high": high, "step": "any"}
 
 
 def _choices(field: Field) -> list[Form]:

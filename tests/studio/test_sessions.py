@@ -1,0 +1,171 @@
+"""Check the parts between the line and the pages, on every edition and on bad lines."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+import time
+from collections import deque
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire import editions
+from cobotwire.editions import mycobot280
+from cobotwire.simulator import SimulatedArm, TcpServer
+from cobotwire.simulator.faults import find
+from cobotwire.simulator.kinematics import flange, geometry_of
+from cobotwire.studio.arm_line import ArmLine, PortOptions
+from cobotwire.studio.describing import Described, Describer
+from cobotwire.studio.entries import Entry
+from cobotwire.studio.explained import Explainer
+from cobotwire.studio.forms import forms
+from cobotwire.studio.history import KEPT_ENTRIES, History
+from cobotwire.studio.live import LiveSession
+from cobotwire.studio.robot_facts import robot_facts
+from cobotwire.studio.samples import points
+from cobotwire.studio.sending import Preparer
+from cobotwire.studio.viewers import QUEUED_ENTRIES, Viewer
+
+EDITIONS = editions.names()
+
+
+def _filled(argument: dict[str, Any], given: dict[str, str], end: str) -> str | None:
+    """Return what a user of the page writes who takes one end of each range."""
+    elements = argument.get("elements") or []
+    for case in argument.get("cases", ()):
+        if given[argument["selector"]] in map(str, case["when"]):
+            elements = case["elements"]
+    if argument.get("choices") and len(elements) < 2:
+        return str(argument["choices"][0 if end == "low" else -1]["value"])
+    if elements and not argument.get("list"):
+        return ",".join(str(each[end] if each[end] is not None else 0) for each in elements)
+    texts = {"bytes": "00" * argument.get("size", 1), "text": "a" * argument.get("size", 3)}
+    return texts.get(argument["kind"])
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+@pytest.mark.parametrize("name", EDITIONS)
+def test_every_command_can_be_sent_from_its_form(name: str, end: str) -> None:
+    edition = editions.load(name)
+    preparer, explainer = Preparer(edition.TABLE), Explainer(edition, codecs.load(edition.TABLE))
+    for form in forms(edition.TABLE):
+        command, given = preparer.command(form["name"]), dict[str, str]()
+        for argument in sorted(form["arguments"], key=lambda each: "selector" in each):
+            text = _filled(argument, given, end)
+            # `speed` and `speeds` exclude each other: users of the page leave one empty.
+            exclusive = argument["optional"] and argument["name"] == "speeds"
+            if text is not None and not exclusive:
+                given[argument["name"]] = text
+        encoded = preparer.encoded(command, preparer.arguments(command, given))
+        explained = explainer.frame(encoded.frame + encoded.text)
+        assert explained["command"]["place"], form["name"]
+        shown = " ".join(part["hex"] for part in explained["parts"] if part["hex"])
+        assert shown == explained["hex"], form["name"]
+
+
+@pytest.mark.parametrize("name", EDITIONS)
+def test_every_edition_has_facts_for_the_page(name: str) -> None:
+    table = editions.load(name).TABLE
+    facts = robot_facts(table)
+    assert len(facts["joints"]) == table.joints or name.startswith("my")
+    assert bool(facts["reach"]) == (facts["noGeometry"] == "")
+    assert json.loads(json.dumps(facts)) == facts
+
+
+def test_points_end_at_the_flange_and_no_link_is_cut() -> None:
+    for name in EDITIONS:
+        geometry = geometry_of(editions.load(name).TABLE)
+        if geometry is None:
+            continue
+        angles = [10.0 * (joint + 1) for joint in range(geometry.joints)]
+        found = points(geometry, angles)
+        assert found is not None
+        assert found[-1] == [round(part, 3) for part in flange(geometry, angles).origin]
+        lengths = sum(math.dist(one, other) for one, other in pairwise(found))
+        assert lengths == pytest.approx(
+            sum(abs(link.a) + abs(link.d) for link in geometry.links), abs=0.1
+        )
+
+
+@pytest.fixture
+def line(request: pytest.FixtureRequest) -> Iterator[ArmLine]:
+    """Poll a simulated arm under a fault scenario."""
+    arm = SimulatedArm(mycobot280.TABLE, powered=True)
+    scenario = find(request.param, mycobot280.TABLE)
+    codec = codecs.load(mycobot280.TABLE)
+    with (
+        TcpServer(lambda: scenario.wrap(arm.connect(), codec)) as server,
+        ArmLine(mycobot280, PortOptions(server.url), 100.0) as polled,
+    ):
+        yield polled
+
+
+@pytest.mark.parametrize("line", ["servo-leaks", "corrupted-replies"], indirect=True)
+def test_every_byte_of_a_bad_line_is_in_one_entry(line: ArmLine) -> None:
+    polled = line
+    session = LiveSession(polled, deque())
+    traffic = []
+    take = polled.take
+
+    def note() -> Any:
+        new = take()
+        traffic.extend(new)
+        return new
+
+    polled.take = note  # type: ignore[method-assign]
+    end = time.monotonic() + 20
+    while not any(entry.finding for entry in session.entries()[:-20]):
+        assert time.monotonic() < end
+        session.pass_on()
+        time.sleep(0.02)
+    polled.__exit__()
+    session.pass_on()
+    time.sleep(0.35)
+    session.pass_on()
+    for direction in ("sent", "received"):
+        shown = [entry.data for entry in session.entries() if entry.direction == direction]
+        whole = b"".join(each.data for each in traffic if each.direction == direction)
+        assert b"".join(shown) == whole
+    times = [entry.time for entry in session.entries() if entry.direction == "received"]
+    assert times == sorted(times)
+
+
+def test_history_keeps_the_last_entries_by_their_numbers() -> None:
+    history = History()
+    for number in range(KEPT_ENTRIES + 10):
+        history.add(Entry(float(number), "sent", b""), Described(str(number), (f"s{number}",)))
+    assert history.find(9) is None
+    assert history.find(10) == Entry(10.0, "sent", b"")
+    assert history.find(KEPT_ENTRIES + 10) is None
+    assert history.find(-1) is None
+    assert history.last(2, 1) == (
+        [str(KEPT_ENTRIES + 8), str(KEPT_ENTRIES + 9)],
+        [f"s{KEPT_ENTRIES + 9}"],
+    )
+
+
+def test_slow_page_loses_the_oldest_entries_and_says_how_many() -> None:
+    async def watch() -> dict[str, Any]:
+        viewer = Viewer()
+        for number in range(QUEUED_ENTRIES + 50):
+            viewer.push([Described(str(number), ())])
+        async for batch in viewer.batches():
+            return dict(json.loads(batch))
+        raise AssertionError("there was no batch")
+
+    batch = asyncio.run(watch())
+    assert batch["states"]["lost"] == 50
+    assert batch["entries"] == list(range(50, QUEUED_ENTRIES + 50))
+
+
+def test_text_from_the_line_is_data_in_the_json() -> None:
+    hostile = b"</script><img src=x onerror=alert(1)>\r\n"
+    describer = Describer(codecs.load(mycobot280.TABLE))
+    written = json.loads(describer.describe(0, Entry(0.0, "received", hostile)).entry)
+    assert written["k"] == "noise"
+    assert bytes.fromhex(written["h"]) == hostile
