@@ -9,8 +9,12 @@ from typing import Any
 
 import pytest
 
+from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot280 import MyCobot280
+from cobotwire.simulator import ArmConnection, SimulatedArm, TcpServer
 from studio.driven_page import Page, browser
+from studio.recordings import TARGET as RECORDED
+from studio.recordings import record
 from studio.studio_server import Studio, running
 from targets.comparison import ToolMissing
 from targets.decoder.browser import chromium
@@ -46,7 +50,6 @@ def studio() -> Iterator[Studio]:
 @pytest.fixture
 def opened(page: Page, studio: Studio) -> Page:
     """Return the page on the simulated arm, at the width of a desktop."""
-    page.tab.events.clear()
     page.show()
     page.open(studio.url)
     page.until(f"{ANGLES}.every(Number.isFinite)")
@@ -152,9 +155,10 @@ def test_page_is_used_with_the_keyboard_alone(opened: Page) -> None:
     opened.until(
         "document.querySelector('.row.chosen') && document.getElementById('rows').scrollTop === 0"
     )
-    opened.press("ArrowDown")
     active = "document.getElementById('rows').getAttribute('aria-activedescendant')"
-    opened.until(f"{active} === document.querySelector('.row[data-index=\"1\"]').id")
+    first = opened.until(active)
+    opened.press("ArrowDown")
+    opened.until(f"{active} === document.querySelector('.row.chosen').id && {active} !== '{first}'")
     opened.until("document.querySelector('#details table')")
     opened.get("document.getElementById('control').focus()")
     opened.press("Enter")
@@ -171,8 +175,10 @@ def test_fault_scenario_is_seen_at_work(opened: Page) -> None:
     opened.until("document.querySelectorAll('#injected li').length > 3")
     assert "fault" in opened.text("injected")
     opened.choose("by-noise", "any")
-    opened.until(f"{ROWS}.some((row) => row.className.includes('noise'))")
-    opened.get(f"{ROWS}.find((row) => row.className.includes('noise')).click()")
+    opened.until(f"{ROWS}.length && {ROWS}.every((row) => !row.className.includes('frame'))")
+    opened.choose("by-noise", "servo")
+    opened.until(f"{ROWS}.length && {ROWS}.every((row) => row.className.includes('noise'))")
+    opened.click(".row:not([hidden])")
     opened.until("document.getElementById('details').textContent.includes('What to do')")
     opened.choose("scenario", "")
     opened.click("#begin")
@@ -229,3 +235,70 @@ def test_pictures_differ_while_the_arm_moves(opened: Page, tmp_path: Path) -> No
     opened.until(f"{drawn} !== {json.dumps(before)}")
     opened.picture(tmp_path / "moving.png")
     assert (tmp_path / "moving.png").stat().st_size > 10_000
+
+
+HOSTILE = b"</script><img src=x onerror=document.title=1><script>document.title=1</script>\r\n"
+
+
+class Hostile:
+    """An arm that sends markup before each reply."""
+
+    def __init__(self, arm: ArmConnection) -> None:
+        self._arm = arm
+
+    @property
+    def wait(self) -> float | None:
+        return self._arm.wait
+
+    def receive(self, data: bytes) -> bytes:
+        return HOSTILE + self._arm.receive(data)
+
+    def flush(self) -> bytes:
+        return self._arm.flush()
+
+
+def test_markup_on_the_line_stays_text(page: Page) -> None:
+    arm = SimulatedArm(mycobot280.TABLE)
+    page.show()
+    with TcpServer(lambda: Hostile(arm.connect())) as server, running(server.url) as studio:
+        page.open(studio.url)
+        page.choose("by-noise", "any")
+        page.until(f"{ROWS}.some((row) => row.textContent.includes('onerror=document.title=1'))")
+        page.get(f"{ROWS}.find((row) => row.textContent.includes('onerror')).click()")
+        page.until("document.getElementById('details').textContent.includes('onerror')")
+        assert page.get("document.querySelectorAll('img, main script').length") == 0
+        assert page.get("document.title") == "cobotwire studio"
+        assert page.complaints == []
+
+
+def test_edition_without_geometry_has_dials(page: Page) -> None:
+    page.show()
+    with running(edition="mercury_a1") as studio:
+        page.open(studio.url)
+        page.until(f"{ANGLES}.length === 7 && {ANGLES}.every(Number.isFinite)")
+        assert page.get("document.getElementById('scene').hidden")
+        assert "the geometry of this arm is not known" in page.text("no-geometry")
+
+
+def test_recording_is_scrubbed_and_played_in_the_page(page: Page, tmp_path: Path) -> None:
+    page.show()
+    path = record(tmp_path / "arm.pcapng")
+    with running(str(path)) as studio:
+        page.open(studio.url)
+        hidden = "getComputedStyle(document.getElementById('stop')).display"
+        assert page.get(hidden) == "none"
+        page.choose("scrub", "1.5")
+        page.until("document.getElementById('position').textContent.startsWith('0:01.5')")
+        page.until(f"{ANGLES}.every(Number.isFinite) && {ROWS}.length > 5")
+        half = page.get(ANGLES)
+        page.choose("speed", "10")
+        page.click("#play")
+        page.until(f"{ANGLES}.every((angle, at) => Math.abs(angle - {list(RECORDED)}[at]) < 0.1)")
+        assert half != page.get(ANGLES)
+        page.until("document.getElementById('play').textContent === 'Play'")
+        page.choose("by-command", "get_angles")
+        page.get("document.getElementById('export').requestSubmit()")
+        page.until(
+            "document.getElementById('export-status').textContent.startsWith('studio.pcapng, ')"
+        )
+        assert page.complaints == []

@@ -46,7 +46,8 @@ def feed(studio: Studio) -> Iterator[Feed]:
 
 
 def _joints(feed: Feed) -> list[float]:
-    return [sample["j"] for sample in feed.samples if "j" in sample][-1]
+    found: list[list[float]] = [sample["j"] for sample in feed.samples if "j" in sample]
+    return found[-1]
 
 
 def test_every_message_of_the_recording_is_played_once(
@@ -68,7 +69,8 @@ def test_seek_shows_what_came_until_then(feed: Feed, captured: list[CapturedMess
     start = captured[0].time_ns
     for seconds in (3.0, 0.5, 5.5):
         feed.wish("seek", value=seconds)
-        feed.until(lambda wanted=seconds: feed.states["player"]["position"] == wanted)
+        while feed.states["player"]["position"] != seconds:
+            feed.take()
         before = [each for each in captured if each.time_ns - start <= seconds * 1e9]
         assert feed.entries[-1]["n"] == len(before) - 1
         replies: list[Any] = [m.message for m in before if hasattr(m.message, "angles")]

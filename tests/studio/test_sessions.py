@@ -100,7 +100,7 @@ def line(request: pytest.FixtureRequest) -> Iterator[ArmLine]:
     codec = codecs.load(mycobot280.TABLE)
     with (
         TcpServer(lambda: scenario.wrap(arm.connect(), codec)) as server,
-        ArmLine(mycobot280, PortOptions(server.url), 100.0) as polled,
+        ArmLine(editions.load("mycobot280"), PortOptions(server.url), 100.0) as polled,
     ):
         yield polled
 

@@ -39,7 +39,8 @@ export class Line {
     });
     this.place.addEventListener("click", (event) => {
       const row = event.target.closest(".row");
-      if (row) this.select(Number(row.dataset.index));
+      // By its number, since the list may have changed since it was drawn.
+      if (row) this.select(this.shown.findIndex((entry) => entry.n === Number(row.dataset.number)));
     });
     this.place.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(this.redraw).observe(this.place);
@@ -184,7 +185,7 @@ function makeRow(spacer) {
 
 function fillRow(row, entry, index, height, chosen) {
   row.id = `row-${entry.n}`;
-  row.dataset.index = index;
+  row.dataset.number = entry.n;
   row.style.top = `${index * height}px`;
   row.className = `row ${entry.k} ${entry.d}${chosen ? " chosen" : ""}`;
   row.setAttribute("aria-selected", String(chosen));
