@@ -1,4 +1,4 @@
-"""Parses YAML to nodes that know their place. The only importer of the YAML library."""
+"""Parses YAML to nodes that know their place. It and ``c_parser`` alone import the YAML library."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode, SequenceNode
 from ruamel.yaml.nodes import Node as YamlNode
 from ruamel.yaml.reader import ReaderError
 
+from cobotwire_codegen.c_parser import plain_root
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.legal import odd_character
 from cobotwire_codegen.yaml_words import Mistake, Spot, explained
@@ -129,7 +130,7 @@ def parsed(text: str, name: str) -> Parsed:
         raise SpecError([Problem(Place(name, 1, 1), "too-large", message)])
     converter = _Converter(name)
     try:
-        root = _yaml().compose(text)
+        root = plain_root(text, DEEPEST) or _yaml().compose(text)
         node = None if root is None else converter.node(root, ())
     except MarkedYAMLError as error:
         raise SpecError([_syntax(error, text, name)]) from error
