@@ -6,6 +6,7 @@ import json
 
 import click
 
+from cobotwire.conformance.catalogue import VERSION
 from cobotwire.conformance.client import SUITE as CLIENTS
 from cobotwire.conformance.codec import SUITE as CODECS
 from cobotwire.conformance.device import PERMISSIONS
@@ -23,8 +24,10 @@ CASES: dict[str, dict[str, str]] = {
 def cases(as_json: bool) -> None:
     """List the test cases for each subject, and the permissions for a run on a device."""
     if as_json:
-        click.echo(json.dumps({"cases": CASES, "permissions": PERMISSIONS}, indent=1))
+        found = {"catalogue": VERSION, "cases": CASES, "permissions": PERMISSIONS}
+        click.echo(json.dumps(found, indent=1))
         return
+    click.echo(f"catalogue version {VERSION}")
     for kind, found in CASES.items():
         _list(f"conform {kind}:", found)
     _list("conform device --allow:", PERMISSIONS)

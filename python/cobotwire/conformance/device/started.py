@@ -175,6 +175,9 @@ class StartedDevice:
 
 def _pair() -> tuple[int, int, str]:
     """Return our end and the program's end of a connection."""
+    if sys.platform == "win32":
+        message = "Windows cannot wait for a program's output: use --attach port"
+        raise UsageError("attach", "stdio", message=message)
     ours, theirs = socket.socketpair()
     return ours.detach(), theirs.detach(), ""
 
@@ -182,7 +185,9 @@ def _pair() -> tuple[int, int, str]:
 def _pty() -> tuple[int, int, str]:
     """Return our end and the program's end of a pseudo-terminal, and the path of the latter."""
     if sys.platform == "win32":
-        raise UsageError("attach", "pty", message="Windows has no pseudo-terminals: use --attach")
+        raise UsageError(
+            "attach", "pty", message="Windows has no pseudo-terminals: use --attach port"
+        )
     import tty
 
     ours, theirs = os.openpty()

@@ -155,6 +155,7 @@ def _names(commands: Sequence[str]) -> str:
 def _origin(report: Report) -> Iterator[Element]:
     """Yield what is needed to understand and repeat the run."""
     environment = report.environment
+    subject = "device URL" if report.kind == "device" else report.kind
     facts = {
         "edition": f"{report.edition}, SHA-256 {report.edition_digest}",
         "code": f"SHA-256 {report.code_digest}" if report.code_digest else "",
@@ -164,7 +165,7 @@ def _origin(report: Report) -> Iterator[Element]:
         "cobotwire": f"{environment.package}, {environment.codec} codec",
         "port": environment.port,
         "order": "as listed; nothing is drawn at random",
-        "repeat": f"cobotwire --edition {report.edition} conform {report.kind} --again REPORT.json",
+        "repeat": f"cobotwire --edition {report.edition} conform {subject} --again REPORT.json",
     }
     if report.code_digest:
         summary = element("summary", "Where this report comes from, and how to repeat the run")
