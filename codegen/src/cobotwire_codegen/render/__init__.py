@@ -19,10 +19,11 @@ from jinja2 import (
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Edition, Enum, Flag, Listed, Quantity, Type, Value
 from cobotwire_codegen.publish import edition_json, sources_json
-from cobotwire_codegen.render import layout, markdown, parameters, python_api, words
-from cobotwire_codegen.render.byte_table import byte_rows
+from cobotwire_codegen.render import examples, layout, markdown, parameters, python_api, words
+from cobotwire_codegen.render.byte_table import byte_rows, on_one_line, only_fixed
 from cobotwire_codegen.render.diagram import byte_diagram
 from cobotwire_codegen.render.escape_markdown import escaped
+from cobotwire_codegen.render.example_call import example_call, example_result
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.messages import message_classes
 from cobotwire_codegen.render.sharing import Sharing, local_imports
@@ -170,7 +171,12 @@ def environment(templates: Path | None = None) -> Environment:
         params=parameters,
         words=words,
         md=markdown,
+        examples=examples,
         byte_rows=byte_rows,
+        only_fixed=only_fixed,
+        on_one_line=on_one_line,
+        example_call=example_call,
+        example_result=example_result,
         lower=lower,
         local_imports=local_imports,
     )

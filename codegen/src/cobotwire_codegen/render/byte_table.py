@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Command, Edition, Field, Frame, FrameNumber, Value
 from cobotwire_codegen.model.frame import Direction
+from cobotwire_codegen.render.diagram import FIXED, Row, label
 from cobotwire_codegen.render.markdown import wire_variant
 from cobotwire_codegen.wire import size
 
-Row = tuple[str, str, str]
 _SHOWN = 8
 
 
@@ -35,6 +35,16 @@ def byte_rows(
             yield _place(position, width), name, content
             position += width
     yield from _ending(frame, position)
+
+
+def only_fixed(rows: Iterable[Row]) -> bool:
+    """Return whether a message consists of fixed bytes alone, so that it has a single frame."""
+    return all(content in FIXED for _, content, _ in rows)
+
+
+def on_one_line(rows: Iterable[Row]) -> str:
+    """Return a message as a row of bytes and names of fields."""
+    return " ".join(label(content, value) for _, content, value in rows)
 
 
 def _place(position: int, width: int) -> str:
@@ -82,9 +92,9 @@ def _parts(field: Field) -> Iterator[tuple[str, int, str]]:
     if not isinstance(first, Value):
         yield f"`{field.name}`", size(first), " or ".join(wire_variant(type) for type in types)
         return
-    for index, (label, item) in enumerate(first.items):
+    for index, (part, item) in enumerate(first.items):
         kinds = dict.fromkeys(
             wire_variant(type.items[index][1]) for type in types if isinstance(type, Value)
         )
         names = dict.fromkeys(type.items[index][0] for type in types if isinstance(type, Value))
-        yield f"`{field.name}` {'/'.join(names) or label}", item.wire.width, " or ".join(kinds)
+        yield f"`{field.name}` {'/'.join(names) or part}", item.wire.width, " or ".join(kinds)

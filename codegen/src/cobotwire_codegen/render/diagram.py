@@ -12,24 +12,44 @@ FIXED = ("header", "LEN", "CMD", "footer")
 Row = tuple[str, str, str]
 
 
-def byte_diagram(rows: Iterable[Row]) -> str:
-    """Return the rows of a byte table (position, content, value) as lines of boxes."""
-    lines: list[list[tuple[str, str]]] = [[]]
+# The position of a part of a message, the label in its box, and its bytes in the example.
+Cell = tuple[str, str, str]
+
+
+def byte_diagram(rows: Iterable[Row], example: bytes = b"") -> str:
+    """Return the rows of a byte table (position, content, value) as lines of boxes.
+
+    The bytes of ``example``, a frame of that length, are below the boxes.
+    """
+    lines: list[list[Cell]] = [[]]
     used = 0
     for position, content, value in rows:
-        label = value if content in FIXED else content.replace("`", "").rpartition(" ")[2]
-        width = max(len(position), len(label)) + 3
+        cell = (position, label(content, value), _part(example, position))
+        width = max(map(len, cell)) + 3
         if lines[-1] and used + width > WIDTH:
             lines.append([])
             used = 0
-        lines[-1].append((position, label))
+        lines[-1].append(cell)
         used += width
     return "\n".join(_boxes(line) for line in lines)
 
 
-def _boxes(cells: list[tuple[str, str]]) -> str:
+def label(content: str, value: str) -> str:
+    """Return what stands for a part of a message: its bytes if they are fixed, else its name."""
+    return value if content in FIXED else content.replace("`", "").rpartition(" ")[2]
+
+
+def _part(example: bytes, position: str) -> str:
+    first, _, last = position.partition("-")
+    return example[int(first) : int(last or first) + 1].hex(" ").upper()
+
+
+def _boxes(cells: list[Cell]) -> str:
     widths = [max(map(len, cell)) for cell in cells]
-    above = "".join(f"  {position:<{w}} " for (position, _), w in zip(cells, widths))
-    inside = "".join(f"│ {label:<{w}} " for (_, label), w in zip(cells, widths))
+    above, below = (
+        "".join(f"  {cell[at]:<{w}} " for cell, w in zip(cells, widths)).rstrip() for at in (0, 2)
+    )
+    inside = "".join(f"│ {label:<{w}} " for (_, label, _), w in zip(cells, widths))
     edges = ["─" * (w + 2) for w in widths]
-    return "\n".join((above.rstrip(), f"┌{'┬'.join(edges)}┐", f"{inside}│", f"└{'┴'.join(edges)}┘"))
+    boxes = (f"┌{'┬'.join(edges)}┐", f"{inside}│", f"└{'┴'.join(edges)}┘")
+    return "\n".join((above, *boxes, *filter(None, [below])))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Literal
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import (
+    Change,
     Command,
+    Dispute,
     Edition,
     Erratum,
     Field,
@@ -21,8 +24,6 @@ from cobotwire_codegen.model.shapes import Shaped
 from cobotwire_codegen.render.arguments import constant_in_words, default_in_words
 from cobotwire_codegen.render.escape_markdown import code as code
 from cobotwire_codegen.render.words import decimal, span
-
-Direction = Literal["request", "reply"]
 
 
 def wire_variant(type: Type) -> str:
@@ -39,19 +40,6 @@ def wire_variant(type: Type) -> str:
         return f"{type.wire.name}, {type.unit}" if type.unit else type.wire.name
     times = decimal(Fraction(1) / type.scale)
     return f"{type.wire.name}, {type.unit or 'value'} x {times}"
-
-
-def worked(edition: Edition, command: Command, direction: Direction) -> Vector | None:
-    """Return the best example of a message: preferably one that the document prints.
-
-    A vector that was derived from another edition's is the last choice.
-    """
-    fitting = [
-        vector
-        for vector in edition.vectors
-        if vector.command == command.name and vector.direction == direction and vector.frame
-    ]
-    return min(fitting, key=lambda each: (each.derived is not None, not each.example), default=None)
 
 
 def text_vector(edition: Edition, command: Command) -> Vector | None:
@@ -98,10 +86,62 @@ def disputed_types(edition: Edition, command: Command) -> list[Quantity]:
     return list(found.values())
 
 
+def encoding(field: Field) -> str:
+    """Return how a field is encoded, each number format and scale once."""
+    found = []
+    for _, type in lower.cases(field):
+        items = [item for _, item in type.items] if isinstance(type, Value) else [type]
+        found += [wire_variant(item) for item in items]
+    return "; ".join(dict.fromkeys(found))
+
+
+def acknowledgements(edition: Edition) -> list[Field]:
+    """Return the fields of the acknowledgements of all commands, each once."""
+    fields = [f for c in edition.commands if c.ack for variant in c.replies for f in variant]
+    return list({(field.name, field_doc(field)): field for field in fields}.values())
+
+
+def disputes(edition: Edition, command: Command) -> list[Dispute]:
+    """Return the disputes about a command and about the quantities that it carries."""
+    types = disputed_types(edition, command)
+    return [*command.disputed, *(each for type in types for each in type.disputed)]
+
+
+def source_words(
+    edition: Edition,
+    disputes: Sequence[Dispute],
+    changes: Sequence[Change],
+    errata: Sequence[Erratum],
+    derived: Sequence[Vector],
+) -> str:
+    """Return what the sources of a command have to say, as the line that opens them."""
+    mistakes = "1 mistake" if len(errata) == 1 else f"{len(errata)} mistakes"
+    parts = (
+        (
+            disputes,
+            "disputed: " + "1 fact" if len(disputes) == 1 else f"disputed: {len(disputes)} facts",
+        ),
+        (changes, f"differs from {edition.base}"),
+        (errata, f"{mistakes} in the document"),
+        (derived, "where the example comes from"),
+    )
+    words = "; ".join(text for found, text in parts if found)
+    return words[:1].upper() + words[1:]
+
+
+def linked(text: str) -> str:
+    """Return an escaped text with links in place of its addresses."""
+    return re.sub(r"https://[\w./#-]*[\w/]", lambda match: f"<{match[0]}>", text)
+
+
 def field_rows(command: Command) -> list[tuple[str, Field]]:
-    """Return the fields of every variant, each once, with their direction."""
+    """Return the fields of every variant, each once, with their direction.
+
+    Those of acknowledgements are described once for the edition.
+    """
+    replies = () if command.ack else command.replies
     rows = [("request", field) for variant in command.requests for field in variant]
-    rows += [("reply", field) for variant in command.replies for field in variant]
+    rows += [("reply", field) for variant in replies for field in variant]
     seen: dict[tuple[str, str, Type], tuple[str, Field]] = {}
     for direction, field in rows:
         seen.setdefault((direction, field.name, field.type), (direction, field))

@@ -1,0 +1,72 @@
+"""Chooses the example frames that the reference of a command shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from cobotwire_codegen.model import Command, Edition, Vector
+from cobotwire_codegen.render.words import lines
+
+Direction = Literal["request", "reply"]
+
+
+def examples(edition: Edition, command: Command) -> dict[Direction, Vector]:
+    """Return the request and the reply that a page shows; the reply repeats the request's values.
+
+    The document's own frames come first, and vectors derived from another edition's last.
+    """
+    every = [v for v in edition.vectors if v.command == command.name and v.frame]
+    every.sort(key=_rank)
+    requests = [vector for vector in every if vector.direction == "request"]
+    replies = [vector for vector in every if vector.direction == "reply"]
+    pairs = [(a, b) for a in requests for b in replies if _agree(edition, command, a, b)]
+    if pairs:
+        request, reply = min(pairs, key=lambda pair: (_rank(pair[0]), _rank(pair[1])))
+        return {"request": request, "reply": reply}
+    found: dict[Direction, Vector] = {"request": requests[0]} if requests else {}
+    return found | ({"reply": replies[0]} if replies else {})
+
+
+def _rank(vector: Vector) -> tuple[bool, bool]:
+    return vector.derived is not None, not vector.example
+
+
+def _agree(edition: Edition, command: Command, request: Vector, reply: Vector) -> bool:
+    if edition.frame.address_values and request.frame and reply.frame:
+        at = edition.frame.offset("address")
+        if request.frame[at] != reply.frame[at]:
+            return False
+    sent, received = dict(request.values), dict(reply.values)
+    echoed = {field.name for variant in command.replies for field in variant if field.echo}
+    return all(sent[name] == received[name] for name in echoed & sent.keys() & received.keys())
+
+
+def example_frame(edition: Edition, command: Command, direction: Direction, size: int) -> bytes:
+    """Return the frame of an example of one variant, which has ``size`` bytes; empty if none has.
+
+    It is that of :func:`examples` if that has the size.
+    """
+    chosen = examples(edition, command).get(direction)
+    every = [v for v in edition.vectors if v.command == command.name and v.direction == direction]
+    fitting = [
+        v.frame for v in [*([chosen] if chosen else []), *sorted(every, key=_rank)] if v.frame
+    ]
+    return next((frame for frame in fitting if len(frame) == size), b"")
+
+
+def example_lines(edition: Edition, command: Command) -> str:
+    """Return the lines of the document that print the examples of a page; empty if none does."""
+    found = sorted({v.line for v in examples(edition, command).values() if v.line})
+    one = "an example" if len(found) == 1 else "examples"
+    return f"; {one} in {lines(tuple((line, line) for line in found))}" if found else ""
+
+
+def derived(edition: Edition, command: Command) -> list[Vector]:
+    """Return the examples of a page that were derived from those of the base."""
+    return [vector for vector in examples(edition, command).values() if vector.derived]
+
+
+def size_of(rows: Sequence[tuple[str, str, str]]) -> int:
+    """Return how many bytes a message with these rows has."""
+    return int(rows[-1][0].rpartition("-")[2]) + 1
