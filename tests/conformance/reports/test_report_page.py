@@ -134,3 +134,25 @@ def test_text_of_a_device_is_never_markup(text: str) -> None:
     assert policy is not None
     assert "default-src 'none'" in policy
     assert "unsafe" not in policy
+
+
+def test_failures_of_a_codec_are_grouped_without_their_values() -> None:
+    report = Report("codec", "mycobot280", "codec", finished=True)
+    report.results = [
+        Result(
+            "decode-values",
+            name,
+            Verdict.FAIL,
+            f"decode-values/{name}/reply/x={at}: expected {{'x': {at}}}, but the answer was {at}",
+        )
+        for at, name in enumerate(["get_speed", "get_angles"])
+    ]
+    [group] = group_by_cause(report.failures)
+    assert group.commands == ["get_speed", "get_angles"]
+
+
+@pytest.mark.parametrize("text", ["(" * 9000, "FE " * 9000, "[" * 4000 + "]" * 4000, "a/" * 9000])
+def test_long_reason_is_grouped(text: str) -> None:
+    # Without a limit, some of these take minutes.
+    results = [Result("x", "", Verdict.FAIL, text) for _ in range(50)]
+    assert len(group_by_cause(results)) == 1

@@ -20,6 +20,7 @@ from cobotwire.conformance.reports.html_parts import (
     counted_of,
     heading,
     order_of,
+    shortened,
     sign_of,
     title_of,
     words_of,
@@ -79,7 +80,7 @@ def _head(report: Report, title: str) -> Iterator[Element]:
     yield element("p", *chips)
     facts = {
         "edition": report.edition,
-        "firmware": report.firmware or "not reported",
+        "firmware": (report.firmware or "not reported") if report.kind == "device" else "",
         "started": f"{report.started}, {report.seconds:.1f} s",
         "catalogue": f"version {report.catalogue}" if report.catalogue else "",
         "options": _options(report) or "none: only what needs no permission",
@@ -145,7 +146,7 @@ def _cause(group: CauseGroup, purpose: str) -> Element:
 
 def _place(command: str, reason: str) -> Element:
     link = element("a", title_of(command), href=f"#{anchor(command)}")
-    return element("li", link, f" {reason}")
+    return element("li", link, f" {shortened(reason)}")
 
 
 def _names(commands: Sequence[str]) -> str:

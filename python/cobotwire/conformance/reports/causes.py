@@ -8,10 +8,15 @@ from dataclasses import dataclass
 
 from cobotwire.conformance.report import Result
 
+# The characters of a reason that are compared: a device may cause very long ones.
+MOST = 600
 # What may differ between two reasons with one cause: bytes, numbers, arguments.
-BYTES = re.compile(r"\b[0-9A-F]{2}(?: [0-9A-F]{2})*\b")
+BYTES = re.compile(r"\b(?:[0-9A-F]{2} ?)+\b")
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
-ARGUMENTS = re.compile(r"\([^()]*\)")
+ARGUMENTS = re.compile(r"\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}")
+# The name of a question to a codec, and what its answer held.
+QUESTION = re.compile(r"^\S+/\S+: ")
+ANSWER = re.compile(r"but the answer was (\S+) .*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +45,10 @@ def group_by_cause(results: Sequence[Result]) -> list[CauseGroup]:
 
 def pattern(result: Result) -> str:
     """Return the reason without what differs between commands and values."""
-    text = result.reason
+    text = result.reason[:MOST]
     if result.command:
         text = text.replace(result.command, "COMMAND")
+    text = ANSWER.sub(r"but the answer was \1", QUESTION.sub("", text))
     # From the inside out: arguments may have rows, in parentheses of their own.
     while text != (text := ARGUMENTS.sub("", text)):
         pass

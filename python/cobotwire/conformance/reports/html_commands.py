@@ -14,6 +14,7 @@ from cobotwire.conformance.reports.html_parts import (
     class_of,
     heading,
     order_of,
+    shortened,
     sign_of,
     title_of,
     words_of,
@@ -21,6 +22,8 @@ from cobotwire.conformance.reports.html_parts import (
 
 # The last exchanges that the page shows of what passed; the JSON report has more.
 OF_PASSES = 3
+# How many further failures of a test case it describes.
+FURTHER = 3
 ARROWS = {"sent": "→", "received": "←"}
 
 
@@ -78,8 +81,11 @@ def _alike(results: Sequence[Result]) -> Element:
     names = ", ".join(result.case for result in results)
     mark = sign_of(first.verdict, first.cause)
     head = element("b", f"{mark} {names}", class_=class_of(first.verdict, first.cause))
-    also = [element("div", f"also, {text}", class_="faint") for text in first.further]
-    return element("div", head, f" {first.reason}", *also)
+    also = [f"also, {shortened(text)}" for text in first.further[:FURTHER]]
+    if len(first.further) > FURTHER:
+        also.append("the JSON report describes more")
+    lines = (element("div", text, class_="faint") for text in also)
+    return element("div", head, f" {first.reason}", *lines)
 
 
 def _evidence(kind: Kind, exchanges: Sequence[Exchange]) -> Iterator[Element]:

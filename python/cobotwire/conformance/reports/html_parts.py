@@ -7,6 +7,8 @@ from xml.etree.ElementTree import Element
 from cobotwire.conformance.report import Cause, Verdict
 from cobotwire.conformance.reports.element import element
 
+# The characters of a text that is also elsewhere.
+LONGEST = 200
 # In the order in which outcomes are listed.
 SIGNS = {
     (Verdict.FAIL, Cause.NONE): "✗",
@@ -46,6 +48,11 @@ def words_of(count: int, outcome: tuple[Verdict, Cause]) -> str:
 def counted_of(count: int, noun: str) -> str:
     """Return a count with its noun, in the plural if need be."""
     return f"{count} {noun}" + ("s" if count != 1 else "")
+
+
+def shortened(text: str) -> str:
+    """Return the start of a long text; all of it is elsewhere."""
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
 
 
 def heading(id: str, title: str, more: str = "") -> Element:
