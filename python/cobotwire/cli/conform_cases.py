@@ -24,8 +24,8 @@ CASES: dict[str, dict[str, str]] = {
 def cases(as_json: bool) -> None:
     """List the test cases for each subject, and the permissions for a run on a device."""
     if as_json:
-        found = {"catalogue": VERSION, "cases": CASES, "permissions": PERMISSIONS}
-        click.echo(json.dumps(found, indent=1))
+        listed = {"catalogue": VERSION, "cases": CASES, "permissions": PERMISSIONS}
+        click.echo(json.dumps(listed, indent=1))
         return
     click.echo(f"catalogue version {VERSION}")
     for kind, found in CASES.items():

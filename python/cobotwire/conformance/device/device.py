@@ -57,6 +57,8 @@ class Device:
     ) -> None:
         self.connection = connection
         self.statement = statement or Statement()
+        # How many joints the device has: one of several devices may have fewer than the edition.
+        self.joints = (address and address.joints) or codec.table.joints
         self.table: Table = codec.table
         self.permissions = permissions
         self.timing = timing

@@ -63,6 +63,8 @@ def requests(
     """Return requests of a variant: each field in turn takes its samples; the rest stay."""
     found: dict[RawValues, None] = {}
     for picked in picks(variant):
+        if not all(_is_within(limits or {}, variant.fields[at], raw) for at, raw in picked.items()):
+            continue
         lists = [
             [(picked[index],)]
             if index in picked
@@ -76,6 +78,10 @@ def requests(
             dict.fromkeys(with_row(base, at, row) for at, rows in enumerate(lists) for row in rows)
         )
     return [_typed(command, _arguments(variant, raw_values)) for raw_values in found]
+
+
+def _is_within(limits: Limits, field: Field, raw: int) -> bool:
+    return raw in limits.get(field.name, (raw,))
 
 
 def limits_of(command: Command, variant: Variant) -> Limits:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, limits_of, requests
 from cobotwire.conformance.device.response import ReceivedReply, Response
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Field, Table
 
 # Between two requests a value with a unit may move by this share of its range.
@@ -50,6 +53,7 @@ def _query(probe: Probe) -> None:
         query
         for variant in command.request
         for query in requests(command, variant, known, limits_of(command, variant))
+        if _has_part(probe, query)
     ]
     for query in every:
         first = probe.device.request(query)
@@ -60,6 +64,13 @@ def _query(probe: Probe) -> None:
         _judge_repetition(probe, first.valid, again.valid)
     if command.name in probe.device.retried:
         probe.note(REPLIED, "A reply came, but only when the query was repeated.")
+
+
+def _has_part(probe: Probe, query: Request[Any]) -> bool:
+    """Return whether the device has the joint that a query names: some have fewer joints."""
+    device = probe.device
+    fewer = device.joints < device.table.joints
+    return not fewer or query.fields.get("joint", 1) <= device.joints
 
 
 def _judge(probe: Probe, response: Response) -> None:
