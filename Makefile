@@ -16,7 +16,7 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos front-end
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos front-end four-hours studio-pictures
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -61,6 +61,12 @@ waiting-tests:
 
 front-end: ## fetch the JavaScript that the page of `cobotwire studio` and its test need
 	$(PYTHON) tools/front_end.py
+
+four-hours: .venv/.tools .venv/.native front-end ## show four hours of a 50 Hz line in the studio; memory must stay the same
+	PYTHONPATH=python:tests $(BIN)/python -m studio.four_hours $(HOURS)
+
+studio-pictures: .venv/.tools .venv/.native front-end ## take the pictures of docs/studio.md
+	PYTHONPATH=python:tests $(BIN)/python -m studio.pictures docs/plots
 
 gen: .venv/.tools ## write the generated files from spec/
 	$(BIN)/cobotwire-gen

@@ -63,7 +63,7 @@ class Studio(NamedTuple):
         data = None if body is None else body if isinstance(body, bytes) else json.dumps(body)
         try:
             connection.putrequest(method, path, skip_host="host" in given)
-            if data is not None and "content-length" not in given:
+            if data is not None and "transfer-encoding" not in given:
                 given["content-length"] = str(len(data))
             for name, value in given.items():
                 connection.putheader(name, value)

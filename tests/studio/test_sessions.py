@@ -8,6 +8,7 @@ import math
 import time
 from collections import deque
 from collections.abc import Iterator
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -28,7 +29,7 @@ from cobotwire.studio.history import KEPT_ENTRIES, History
 from cobotwire.studio.live import LiveSession
 from cobotwire.studio.robot_facts import robot_facts
 from cobotwire.studio.samples import points
-from cobotwire.studio.sending import Preparer
+from cobotwire.studio.sending import Control, NotPermitted, Preparer
 from cobotwire.studio.viewers import QUEUED_ENTRIES, Viewer
 
 EDITIONS = editions.names()
@@ -133,6 +134,50 @@ def test_every_byte_of_a_bad_line_is_in_one_entry(line: ArmLine) -> None:
         assert b"".join(shown) == whole
     times = [entry.time for entry in session.entries() if entry.direction == "received"]
     assert times == sorted(times)
+
+
+@pytest.fixture
+def idle_line() -> Iterator[ArmLine]:
+    """Return the line of an arm that has power and is not polled."""
+    arm = SimulatedArm(mycobot280.TABLE, powered=True)
+    with (
+        TcpServer(arm.connect) as server,
+        ArmLine(editions.load("mycobot280"), PortOptions(server.url), 0.0) as line,
+    ):
+        yield line
+
+
+def _sent(line: ArmLine) -> list[bytes]:
+    return [each.data for each in line.take() if each.direction == "sent"]
+
+
+MOTION = {"angles": [10.0] * 6, "speed": 50}
+STOP = bytes.fromhex("FE FE 02 29 FA")
+
+
+def test_motion_that_waited_is_not_sent_after_a_stop(idle_line: ArmLine) -> None:
+    command, stops = idle_line.table.command("send_angles"), idle_line.stops
+    idle_line.stop()
+    with pytest.raises(NotPermitted, match="stopped meanwhile"):
+        idle_line.call(command, MOTION, True, lambda: None, stops)
+    assert _sent(idle_line) == [STOP]
+
+
+def test_stop_that_overtakes_a_motion_is_sent_again(idle_line: ArmLine) -> None:
+    command = idle_line.table.command("send_angles")
+    idle_line.call(command, MOTION, True, idle_line.stop, idle_line.stops)
+    first, motion, last = _sent(idle_line)
+    assert first == last == STOP
+    assert motion[3] == command.id
+
+
+def test_motion_whose_permission_ended_is_not_sent(idle_line: ArmLine) -> None:
+    command, control = idle_line.table.command("send_angles"), Control(True)
+    control.take("page")
+    permit = partial(control.check, "page", command)
+    with pytest.raises(NotPermitted, match="allow motion"):
+        idle_line.call(command, MOTION, True, permit, idle_line.stops)
+    assert _sent(idle_line) == []
 
 
 def test_history_keeps_the_last_entries_by_their_numbers() -> None:

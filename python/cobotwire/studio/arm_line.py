@@ -13,6 +13,7 @@ from cobotwire.inspect.readiness import check_accepted, check_ready
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.protocol.table import Command, Role
 from cobotwire.session import Traffic
+from cobotwire.studio.sending import NotPermitted
 from cobotwire.transport import open_transport
 
 POLLED: tuple[Role, ...] = ("joints", "coordinates")
@@ -37,6 +38,7 @@ class ArmLine:
     Attributes:
         lost: how many items of traffic were dropped, because the server was too slow.
         problem: why the port cannot be used now; empty if it can.
+        stops: how often the arm was stopped.
     """
 
     def __init__(self, edition: Edition, port: PortOptions, rate: float) -> None:
@@ -47,6 +49,7 @@ class ArmLine:
             LinkError: the port does not exist, or cannot be opened.
         """
         self.table, self.lost, self.problem = edition.TABLE, 0, ""
+        self.stops = 0
         self.url = port.url
         self.baudrate = port.baudrate or self.table.baudrate
         self._rate = rate
@@ -84,17 +87,45 @@ class ArmLine:
             taken.append(self._traffic.popleft())
         return taken
 
-    def call(self, command: Command, arguments: dict[str, Any], force: bool) -> Any:
+    def call(
+        self,
+        command: Command,
+        arguments: dict[str, Any],
+        force: bool,
+        permit: Callable[[], None],
+        stops: int,
+    ) -> Any:
         """Send a command and return its result; check first whether the arm obeys a motion.
 
+        Nothing but a query follows a stop that was sent in the meantime: a motion may have waited
+        for a thread, or for the arm.
+
+        Args:
+            command: what to send.
+            arguments: its arguments by name.
+            force: whether a motion is sent without asking whether the arm obeys.
+            permit: raises an error if the command may no longer be sent; called just before.
+            stops: the value of ``stops`` when the page requested the command.
+
         Raises:
-            CobotwireError: an argument is not allowed, the arm does not obey or reply, or the port
-                is gone.
+            CobotwireError: the command is not permitted, an argument is not allowed, the arm was
+                stopped meanwhile, does not obey or does not reply, or the port is gone.
         """
         checks = command.starts_motion and not force
         if checks:
             check_ready(self._arm, command)
-        result = getattr(self._arm, command.name)(**arguments)
+        query = command.safety == "query"
+        if not query and self.stops != stops:
+            raise NotPermitted(
+                f"{command.name} was not sent, because the arm was stopped meanwhile"
+            )
+        permit()
+        try:
+            result = getattr(self._arm, command.name)(**arguments)
+        finally:
+            if not query and self.stops != stops:
+                # The stop may have overtaken it.
+                self._send_stop()
         if checks:
             check_accepted(self._arm, command)
         return result
@@ -106,6 +137,11 @@ class ArmLine:
             UsageError: the edition has no stop.
             LinkError: the port is gone.
         """
+        # Counted first, so that no motion that waits follows.
+        self.stops += 1
+        self._send_stop()
+
+    def _send_stop(self) -> None:
         getattr(self._arm, self.table.in_role("stop").name)()
 
     def _note(self, traffic: Traffic) -> None:

@@ -78,7 +78,12 @@ def _part(part: Part) -> dict[str, Any]:
 
 
 def _finding(finding: Finding) -> Explanation:
-    facts = {name: _fact(value) for name, value in finding.facts.items() if value is not None}
+    # What is not so, or not known, says nothing.
+    facts = {
+        name: text
+        for name, value in finding.facts.items()
+        if value is not None and (text := _fact(value))
+    }
     return {
         "noise": finding.kind,
         "text": finding.describe(),
@@ -89,6 +94,10 @@ def _finding(finding: Finding) -> Explanation:
 
 
 def _fact(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else ""
+    if isinstance(value, tuple | list):
+        return ", ".join(map(str, value))
     return _hex(value) if isinstance(value, bytes) else str(value)
 
 

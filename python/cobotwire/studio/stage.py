@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
 from cobotwire import codec as codecs
@@ -144,8 +145,10 @@ class Stage:
         arguments = self.preparer.arguments(command, given)
         # A wrong value is reported before the arm is asked whether it obeys.
         self.preparer.encoded(command, arguments)
-        loop = asyncio.get_running_loop()
-        result = await loop.run_in_executor(self._senders, line.call, command, arguments, force)
+        permit = partial(self.control.check, page, command)
+        result = await asyncio.get_running_loop().run_in_executor(
+            self._senders, line.call, command, arguments, force, permit, line.stops
+        )
         return as_json_value(result)
 
     async def stop(self) -> None:

@@ -64,7 +64,8 @@ function begin(hello) {
   // After a new connection the server sends the past again.
   if (parts) clear();
   else parts = make(hello, recorded);
-  if (!recorded) send.load().catch((error) => notify(error.message));
+  if (recorded) setStatus("recording", "good");
+  else send.load().catch((error) => notify(error.message));
   document.documentElement.dataset.ready = "yes";
 }
 
