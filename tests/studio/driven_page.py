@@ -105,9 +105,9 @@ class Page:
         self.click("#motion")
         self.until("document.getElementById('motion').checked")
 
-    def picture(self, path: Path, *, whole: bool = False) -> None:
-        """Write a picture of what the window shows, or of the whole page."""
-        found = self.tab.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
+    def picture(self, path: Path) -> None:
+        """Write a picture of what the window shows: a .png or .webp file."""
+        found = self.tab.call("Page.captureScreenshot", format=path.suffix[1:], quality=80)
         path.write_bytes(base64.b64decode(found["data"]))
 
     @property

@@ -30,13 +30,13 @@ def live(page: Page, folder: Path) -> None:
         page.until("document.querySelector('#details table')")
         page.choose("by-command", "")
         page.get(SETTLED)
-        page.picture(folder / "studio-live.png")
+        page.picture(folder / "studio-live.webp")
         page.show(390, 844, dark=True)
         page.send("send_angles", 60, 30, -60, 10, -50, 0, 25)
         page.get(SETTLED)
         page.get("scrollTo(0, 0)")
         page.get(SETTLED)
-        page.picture(folder / "studio-phone.png")
+        page.picture(folder / "studio-phone.webp")
 
 
 def faults(page: Page, folder: Path) -> None:
@@ -56,7 +56,7 @@ def faults(page: Page, folder: Path) -> None:
         page.get("document.getElementById('line').scrollIntoView()")
         page.get("scrollBy(0, -90)")
         page.get(SETTLED)
-        page.picture(folder / "studio-faults.png")
+        page.picture(folder / "studio-faults.webp")
 
 
 def recording(page: Page, folder: Path) -> None:
@@ -70,12 +70,13 @@ def recording(page: Page, folder: Path) -> None:
             page.choose("window", "10")
             page.until(f"{ROWS}.length > 5")
             page.get(SETTLED)
-            page.picture(folder / "studio-recording.png")
+            page.picture(folder / "studio-recording.webp")
 
 
 def main() -> None:
     """Take all pictures."""
     folder = Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
     with browser() as page:
         live(page, folder)
         faults(page, folder)
