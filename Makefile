@@ -96,6 +96,8 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/captures.py
 	$(BIN)/python bench/imports.py
 	$(BIN)/python bench/streaming.py
+	$(BIN)/python bench/jitter.py
+	$(BIN)/python bench/fleet.py
 	$(BIN)/python bench/pipelining.py
 	$(BIN)/python bench/pymycobot_session.py
 	$(BIN)/python bench/stepped_client.py

@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.shared import once_per_table
 
 if TYPE_CHECKING:
     from cobotwire.codec.interface import Codec
@@ -60,6 +61,8 @@ def _obstacle() -> str:
 def load(table: Table, name: CodecName | None = None) -> Codec:
     """Return a codec for an edition: the named one, else the one in use.
 
+    It has no state, so all clients of an edition share one.
+
     Raises:
         UsageError: there is no codec of that name, or its binary cannot be loaded.
     """
@@ -69,10 +72,18 @@ def load(table: Table, name: CodecName | None = None) -> Codec:
         raise UsageError("codec", name, "native, reference or None")
     elif name == "native" and not native_available():
         raise _no_binary("codec='native'")
-    if name == "reference":
-        from cobotwire.codec.reference import ReferenceCodec
+    return _reference(table) if name == "reference" else _native(table)
 
-        return ReferenceCodec(table)
+
+@once_per_table
+def _reference(table: Table) -> Codec:
+    from cobotwire.codec.reference import ReferenceCodec
+
+    return ReferenceCodec(table)
+
+
+@once_per_table
+def _native(table: Table) -> Codec:
     from cobotwire.codec.native import native_codec
 
     return native_codec(table)

@@ -20,6 +20,8 @@ from typing import NamedTuple
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.protocol.frame_format import FrameFormat
 from cobotwire.protocol.frame_index import FrameIndex
+from cobotwire.protocol.shared import once_per_table
+from cobotwire.protocol.table import Table
 
 
 class Part(NamedTuple):
@@ -37,6 +39,12 @@ class Part(NamedTuple):
     def rest(self) -> bytes:
         """The bytes that the peer does not have."""
         return self.request[self.written :]
+
+
+@once_per_table
+def _longest(table: Table) -> int:
+    """Return the largest LEN of a request."""
+    return max(FrameIndex(table, "request").lengths)
 
 
 class Alignment:
@@ -88,7 +96,7 @@ class Alignment:
 
         This request, and earlier ones that were still on their way, may be cut anywhere.
         """
-        longest = max(FrameIndex(self._codec.table, "request").lengths)
+        longest = _longest(self._codec.table)
         width, order = self._format.length_number
         begun = last[: self._format.length_at] + longest.to_bytes(width, order)
         parts = Part(begun, len(begun)), *_all_parts(self._format, last)

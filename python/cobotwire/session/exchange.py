@@ -31,6 +31,8 @@ from typing import Any
 from cobotwire.codec.interface import Codec, Event, Frame, Noise
 from cobotwire.protocol.addresses import ANYBODY, NOBODY
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
+from cobotwire.protocol.shared import once_per_table
+from cobotwire.protocol.table import Table
 from cobotwire.session.acks import Acks, PendingAck
 from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
@@ -57,6 +59,11 @@ NOT_SENT = "more than can be read; a late reply may be among it"
 Alone = tuple[EncodedRequest, float, int, float]
 
 
+@once_per_table
+def _replying_ids(table: Table) -> frozenset[int]:
+    return frozenset(command.id for command in table.commands if command.requires_reply)
+
+
 class Exchange:
     """Requests that take turns, one-way requests, and the frames that come back."""
 
@@ -64,7 +71,7 @@ class Exchange:
         self._codec = codec
         self.framer = codec.framer("reply")
         self._format = codec.table.frame
-        self._replying_ids = {c.id for c in codec.table.commands if c.requires_reply}
+        self._replying_ids = _replying_ids(codec.table)
         self.alignment = Alignment(codec)
         self._sent_last = b""
         # Where in the stream the bytes began that were received last.

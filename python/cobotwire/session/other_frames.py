@@ -9,6 +9,7 @@ from contextlib import suppress
 
 from cobotwire.codec.interface import DecodedMessage, Frame, Noise
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.shared import once_per_table
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session.acks import Acks
 from cobotwire.session.echo import EchoDetector
@@ -27,6 +28,16 @@ from cobotwire.session.outstanding import OutstandingReplies
 from cobotwire.session.pending import PendingRequest
 
 
+@once_per_table
+def _events(table: Table) -> dict[int, list[Command]]:
+    """Return the commands that are events, by id."""
+    events: dict[int, list[Command]] = {}
+    for command in table.commands:
+        if command.event:
+            events.setdefault(command.id, []).append(command)
+    return events
+
+
 class OtherFrames:
     """Matches frames to what may still come besides the reply, and notes all of them.
 
@@ -37,10 +48,7 @@ class OtherFrames:
         self, table: Table, outstanding: OutstandingReplies, acks: Acks, echo: EchoDetector
     ) -> None:
         self._outstanding, self._acks, self._echo = outstanding, acks, echo
-        self._events: dict[int, list[Command]] = {}
-        for command in table.commands:
-            if command.event:
-                self._events.setdefault(command.id, []).append(command)
+        self._events = _events(table)
 
     def take_noise(self, noise: Noise, waiting: PendingRequest | None, now: float) -> None:
         """Take noise, which may be the text that a request waits for."""

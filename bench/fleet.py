@@ -1,0 +1,182 @@
+"""Poll a thousand arms at 20 Hz in one process: lateness, CPU time and memory.
+
+The arms are TCP connections to another process (`fleet_responder.py`). A sample is late by the time
+from the moment of its slot until the consumer has it. With two cores, one is the client's and one
+the arms'. The CPU time is that of the client's process. Its memory is what the process grows by for
+each open arm with a stream, and what Python allocates for it (tracemalloc, measured with few arms).
+
+The floor sends and receives the same bytes with callbacks of the same event loop, and does nothing
+else. It shows what the machine and asyncio need by themselves.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import gc
+import os
+import subprocess
+import sys
+import time
+import tracemalloc
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from cobotwire.client.aio_streaming import AsyncStream
+from cobotwire.editions.mycobot280 import AsyncMyCobot280, GetAngles
+from descriptor_limit import raise_limit
+from fleet_floor import Floor, run_floor
+from responder import within
+
+REQUEST = "FE FE 02 20 FA"
+REPLY = "FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA"
+# So many arms connect at once.
+TOGETHER = 50
+# The first second is warm-up.
+WARM_UP = 1.0
+TRACED_ARMS = 50
+LATE_SECONDS = 0.020
+ARM_BYTES = 100 << 10
+
+
+class Result(NamedTuple):
+    """What a run has measured; times in seconds, sizes in bytes."""
+
+    lateness: list[float]
+    missed: int
+    cpu_per_sample: float
+    cpu_share: float
+    resident: float
+
+
+def main() -> None:
+    """Measure and print; exit with 1 if a limit was missed and --strict is given."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--arms", type=int, default=1000)
+    parser.add_argument("--rate", type=float, default=20.0)
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--strict", action="store_true", help="exit with 1 if a limit is missed")
+    options = parser.parse_args()
+    raise_limit()
+    with _arms() as url:
+        _show_floor(asyncio.run(run_floor(url, bytes.fromhex(REQUEST), options.arms, options.rate)))
+        result = asyncio.run(_run(url, options.arms, options.rate, options.seconds))
+        traced = asyncio.run(_traced(url))
+    late = sorted(result.lateness)
+    p99 = late[len(late) * 99 // 100]
+    met = p99 <= LATE_SECONDS and result.resident <= ARM_BYTES
+    print(
+        f"{options.arms} arms at {options.rate:g} Hz: {len(late)} samples, {result.missed} slots "
+        f"missed; {result.cpu_per_sample * 1e6:.0f} us of CPU a sample, "
+        f"{result.cpu_share:.0%} of a core"
+    )
+    print(
+        f"  late by {late[len(late) // 2] * 1e3:.1f} ms (median), {p99 * 1e3:.1f} ms (99 %), "
+        f"{late[-1] * 1e3:.0f} ms (most)   {within(p99 <= LATE_SECONDS)} "
+        f"{LATE_SECONDS * 1e3:.0f} ms at 99 %"
+    )
+    print(
+        f"  memory an arm: {result.resident / 1024:.0f} KiB resident, of which Python's objects "
+        f"{traced / 1024:.0f} KiB   {within(result.resident <= ARM_BYTES)} {ARM_BYTES >> 10} KiB"
+    )
+    sys.exit(1 if options.strict and not met else 0)
+
+
+def _show_floor(floor: Floor) -> None:
+    late = sorted(floor.lateness)
+    print(
+        f"floor: {len(late)} replies; {floor.cpu / len(late) * 1e6:.0f} us of CPU each, late by "
+        f"{late[len(late) // 2] * 1e3:.1f} ms (median), {late[len(late) * 99 // 100] * 1e3:.1f} ms "
+        f"(99 %)"
+    )
+
+
+@contextmanager
+def _arms() -> Iterator[str]:
+    script = str(Path(__file__).with_name("fleet_responder.py"))
+    command = [sys.executable, script, REQUEST, REPLY]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        try:
+            yield f"socket://127.0.0.1:{int(process.stdout.readline())}"
+        finally:
+            process.kill()
+
+
+async def _run(url: str, count: int, rate: float, seconds: float) -> Result:
+    # What all arms share is there before the first measured one.
+    await _closed(await _opened(url, 1))
+    gc.collect()
+    before = _resident()
+    arms = await _opened(url, count)
+    streams = [arm.stream(GetAngles(), rate=rate) for arm in arms]
+    lateness: list[float] = []
+    begin = time.monotonic() + WARM_UP + 1 / rate
+    polls = [
+        # The arms take turns within a period, so that their replies do not come all at once.
+        asyncio.create_task(_poll(stream, rate, index / count / rate, begin, seconds, lateness))
+        for index, stream in enumerate(streams)
+    ]
+    await asyncio.sleep(begin - time.monotonic())
+    started, cpu = time.monotonic(), time.process_time()
+    missed = sum(stream.report.slots - stream.report.samples for stream in streams)
+    await asyncio.gather(*polls)
+    spent, cpu = time.monotonic() - started, time.process_time() - cpu
+    missed = sum(stream.report.slots - stream.report.samples for stream in streams) - missed
+    resident = (_resident() - before) / count
+    await _closed(arms)
+    return Result(lateness, missed, cpu / max(1, len(lateness)), cpu / spent, resident)
+
+
+async def _poll(
+    stream: AsyncStream, rate: float, delay: float, begin: float, seconds: float, late: list[float]
+) -> None:
+    await asyncio.sleep(delay)
+    first = time.monotonic()
+    async for sample in stream:
+        now = time.monotonic()
+        if now >= begin + seconds:
+            break
+        if now >= begin:
+            late.append(now - first - sample.slot / rate)
+    stream.close()
+
+
+async def _traced(url: str) -> float:
+    """Return the bytes that Python allocates for an arm with a stream that has one sample."""
+    await _closed(await _opened(url, 1))
+    gc.collect()
+    tracemalloc.start()
+    try:
+        arms = await _opened(url, TRACED_ARMS)
+        streams = [arm.stream(GetAngles(), rate=20.0) for arm in arms]
+        samples = [await anext(stream) for stream in streams]
+        gc.collect()
+        size, _ = tracemalloc.get_traced_memory()
+        del samples
+    finally:
+        tracemalloc.stop()
+    await _closed(arms)
+    return size / TRACED_ARMS
+
+
+async def _opened(url: str, count: int) -> list[AsyncMyCobot280]:
+    arms = [AsyncMyCobot280(url) for _ in range(count)]
+    for start in range(0, count, TOGETHER):
+        await asyncio.gather(*(arm.open() for arm in arms[start : start + TOGETHER]))
+    return arms
+
+
+async def _closed(arms: list[AsyncMyCobot280]) -> None:
+    for arm in arms:
+        await arm.close()
+
+
+def _resident() -> int:
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+if __name__ == "__main__":
+    main()
