@@ -132,6 +132,8 @@ def check_files(folder: Path) -> str:
 def build(folder: Path) -> None:
     """Build both source distributions, and from these both wheels."""
     python = sys.executable
+    # The library of the studio's page, which is not committed.
+    _run(python, str(ROOT / "tools" / "front_end.py"))
     _run(python, "-m", "maturin", "sdist", "--out", str(folder))
     [source] = folder.glob("cobotwire-*.tar.gz")
     command = ("pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(folder))

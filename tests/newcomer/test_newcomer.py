@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -93,6 +94,13 @@ def test_package_built_from_one_yaml_file_talks_to_its_simulator(
     assert "request: get_warmth(plate=2)" in decoded.stdout
     with pytest.raises(FileNotFoundError):
         run("cargo", "--version", env={**environment, "PATH": str(fresh)})
+
+
+def test_wheel_ships_the_page_of_the_studio_with_its_library(wheels: list[Path]) -> None:
+    [native] = [wheel for wheel in wheels if wheel.name.startswith("cobotwire-")]
+    folder = "cobotwire/studio/page/"
+    page = {name.removeprefix(folder) for name in zipfile.ZipFile(native).namelist()}
+    assert {"index.html", "main.js", "vendor/uPlot.esm.js", "vendor/LICENSE-uPlot"} <= page
 
 
 def test_delta_of_an_edition_that_the_package_ships_needs_no_clone(

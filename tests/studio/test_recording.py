@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import subprocess
-import sys
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +13,9 @@ import pytest
 
 from cobotwire.capture import read
 from cobotwire.inspect.captured import CapturedMessage, messages
+from cobotwire.protocol.errors import CaptureError, CobotwireError, UsageError
 from cobotwire.studio.recorded import RecordedSession
+from cobotwire.studio.serving import Options, staged
 from studio.feeds import Feed, watching
 from studio.recordings import TARGET, record
 from studio.studio_server import Studio, running
@@ -145,24 +145,22 @@ def test_wrong_selection_is_refused(studio: Studio, query: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("data", "code", "sentence"),
+    ("data", "error", "sentence"),
     [
-        (None, 2, "no such file"),
-        (b"not a recording at all, but some text", 6, "is not a pcapng"),
-        (b"", 2, "holds no packet"),
+        (None, UsageError, "no such file"),
+        (b"not a recording at all, but some text", CaptureError, "is not a pcapng"),
+        (b"", UsageError, "holds no packet"),
     ],
     ids=["missing", "text", "empty"],
 )
 def test_file_that_is_no_recording_is_named(
-    tmp_path: Path, data: bytes | None, code: int, sentence: str
+    tmp_path: Path, data: bytes | None, error: type[CobotwireError], sentence: str
 ) -> None:
     path = tmp_path / "arm.pcapng"
     if data is not None:
         path.write_bytes(data)
-    script = "from cobotwire.cli import main; main()"
-    command = [sys.executable, "-c", script, "studio", "--no-browser", str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert (done.returncode, sentence in done.stderr) == (code, True), done.stderr
+    with pytest.raises(error, match=sentence), staged(Options(str(path), "mycobot280")):
+        pass
 
 
 def test_recording_that_was_cut_is_shown_as_far_as_it_goes(path: Path, tmp_path: Path) -> None:
