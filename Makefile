@@ -1,7 +1,7 @@
 # Each target sets itself up once, in .venv. Needs Python 3.11+, Rust and make.
 PYTHON ?= python3
 BIN := .venv/bin
-RUST_SOURCES := $(shell find rust/core rust/py -name '*.rs' -o -name Cargo.toml) Cargo.toml
+RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
 # The Python tests run in four lanes at once. The first computes; the others also wait for ports, so
 # that two processors are seldom idle. The first lets the others go first (nice), because a test
 # that waits for a reply has a deadline. The last lane has all tests that no other lane names.
@@ -14,9 +14,10 @@ IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 unexport PYTHONDONTWRITEBYTECODE
 FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
+REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive robots layer demos front-end four-hours studio-pictures
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive bench-compare rust-asan robots layer demos front-end four-hours studio-pictures
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -43,6 +44,10 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 
 rust-test: products ## run the Rust tests
 	+cargo test --workspace --quiet
+
+rust-asan: ## run the tests of the unsafe code with AddressSanitizer; needs a nightly toolchain
+	RUSTFLAGS=-Zsanitizer=address cargo +nightly test --package cobotwire-simd --quiet \
+		--target $$(rustc -vV | sed -n 's/host: //p') --target-dir target/asan
 
 python-test: .venv/.tools .venv/.native front-end ## run the Python tests on both codecs, in four lanes
 	$(MAKE) --no-print-directory --jobs 4 $(IN_TURN) computing-tests simulating-tests calling-tests waiting-tests
@@ -104,6 +109,9 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 
 bench-archive: .venv/.tools .venv/.native ## compare one and two workers on a raw file of 2 GB; takes minutes
 	$(BIN)/python bench/archive_workers.py
+
+bench-compare: .venv/.tools .venv/.native ## compare the speed of the working tree with REV (HEAD): make bench-compare REV=main
+	$(BIN)/python bench/compare.py $(REV) $(COMPARE)
 
 plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes minutes
 	$(BIN)/python -m pip install --quiet --group bench

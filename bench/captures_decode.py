@@ -25,7 +25,7 @@ from cobotwire.cli.shared.stream_printer import DecodeOptions
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.editions.mycobot280 import TABLE
 from damage import noisy
-from speed import Reused
+from speed_rows import Reused
 from speed_table import Target, Timed, measure, ratios, show
 from streams import stream_a
 

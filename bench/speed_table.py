@@ -45,9 +45,9 @@ class Target:
     faster: bool = False
 
 
-def untargeted(row: str, ours: str, peer: str) -> Target:
+def untargeted(row: str, ours: str, peer: str, *, faster: bool = True) -> Target:
     """Return a ratio that is shown without a target."""
-    return Target(row, ours, peer, 0, faster=True)
+    return Target(row, ours, peer, 0, faster)
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ class Ratio:
 
     @property
     def met(self) -> bool:
-        """Whether the ratio meets its target."""
-        if self.target.faster:
+        """Whether the ratio meets its target, if it has one."""
+        if self.target.faster or not self.target.limit:
             return self.measured >= self.target.limit
         return self.measured <= self.target.limit
 

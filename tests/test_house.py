@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -111,9 +112,13 @@ def test_generator_and_package_do_not_import_each_other() -> None:
             assert other not in packages, path
 
 
-def test_rust_core_has_no_dependencies() -> None:
-    manifest = (vectors.ROOT / "rust/core/Cargo.toml").read_text()
-    assert "[dependencies]" not in manifest
+def test_rust_core_depends_only_on_the_crate_of_instructions() -> None:
+    core, simd = (
+        tomllib.loads((vectors.ROOT / "rust" / crate / "Cargo.toml").read_text())
+        for crate in ("core", "simd")
+    )
+    assert list(core["dependencies"]) == ["cobotwire-simd"]
+    assert "dependencies" not in simd
 
 
 def test_importing_the_package_loads_no_extra() -> None:

@@ -22,6 +22,8 @@ pub(crate) enum Heading {
 // Cells of `Headings` that are not the index of a group. There are fewer groups than cells.
 pub(crate) const BAD_LENGTH: u16 = u16::MAX;
 pub(crate) const UNKNOWN_ID: u16 = u16::MAX - 1;
+/// The number of groups that bulk reading tells apart.
+const GROUPS: u16 = 0x7FFD;
 /// The highest cell of a legal frame.
 pub(crate) const BELIEVED: u16 = u16::MAX - 2;
 
@@ -253,7 +255,7 @@ impl Groups {
     /// Return a new group; `None` if there are too many.
     fn open(&mut self) -> Option<u16> {
         let group = u16::try_from(self.variants.len()).ok()?;
-        (group < BELIEVED).then(|| {
+        (group < GROUPS).then(|| {
             self.variants.push(Vec::new());
             group
         })

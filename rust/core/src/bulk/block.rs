@@ -1,18 +1,21 @@
 //! A block of a stream, and a fast check of one position in it.
 //!
-//! A position has 16 bits, and a margin follows the last one, so no frame that starts in the block
-//! reaches beyond its array. The compiler then needs no bounds checks.
+//! A margin follows the last position, so no frame that starts in the block reaches beyond its
+//! array. Positions are cut to the size of the block; the compiler then needs no bounds checks.
 
-use super::window::{Pattern, SEEN, Window};
 use crate::check::Check;
 use crate::judge::Rules;
 use crate::legal::{BELIEVED, Headings, UNKNOWN_ID};
 use crate::reason::Reason;
+use cobotwire_simd::{Pattern, SEEN, Window};
 
 /// Positions of a block.
-pub(crate) const BLOCK: usize = 1 << 16;
+pub(crate) const BLOCK: usize = 1 << PLACE;
+/// The bits of a position in a block. A larger block has more frames of each rare message; a smaller
+/// one leaves more of the cache to other data.
+const PLACE: u32 = 17;
 /// The bytes after the last position: more than the longest frame that LEN can express has.
-pub(crate) const MARGIN: usize = 260;
+pub(crate) const MARGIN: usize = 1 << 10;
 /// More than the number of frames that can start in a block; the shortest has more than four bytes.
 pub(crate) const MOST: usize = BLOCK / 4;
 /// The number of places in which a block is scanned at once. Two are 1.4 times as fast as one, and
@@ -26,28 +29,34 @@ pub(crate) type Block = [u8; BLOCK + MARGIN];
 pub(crate) struct Found(u32);
 
 impl Found {
-    #[inline]
-    pub(crate) fn new(at: u16, group: u16) -> Self {
-        Self(u32::from(at) | u32::from(group) << 16)
+    #[inline(always)]
+    pub(crate) fn new(at: usize, group: u16) -> Self {
+        Self(at as u32 | u32::from(group) << PLACE)
     }
 
     /// Return where it starts.
-    #[inline]
-    pub(crate) fn at(self) -> u16 {
-        self.0 as u16
+    #[inline(always)]
+    pub(crate) fn at(self) -> u32 {
+        self.0 % BLOCK as u32
     }
 
     /// Return the index of its group of messages; no group has this index if the id is unknown.
-    #[inline]
-    pub(crate) fn group(self) -> u16 {
-        (self.0 >> 16) as u16
+    #[inline(always)]
+    pub(crate) fn group(self) -> usize {
+        (self.0 >> PLACE) as usize
+    }
+
+    /// Return whether the id is unknown.
+    pub(crate) fn is_unknown(self) -> bool {
+        self.group() == Self::new(0, BELIEVED).group()
     }
 }
 
 /// The rules of a plain format with a footer, in compact form.
 #[derive(Clone, Copy)]
 pub(crate) struct Quick<'a> {
-    header: [u8; 2],
+    /// The first byte is the low one.
+    header: u16,
     footer: u8,
     headings: &'a Headings,
     pattern: Pattern,
@@ -55,8 +64,8 @@ pub(crate) struct Quick<'a> {
 
 /// The verdict on a position of a block.
 pub(crate) enum Look {
-    /// A frame of that size and group.
-    Frame(u16, u16),
+    /// A frame.
+    Frame { size: u16, group: u16, id: u8 },
     /// No frame, for this reason.
     Noise(Reason),
 }
@@ -71,7 +80,7 @@ impl<'a> Quick<'a> {
         let (least, most) = rules.legal().lengths()?;
         let (least, most) = (u8::try_from(least).ok()?, u8::try_from(most).ok()?);
         Some(Self {
-            header,
+            header: u16::from_le_bytes(header),
             footer,
             headings: rules.legal().headings(),
             pattern: Pattern::new(header, least, most),
@@ -80,17 +89,17 @@ impl<'a> Quick<'a> {
 
     /// Make a first check of several positions.
     #[inline(always)]
-    pub(crate) fn window(self, data: &Block, at: u16) -> Window {
-        let seen = data.get(usize::from(at)..).and_then(<[u8]>::first_chunk);
+    pub(crate) fn window(self, data: &Block, at: usize) -> Window {
+        let seen = data.get(at % BLOCK..).and_then(<[u8]>::first_chunk);
         self.pattern.look(seen.unwrap_or(&[0; SEEN])) // never the default: the margin follows
     }
 
     #[inline(always)]
     #[allow(clippy::indexing_slicing)] // in bounds by their types; see above
-    pub(crate) fn look(self, data: &Block, at: u16) -> Look {
-        let start = usize::from(at);
-        let (length, id) = (data[start + 2], data[start + 3]);
-        if [data[start], data[start + 1]] != self.header {
+    pub(crate) fn look(self, data: &Block, at: usize) -> Look {
+        let start = at % BLOCK;
+        let [first, second, length, id] = [0, 1, 2, 3].map(|index| data[start + index]);
+        if u16::from_le_bytes([first, second]) != self.header {
             return Look::Noise(Reason::NoHeader);
         }
         let group = self.headings[usize::from(u16::from_le_bytes([length, id]))];
@@ -100,7 +109,8 @@ impl<'a> Quick<'a> {
         if data[start + 2 + usize::from(length)] != self.footer {
             return Look::Noise(Reason::BadCheck);
         }
-        Look::Frame(3 + u16::from(length), group)
+        let size = 3 + u16::from(length);
+        Look::Frame { size, group, id }
     }
 }
 

@@ -2,63 +2,84 @@
 
 use super::block::{Found, LANES};
 
-/// The frames of some lanes, by lane and group.
+/// The frames of some lanes, by group and lane.
 ///
-/// Adding to a bucket reads and writes its size, and the processor waits for that if the next frame
-/// goes to the same bucket. Therefore the lanes alternate, and each has its own buckets.
+/// They are counted first, and then put into their places. Counting reads and writes a number, and
+/// the processor waits for that if the next frame is of the same group. Therefore the lanes
+/// alternate, and each has its own numbers.
 #[derive(Default)]
 pub(crate) struct Buckets {
-    parts: [Vec<Vec<u16>>; LANES],
+    /// For each group, the number of frames in each lane; later the place of the next one.
+    next: Vec<[u32; LANES]>,
+    /// The positions of all frames.
+    sorted: Vec<u32>,
 }
 
 impl Buckets {
-    /// Have buckets for that number of groups; they are empty.
-    pub(crate) fn fit(&mut self, groups: usize) {
-        for part in &mut self.parts {
-            part.resize(groups, Vec::new());
-        }
-    }
-
-    /// Sort the frames of all lanes.
-    pub(crate) fn fill(&mut self, lanes: [&[Found]; LANES]) {
-        let [a, b, c] = &mut self.parts;
-        let [first, second, third] = lanes;
-        for ((first, second), third) in first.iter().zip(second).zip(third) {
-            push(a, *first);
-            push(b, *second);
-            push(c, *third);
-        }
-        let common = lanes
-            .map(<[Found]>::len)
-            .into_iter()
-            .min()
-            .unwrap_or_default();
-        for (part, lane) in self.parts.iter_mut().zip(lanes) {
-            lane.iter()
-                .skip(common)
-                .for_each(|found| push(part, *found));
-        }
-    }
-
-    /// Pass on each group with its frames, in the order of the lanes, and empty the buckets.
-    pub(crate) fn drain(&mut self, mut take: impl FnMut(usize, &[u16])) {
-        let [first, second, third] = &mut self.parts;
-        let groups = first.iter_mut().zip(second).zip(third).enumerate();
-        for (group, ((frames, more), rest)) in groups {
-            frames.append(more);
-            frames.append(rest);
-            if !frames.is_empty() {
-                take(group, frames);
-                frames.clear();
+    /// Sort the frames of all lanes into that number of groups. Pass on each group that has frames,
+    /// in the order of the lanes.
+    pub(crate) fn sort(
+        &mut self,
+        groups: usize,
+        lanes: [&[Found]; LANES],
+        mut take: impl FnMut(usize, &[u32]),
+    ) {
+        self.next.clear();
+        self.next.resize(groups, [0; LANES]);
+        let next = &mut self.next;
+        each(lanes, |lane, found| {
+            // A frame without a group has an unknown id.
+            if let Some(count) = next
+                .get_mut(found.group())
+                .and_then(|all| all.get_mut(lane))
+            {
+                *count += 1;
             }
+        });
+        let mut end = 0;
+        for count in next.iter_mut().flatten() {
+            end += std::mem::replace(count, end);
+        }
+        let most = end as usize;
+        if self.sorted.len() < most {
+            self.sorted.resize(most, 0);
+        }
+        let sorted = self.sorted.as_mut_slice();
+        each(lanes, |lane, found| {
+            if let Some(place) = next
+                .get_mut(found.group())
+                .and_then(|all| all.get_mut(lane))
+                && let Some(entry) = sorted.get_mut(*place as usize)
+            {
+                *entry = found.at();
+                *place += 1;
+            }
+        });
+        let mut from = 0;
+        for (group, [.., end]) in next.iter().enumerate() {
+            let end = *end as usize;
+            match sorted.get(from..end) {
+                Some(frames) if !frames.is_empty() => take(group, frames),
+                _ => {}
+            }
+            from = end;
         }
     }
 }
 
+/// Call `add` with each frame and the index of its lane; the lanes alternate.
 #[inline(always)]
-fn push(part: &mut [Vec<u16>], found: Found) {
-    // A frame without a group has an unknown id.
-    if let Some(frames) = part.get_mut(usize::from(found.group())) {
-        frames.push(found.at());
+fn each(lanes: [&[Found]; LANES], mut add: impl FnMut(usize, Found)) {
+    let [first, second, third] = lanes;
+    for ((first, second), third) in first.iter().zip(second).zip(third) {
+        add(0, *first);
+        add(1, *second);
+        add(2, *third);
+    }
+    let common = lanes.map(<[Found]>::len).into_iter().min();
+    for (index, lane) in lanes.into_iter().enumerate() {
+        for found in lane.iter().skip(common.unwrap_or_default()) {
+            add(index, *found);
+        }
     }
 }

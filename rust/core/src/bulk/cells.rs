@@ -118,6 +118,12 @@ impl Cells {
         each!(self, all => all.clear());
     }
 
+    /// Remove the last numbers.
+    pub(crate) fn remove_last(&mut self, count: usize) {
+        let left = self.len().saturating_sub(count);
+        each!(self, all => all.truncate(left));
+    }
+
     /// Return an empty column of the same type.
     pub(crate) fn like(&self) -> Self {
         match self {

@@ -9,9 +9,7 @@ use super::decode::Job;
 use super::plan::{Plan, Plans};
 use super::stream::Collect;
 use crate::frame::Part;
-use crate::legal::BELIEVED;
 use crate::table::Table;
-use crate::tally::Tally;
 
 /// How often a message occurred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +56,7 @@ impl Census {
 }
 
 impl Collect for Census {
-    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally) {
+    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES]) {
         if let Some(frames) = &mut self.frames {
             let all = found.into_iter().flatten();
             frames.extend(all.map(|frame| offset + u64::from(frame.at())));
@@ -75,13 +73,11 @@ impl Collect for Census {
             entry.count += count;
             entry.first = entry.first.min(first);
         };
-        self.buckets.fit(self.plans.groups.len());
-        self.buckets.fill(found);
-        self.buckets.drain(|group, frames| {
+        let groups = self.plans.groups.len();
+        self.buckets.sort(groups, found, |group, frames| {
             let Some(plan) = self.plans.groups.get(group) else {
                 return;
             };
-            tally.add_frames(plan.id, frames.len() as u64);
             let job = Job {
                 table: &self.table,
                 block,
@@ -98,10 +94,9 @@ impl Collect for Census {
             });
         });
         let unknown = found.into_iter().flatten();
-        for frame in unknown.filter(|frame| frame.group() == BELIEVED) {
-            let bytes = block.get(usize::from(frame.at())..).unwrap_or_default();
+        for frame in unknown.filter(|frame| frame.is_unknown()) {
+            let bytes = block.get(frame.at() as usize..).unwrap_or_default();
             let id = self.id.read(bytes).unwrap_or_default();
-            tally.add_frames(id, 1);
             add(id, None, 1, offset + u64::from(frame.at()));
         }
     }

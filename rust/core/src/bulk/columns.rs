@@ -176,14 +176,12 @@ impl ColumnReader {
 }
 
 impl Collect for Sorter {
-    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally) {
-        self.buckets.fit(self.plans.groups.len());
-        self.buckets.fill(found);
-        self.buckets.drain(|group, frames| {
+    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES]) {
+        let groups = self.plans.groups.len();
+        self.buckets.sort(groups, found, |group, frames| {
             let Some(plan) = self.plans.groups.get(group) else {
                 return;
             };
-            tally.add_frames(plan.id, frames.len() as u64);
             let job = Job {
                 table: &self.table,
                 block,

@@ -1,6 +1,6 @@
 //! Decodes the frames of one group into the columns of their variants.
 
-use super::block::Block;
+use super::block::{BLOCK, Block, MARGIN};
 use super::cells::Cells;
 use super::plan::{Allowed, FieldPlan, Plan};
 use super::rows::Rows;
@@ -11,6 +11,9 @@ use crate::table::Table;
 /// The numbers of a frame: the index of the field, the raw and the physical value of each.
 type Numbers = Vec<(usize, i64, Value)>;
 
+/// So few frames are read one by one if one of them is not allowed.
+const FEW: usize = 8;
+
 /// The frames of a group in a block.
 pub(crate) struct Job<'a> {
     pub(crate) table: &'a Table,
@@ -18,23 +21,22 @@ pub(crate) struct Job<'a> {
     /// The position of the block in the stream.
     pub(crate) offset: u64,
     /// The positions of the frames in the block.
-    pub(crate) frames: &'a [u16],
+    pub(crate) frames: &'a [u32],
 }
 
 impl Job<'_> {
     /// Append the frames to the rows of their variants, or to `rejected` if no variant allows them.
     pub(crate) fn run(&self, plan: &Plan, rows: &mut [Rows], rejected: &mut Vec<u64>) {
         if let (Some(fields), Some(rows)) = (&plan.fields, rows.get_mut(plan.rows))
-            && fields.iter().all(|field| self.all_allowed(field))
+            && self.columns(fields, rows)
         {
-            rows.offsets
-                .extend(self.frames.iter().map(|at| self.place(*at)));
-            if let Some(place) = self.table.frame().layout.address_at {
-                let addresses = self.frames.iter().filter_map(|at| self.address(*at, place));
-                rows.addresses.extend(addresses);
-            }
-            for (field, cells) in fields.iter().zip(&mut rows.fields) {
-                self.column(field, cells);
+            return;
+        }
+        // One damaged frame is no reason to read all the others one by one.
+        if plan.fields.is_some() && self.frames.len() > FEW {
+            let (first, second) = self.frames.split_at(self.frames.len() / 2);
+            for frames in [first, second] {
+                Job { frames, ..*self }.run(plan, rows, rejected);
             }
             return;
         }
@@ -45,13 +47,32 @@ impl Job<'_> {
         }
     }
 
-    fn place(&self, at: u16) -> u64 {
+    /// Append the frames to the rows of their first variant, column by column. Return false, and
+    /// append nothing, if it does not allow all of them.
+    fn columns(&self, fields: &[FieldPlan], rows: &mut Rows) -> bool {
+        let mut all = fields.iter().zip(&mut rows.fields);
+        if let Some(failed) = all.position(|(field, cells)| !self.column(field, cells)) {
+            for (field, cells) in fields.iter().zip(&mut rows.fields).take(failed) {
+                cells.remove_last(self.frames.len() * field.numbers.len());
+            }
+            return false;
+        }
+        rows.offsets
+            .extend(self.frames.iter().map(|at| self.place(*at)));
+        if let Some(place) = self.table.frame().layout.address_at {
+            let addresses = self.frames.iter().filter_map(|at| self.address(*at, place));
+            rows.addresses.extend(addresses);
+        }
+        true
+    }
+
+    fn place(&self, at: u32) -> u64 {
         self.offset + u64::from(at)
     }
 
     /// Return the address byte of a frame. There is one: a frame ends in its block.
-    fn address(&self, at: u16, place: usize) -> Option<u8> {
-        self.block.get(usize::from(at) + place).copied()
+    fn address(&self, at: u32, place: usize) -> Option<u8> {
+        self.block.get(at as usize + place).copied()
     }
 
     #[allow(clippy::indexing_slicing)] // in bounds: a frame that starts in the block ends in it
@@ -59,7 +80,7 @@ impl Job<'_> {
         match &plan.allowed {
             Allowed::All => true,
             Allowed::Bytes(bytes) => self.frames.iter().all(|at| {
-                let byte = self.block[usize::from(*at) + usize::from(plan.start)];
+                let byte = self.block[*at as usize % BLOCK + usize::from(plan.start) % MARGIN];
                 bytes[usize::from(byte)]
             }),
             Allowed::Within(bounds) => plan
@@ -73,7 +94,7 @@ impl Job<'_> {
     /// Call `check` with each number of a field, until it returns false.
     fn numbers(&self, plan: &FieldPlan, mut check: impl FnMut(&Number, i64) -> bool) -> bool {
         self.frames.iter().all(|at| {
-            let mut start = usize::from(*at) + usize::from(plan.start);
+            let mut start = (*at as usize) + usize::from(plan.start);
             plan.numbers.iter().all(|number| {
                 let read = number.unpack(self.block, start);
                 start += number.step();
@@ -82,9 +103,23 @@ impl Job<'_> {
         })
     }
 
-    fn column(&self, plan: &FieldPlan, cells: &mut Cells) {
-        let (frames, start) = (self.frames, plan.start);
-        let block = self.block;
+    /// Append the numbers of a field, if all are allowed; return whether they are.
+    fn column(&self, plan: &FieldPlan, cells: &mut Cells) -> bool {
+        let (block, frames, start) = (self.block, self.frames, plan.start);
+        if let Some(six) = &plan.six {
+            let starts = frames.iter().map(|at| *at as usize + usize::from(start));
+            let appended = match cells {
+                Cells::F64(out) => six.append_physical(out, block, starts),
+                Cells::I16(out) => six.append_raw(out, block, starts),
+                _ => None,
+            };
+            if let Some(appended) = appended {
+                return appended;
+            }
+        }
+        if !self.all_allowed(plan) {
+            return false;
+        }
         match (&plan.words, cells) {
             (Some(words), Cells::F64(out)) => words.physical(block, frames, start, out),
             (Some(words), Cells::U8(out)) => words.raw(block, frames, start, out),
@@ -99,12 +134,13 @@ impl Job<'_> {
                 });
             }
         }
+        true
     }
 
     /// Append one frame to the first variant that allows its values; return whether there is one.
     // Inlined, it would make the loops over columns an eighth slower.
     #[inline(never)]
-    fn row(&self, plan: &Plan, at: u16, all: &mut [Rows]) -> bool {
+    fn row(&self, plan: &Plan, at: u32, all: &mut [Rows]) -> bool {
         let Some((index, values)) = self.first_allowed(plan, at) else {
             return false;
         };
@@ -119,11 +155,11 @@ impl Job<'_> {
     }
 
     /// Return the index of the first variant that allows the values of a frame, and the values.
-    fn first_allowed(&self, plan: &Plan, at: u16) -> Option<(usize, Numbers)> {
+    fn first_allowed(&self, plan: &Plan, at: u32) -> Option<(usize, Numbers)> {
         plan.variants.iter().enumerate().find_map(|(index, id)| {
             let variant = self.table.variant(*id)?;
             let data = self.table.frame().data_start(id.direction);
-            let start = usize::from(at) + data;
+            let start = at as usize + data;
             let reader = Reader {
                 id: *id,
                 variant,

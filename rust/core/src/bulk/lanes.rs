@@ -9,62 +9,59 @@
 
 use super::block::{BLOCK, Block, Found, LANES, Look, MOST, Quick};
 use super::spans::Runs;
-use super::window::WINDOW;
 use crate::reason::Reason;
+use cobotwire_simd::WINDOW;
 
 /// The number of bytes that a guess may examine.
 const GUESSING: usize = 512;
+const AHEAD: usize = 512;
 
-/// What one lane found.
-#[derive(Clone)]
-pub(crate) struct Lane {
-    found: Box<[Found; MOST]>,
-    count: usize,
-    noise: Runs,
-}
-
-impl Lane {
-    /// Return the frames, in order.
-    pub(crate) fn found(&self) -> &[Found] {
-        self.found.get(..self.count).unwrap_or_default()
-    }
-
-    /// Return the noise.
-    pub(crate) fn noise(&self) -> &Runs {
-        &self.noise
-    }
-
-    #[inline(always)]
-    #[allow(clippy::indexing_slicing)] // in bounds by the mask
-    fn push(&mut self, found: Found) {
-        self.found[self.count % MOST] = found;
-        self.count += 1;
-    }
-}
-
-/// Memory for what the lanes find in a block.
+/// Memory for what the lanes find in a block. It is one piece, so that one register points to it.
 #[derive(Clone)]
 pub(crate) struct Lanes {
-    lanes: [Lane; LANES],
+    found: Box<[[Found; MOST]; LANES]>,
+    /// How many frames each lane found, and how many of them have each id.
+    counts: [usize; LANES],
+    ids: Box<[[u32; 256]; LANES]>,
+    noise: [Runs; LANES],
+}
+
+/// What one lane found.
+#[derive(Clone, Copy)]
+pub(crate) struct Lane<'a> {
+    /// The frames, in order.
+    pub(crate) found: &'a [Found],
+    /// How many frames have each id.
+    pub(crate) ids: &'a [u32; 256],
+    pub(crate) noise: &'a Runs,
 }
 
 impl Lanes {
     pub(crate) fn new() -> Self {
-        let lane = Lane {
-            found: Box::new([Found::new(0, 0); MOST]),
-            count: 0,
-            noise: Runs::default(),
-        };
         Self {
-            lanes: std::array::from_fn(|_| lane.clone()),
+            found: Box::new([[Found::new(0, 0); MOST]; LANES]),
+            counts: [0; LANES],
+            ids: Box::new([[0; 256]; LANES]),
+            noise: Default::default(),
         }
     }
 
-    /// Scan a block from its start, into which no earlier frame reaches. Return the lanes that
-    /// count, and the end of the last of them.
+    /// Return the first lanes.
+    pub(crate) fn first(&self, counted: usize) -> impl Iterator<Item = Lane<'_>> + Clone {
+        let all = self.found.iter().zip(&self.counts);
+        let all = all.zip(self.ids.iter()).zip(&self.noise).take(counted);
+        all.map(|(((found, count), ids), noise)| Lane {
+            found: found.get(..*count).unwrap_or_default(),
+            ids,
+            noise,
+        })
+    }
+
+    /// Scan a block from its start, into which no earlier frame reaches. Return the number of lanes
+    /// that count, and the end of the last of them.
     #[inline(never)]
     #[allow(clippy::indexing_slicing)] // by lane, below their number
-    pub(crate) fn run(&mut self, quick: Quick<'_>, data: &Block) -> (&[Lane], usize) {
+    pub(crate) fn run(&mut self, quick: Quick<'_>, data: &Block) -> (usize, usize) {
         let start: [usize; LANES] = std::array::from_fn(|lane| match lane {
             0 => 0,
             _ => guess(quick, data, lane * BLOCK / LANES),
@@ -72,78 +69,97 @@ impl Lanes {
         let end: [usize; LANES] =
             std::array::from_fn(|lane| start.get(lane + 1).copied().unwrap_or(BLOCK));
         let mut at = start;
-        let [first, second, third] = &mut self.lanes;
-        for lane in [&mut *first, &mut *second, &mut *third] {
-            lane.count = 0;
-            lane.noise.clear();
-        }
-        while at[0] < end[0] && at[1] < end[1] && at[2] < end[2] {
-            at[0] = step(quick, data, at[0], end[0], first);
-            at[1] = step(quick, data, at[1], end[1], second);
-            at[2] = step(quick, data, at[2], end[2], third);
-        }
-        for (index, lane) in self.lanes.iter_mut().enumerate() {
-            while at[index] < end[index] {
-                at[index] = step(quick, data, at[index], end[index], lane);
+        let mut counts = [0; LANES];
+        let Self {
+            found, ids, noise, ..
+        } = self;
+        *ids.as_mut() = [[0; 256]; LANES];
+        noise.iter_mut().for_each(Runs::clear);
+        while (0..LANES).all(|lane| at[lane] < end[lane]) {
+            for lane in 0..LANES {
+                let here = at[lane] % BLOCK;
+                cobotwire_simd::prefetch(data, at[lane] + AHEAD);
+                at[lane] = match quick.look(data, here) {
+                    Look::Frame { size, group, id } => {
+                        found[lane][counts[lane] % MOST] = Found::new(here, group);
+                        counts[lane] += 1;
+                        ids[lane][usize::from(id)] += 1;
+                        here + usize::from(size)
+                    }
+                    Look::Noise(reason) => {
+                        pass_noise(quick, data, at[lane], end[lane], reason, &mut noise[lane])
+                    }
+                };
             }
         }
+        for lane in 0..LANES {
+            while at[lane] < end[lane] {
+                let here = at[lane] % BLOCK;
+                at[lane] = match quick.look(data, here) {
+                    Look::Frame { size, group, id } => {
+                        found[lane][counts[lane] % MOST] = Found::new(here, group);
+                        counts[lane] += 1;
+                        ids[lane][usize::from(id)] += 1;
+                        here + usize::from(size)
+                    }
+                    Look::Noise(reason) => {
+                        pass_noise(quick, data, at[lane], end[lane], reason, &mut noise[lane])
+                    }
+                };
+            }
+        }
+        self.counts = counts;
         let wrong = (1..LANES).find(|lane| at[lane - 1] != start[*lane]);
         let counted = wrong.unwrap_or(LANES);
-        (&self.lanes[..counted], at[counted - 1])
+        (counted, at[counted - 1])
     }
 }
 
-/// Pass over one frame, or over the noise before the next one.
-#[inline(always)]
-fn step(quick: Quick<'_>, data: &Block, at: usize, end: usize, lane: &mut Lane) -> usize {
-    let here = at as u16;
-    match quick.look(data, here) {
-        Look::Frame(size, group) => {
-            lane.push(Found::new(here, group));
-            usize::from(here) + usize::from(size)
-        }
-        Look::Noise(_) => pass_noise(quick, data, at, end, &mut lane.noise),
-    }
-}
-
-/// Account for the noise from `at` on. Return the position of the next frame, or `end`.
+/// Account for noise: the position `from`, which has this reason, and those after it where no frame
+/// can start. Return the next position.
 #[inline(never)]
-fn pass_noise(quick: Quick<'_>, data: &Block, from: usize, end: usize, runs: &mut Runs) -> usize {
-    let mut at = from;
-    // Count in registers; the remaining bytes have the most common reason.
-    let (mut lengths, mut ids, mut checks) = (0, 0, 0);
-    'windows: while at < end {
-        let window = quick.window(data, at as u16).first(end - at);
-        let mut left = window;
-        while let Some(index) = left.next() {
-            match quick.look(data, (at + index) as u16) {
-                Look::Frame(..) => {
-                    lengths += window.first(index).bad_lengths();
-                    at += index;
-                    break 'windows;
-                }
-                Look::Noise(Reason::UnknownId) => ids += 1,
-                Look::Noise(Reason::BadCheck) => checks += 1,
-                Look::Noise(_) => lengths += 1,
-            }
-        }
-        lengths += window.bad_lengths();
-        at = end.min(at + WINDOW);
-    }
+fn pass_noise(
+    quick: Quick<'_>,
+    data: &Block,
+    from: usize,
+    end: usize,
+    reason: Reason,
+    runs: &mut Runs,
+) -> usize {
+    let (at, lengths) = next(quick, data, from, end);
     runs.span(from, at);
+    runs.count(reason, 1);
     runs.count(Reason::BadLength, lengths);
-    runs.count(Reason::UnknownId, ids);
-    runs.count(Reason::BadCheck, checks);
-    runs.count(Reason::NoHeader, at - from - lengths - ids - checks);
+    runs.count(Reason::NoHeader, at - from - 1 - lengths);
     at
+}
+
+/// Return the first position after `from` at which a frame may start, or `end`; and the number of
+/// headers before it with a LEN that no frame has.
+#[inline(always)]
+fn next(quick: Quick<'_>, data: &Block, from: usize, end: usize) -> (usize, usize) {
+    let (mut at, mut lengths) = (from + 1, 0);
+    while at < end {
+        let window = quick.window(data, at);
+        let skipped = (window.candidates.trailing_zeros() as usize).min(end - at);
+        lengths += window.first(skipped).bad_lengths.count_ones() as usize;
+        at += skipped;
+        if skipped < WINDOW {
+            break;
+        }
+    }
+    (at, lengths)
 }
 
 /// Return the first position from `at` on where a frame starts, or the end of the block if the
 /// search takes too long: then the lane would cost more than it saves.
-fn guess(quick: Quick<'_>, data: &Block, at: usize) -> usize {
+fn guess(quick: Quick<'_>, data: &Block, mut at: usize) -> usize {
     let enough = at + GUESSING;
-    match pass_noise(quick, data, at, enough, &mut Runs::default()) {
-        found if found < enough => found,
-        _ => BLOCK,
+    while at < enough {
+        if let Look::Frame { .. } = quick.look(data, at) {
+            return at;
+        }
+        (at, _) = next(quick, data, at, enough);
     }
+    BLOCK
 }

@@ -18,7 +18,6 @@ mod sample;
 mod scale;
 mod spans;
 mod stream;
-mod window;
 mod words;
 
 pub use cells::{Advise, Cells, Numbers};

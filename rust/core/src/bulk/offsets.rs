@@ -5,7 +5,6 @@ use super::cells::{Advise, reserve};
 use super::sample::expected;
 use super::spans::Spans;
 use super::stream::{Collect, Stream};
-use crate::frame::Part;
 use crate::judge::Rules;
 use crate::tally::Tally;
 
@@ -28,25 +27,17 @@ pub struct OffsetReader {
 #[derive(Clone)]
 struct Collected {
     frames: Vec<u64>,
-    counts: Counts,
-    /// The id in a frame.
-    id: Part,
 }
 
 impl OffsetReader {
     /// Return a reader for a new stream; it reuses the memory of `old` offsets.
     #[must_use]
     pub fn new(rules: Rules, old: Option<Offsets>) -> Self {
-        let id = rules.frame().layout.id;
         let mut frames = old.map(|old| old.frames).unwrap_or_default();
         frames.clear();
         Self {
             stream: Stream::new(rules),
-            collected: Collected {
-                frames,
-                counts: Counts::default(),
-                id,
-            },
+            collected: Collected { frames },
         }
     }
 
@@ -90,57 +81,10 @@ impl OffsetReader {
 
 impl Collect for Collected {
     #[inline]
-    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally) {
+    fn take(&mut self, offset: u64, _: &Block, found: [&[Found]; LANES]) {
         for lane in found {
-            let offsets = lane.iter().map(|frame| offset + u64::from(frame.at()));
-            self.frames.extend(offsets);
-        }
-        if self.id.wide {
-            for frame in found.into_iter().flatten() {
-                let bytes = block.get(usize::from(frame.at())..).unwrap_or_default();
-                tally.add_frames(self.id.read(bytes).unwrap_or_default(), 1);
-            }
-        } else {
-            self.counts.add(block, found, self.id.at, tally);
-        }
-    }
-}
-
-/// Counts frames by id, separately for each lane: adding to one count again and again is slow.
-#[derive(Clone)]
-struct Counts([[u32; 256]; LANES]);
-
-impl Default for Counts {
-    fn default() -> Self {
-        Self([[0; 256]; LANES])
-    }
-}
-
-impl Counts {
-    #[allow(clippy::indexing_slicing)] // in bounds: ids are bytes, and the block has a margin
-    fn add(&mut self, block: &Block, found: [&[Found]; LANES], id_at: usize, tally: &mut Tally) {
-        let id = |frame: &Found| usize::from(block[usize::from(frame.at()) + id_at]);
-        let [a, b, c] = &mut self.0;
-        let [first, second, third] = found;
-        for ((first, second), third) in first.iter().zip(second).zip(third) {
-            a[id(first)] += 1;
-            b[id(second)] += 1;
-            c[id(third)] += 1;
-        }
-        let common = found
-            .map(<[Found]>::len)
-            .into_iter()
-            .min()
-            .unwrap_or_default();
-        for (counts, lane) in self.0.iter_mut().zip(found) {
-            lane.iter()
-                .skip(common)
-                .for_each(|frame| counts[id(frame)] += 1);
-        }
-        for counts in &mut self.0 {
-            for (total, count) in tally.frames.iter_mut().zip(counts) {
-                *total += u64::from(std::mem::take(count));
-            }
+            let places = lane.iter().map(|frame| offset + u64::from(frame.at()));
+            self.frames.extend(places);
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::field::{Field, Shape};
 use crate::message::{Variant, VariantId};
 use crate::number::Number;
 use crate::table::Table;
+use cobotwire_simd::Six;
 
 /// The plans for every frame in the directions of a reader.
 #[derive(Clone, Debug)]
@@ -57,6 +58,8 @@ pub(crate) struct FieldPlan {
     pub(crate) allowed: Allowed,
     /// Its fast reader, if its numbers have the same width and order.
     pub(crate) words: Option<Words>,
+    /// Its reader for rows of six pairs of bytes.
+    pub(crate) six: Option<Six>,
 }
 
 impl Plan {
@@ -88,9 +91,19 @@ impl FieldPlan {
     fn new(start: u16, field: &Field) -> Self {
         let numbers = field.numbers(0).to_vec();
         let words = Words::new(&numbers);
+        let allowed = Allowed::new(field, &numbers, words.is_some());
+        let bounds = match &allowed {
+            Allowed::All => Some(Bounds::NONE),
+            Allowed::Within(bounds) => Some(*bounds),
+            _ => None,
+        };
         Self {
             start,
-            allowed: Allowed::new(field, &numbers, words.is_some()),
+            six: words
+                .as_ref()
+                .zip(bounds)
+                .and_then(|(words, bounds)| words.six(&bounds)),
+            allowed,
             words,
             numbers,
         }

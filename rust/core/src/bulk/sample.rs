@@ -3,7 +3,6 @@
 use super::block::{Block, Found, LANES};
 use super::stream::{Collect, Stream};
 use crate::judge::Rules;
-use crate::tally::Tally;
 
 /// For smaller input, an estimate costs more than it saves.
 const WORTH: usize = 1 << 20;
@@ -34,9 +33,9 @@ pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> 
 struct Seen(Vec<u64>);
 
 impl Collect for Seen {
-    fn take(&mut self, _: u64, _: &Block, found: [&[Found]; LANES], _: &mut Tally) {
+    fn take(&mut self, _: u64, _: &Block, found: [&[Found]; LANES]) {
         for frame in found.into_iter().flatten() {
-            if let Some(count) = self.0.get_mut(usize::from(frame.group())) {
+            if let Some(count) = self.0.get_mut(frame.group()) {
                 *count += 1;
             }
         }

@@ -13,8 +13,8 @@ use crate::number::Number;
 pub(crate) struct Scale {
     multiply: f64,
     divide: f64,
-    high: f64,
-    low: f64,
+    pub(crate) high: f64,
+    pub(crate) low: f64,
     /// Whether multiplying has the same result as dividing.
     pub(crate) exact: bool,
 }

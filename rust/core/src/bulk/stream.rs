@@ -1,7 +1,7 @@
 //! Scans a stream in bulk: first the seam between two calls, then a chunk block by block.
 
 use super::block::{BLOCK, Block, Found, LANES, MARGIN, Quick};
-use super::lanes::{Lane, Lanes};
+use super::lanes::Lanes;
 use super::spans::{Noise, Runs, Spans};
 use crate::frame::Frame;
 use crate::judge::Rules;
@@ -15,7 +15,7 @@ use crate::tally::Tally;
 pub(crate) trait Collect {
     /// Receive frames, lane after lane. Their positions count from the start of `block`, which is
     /// at `offset` in the stream.
-    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES], tally: &mut Tally);
+    fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES]);
 }
 
 /// Finds the frames of a stream and accounts for the rest.
@@ -141,13 +141,17 @@ impl Stream {
         let mut at = 0;
         while let Some(block) = data.get(at..).and_then(<[u8]>::first_chunk) {
             let lanes = self.space.lanes.get_or_insert_with(Lanes::new);
-            let (lanes, end) = lanes.run(quick, block);
+            let (counted, end) = lanes.run(quick, block);
             let start = offset + at as u64;
-            let found = std::array::from_fn(|lane| lanes.get(lane).map_or(&[][..], Lane::found));
-            collect.take(start, block, found, &mut self.tally);
-            for lane in lanes {
-                self.noise.add(start, lane.noise(), &mut self.tally);
+            let mut found = [&[][..]; LANES];
+            for (found, lane) in found.iter_mut().zip(lanes.first(counted)) {
+                *found = lane.found;
+                for (total, count) in self.tally.frames.iter_mut().zip(lane.ids) {
+                    *total += u64::from(*count);
+                }
+                self.noise.add(start, lane.noise, &mut self.tally);
             }
+            collect.take(start, block, found);
             at += end;
         }
         at
@@ -174,6 +178,7 @@ impl Stream {
         runs.clear();
         let mut finds = Finds {
             rules: &self.rules,
+            tally: &mut self.tally,
             found,
             runs,
         };
@@ -182,7 +187,9 @@ impl Stream {
         if let Some(start) = block.get_mut(..bytes.len()) {
             start.copy_from_slice(bytes);
         }
-        collect.take(offset, block, [found, &[], &[]], &mut self.tally);
+        let mut all = [&[][..]; LANES];
+        all[0] = found.as_slice();
+        collect.take(offset, block, all);
         self.noise.add(offset, runs, &mut self.tally);
         at
     }
@@ -191,6 +198,7 @@ impl Stream {
 /// The finds of a scan, in the form of a lane.
 struct Finds<'a> {
     rules: &'a Rules,
+    tally: &'a mut Tally,
     found: &'a mut Vec<Found>,
     runs: &'a mut Runs,
 }
@@ -201,7 +209,8 @@ impl<'a> Sink<'a> for Finds<'_> {
             Heading::Group(group) => group,
             _ => BELIEVED,
         };
-        self.found.push(Found::new(at as u16, group));
+        self.found.push(Found::new(at, group));
+        self.tally.add_frames(frame.id(), 1);
     }
 
     fn noise(&mut self, from: usize, to: usize, reason: Reason) {

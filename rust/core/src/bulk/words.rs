@@ -1,9 +1,10 @@
 //! Reads fields whose numbers are single bytes or big-endian pairs, as nearly all fields are.
 
-use super::block::Block;
+use super::block::{BLOCK, Block, MARGIN};
 use super::cells::Cell;
 use super::scale::Scale;
 use crate::number::{Number, Order};
+use cobotwire_simd::Six;
 
 /// The largest number of numbers in a field that this reader handles.
 const MOST: usize = 6;
@@ -47,8 +48,20 @@ impl Words {
         Some(words)
     }
 
+    /// Return the reader of six pairs of bytes, if the field has these.
+    pub(crate) fn six(&self, bounds: &Bounds) -> Option<Six> {
+        let exact = self.scales.iter().all(|scale| scale.exact);
+        (self.width == 2 && self.count == MOST && exact).then(|| Six {
+            bias: padded(self.bias, 0),
+            least: padded(bounds.0.map(|(least, _)| least), 0),
+            span: padded(bounds.0.map(|(_, span)| span), u32::MAX),
+            high: padded(self.scales.map(|scale| scale.high), 0.0),
+            low: padded(self.scales.map(|scale| scale.low), 0.0),
+        })
+    }
+
     /// Return whether all raw values are between their bounds.
-    pub(crate) fn within(&self, block: &Block, frames: &[u16], start: u16, all: &Bounds) -> bool {
+    pub(crate) fn within(&self, block: &Block, frames: &[u32], start: u16, all: &Bounds) -> bool {
         let task = Task {
             words: self,
             block,
@@ -68,7 +81,7 @@ impl Words {
     }
 
     /// Append a row of physical values for each frame.
-    pub(crate) fn physical(&self, block: &Block, frames: &[u16], start: u16, out: &mut Vec<f64>) {
+    pub(crate) fn physical(&self, block: &Block, frames: &[u32], start: u16, out: &mut Vec<f64>) {
         let all = Task {
             words: self,
             block,
@@ -88,7 +101,7 @@ impl Words {
     }
 
     /// Append a row of raw values for each frame.
-    pub(crate) fn raw<T: Cell>(&self, block: &Block, frames: &[u16], start: u16, out: &mut Vec<T>) {
+    pub(crate) fn raw<T: Cell>(&self, block: &Block, frames: &[u32], start: u16, out: &mut Vec<T>) {
         let all = Task {
             words: self,
             block,
@@ -108,11 +121,19 @@ impl Words {
     }
 }
 
+/// Return the rules of six numbers, followed by two others.
+fn padded<T: Copy>([a, b, c, d, e, f]: [T; MOST], rest: T) -> [T; 8] {
+    [a, b, c, d, e, f, rest, rest]
+}
+
 /// The least raw value of each number, and how far the largest is from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds([(i32, u32); MOST]);
 
 impl Bounds {
+    /// All raw values are allowed.
+    pub(crate) const NONE: Self = Self([(i32::MIN, u32::MAX); MOST]);
+
     /// Return the bounds of a field whose numbers have no choices; `None`: one of them has some.
     pub(crate) fn new(numbers: &[Number]) -> Option<Self> {
         let mut all = [(0, u32::MAX); MOST];
@@ -135,7 +156,7 @@ impl Bounds {
 struct Task<'a> {
     words: &'a Words,
     block: &'a Block,
-    frames: &'a [u16],
+    frames: &'a [u32],
     start: u16,
 }
 
@@ -196,8 +217,8 @@ impl Task<'_> {
 
 #[inline(always)]
 #[allow(clippy::indexing_slicing)] // in bounds: a frame that starts in the block ends in its margin
-fn read<const WIDTH: usize, const N: usize>(block: &Block, at: u16, start: u16) -> [i32; N] {
-    let from = usize::from(at) + usize::from(start);
+fn read<const WIDTH: usize, const N: usize>(block: &Block, at: u32, start: u16) -> [i32; N] {
+    let from = at as usize % BLOCK + usize::from(start) % (MARGIN / 2);
     let bytes = &block[from..from + WIDTH * N];
     std::array::from_fn(|index| {
         if WIDTH == 1 {

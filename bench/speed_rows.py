@@ -1,0 +1,171 @@
+"""The work that the speed benches time, by name.
+
+A row makes its work only when it is asked for, so that its memory can be freed before the next.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from functools import cached_property, partial
+from pathlib import Path
+
+import speed_peers as peers
+from cobotwire.codec.interface import Codec, Columns, Frame, Noise, Scan
+from cobotwire.editions.mycobot280 import TABLE
+from damage import noisy
+from speed_table import Timed
+from streams import stream_a
+
+ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
+CHUNK = 4096
+# The calls that a round of a row with one frame makes.
+MANY = 20_000
+# The frames that a large stream repeats: too many for any cache to learn.
+REPEATED = 1_000_000
+
+
+class Streams:
+    """The input of all rows, as files in a folder, so that several processes read the same."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    @classmethod
+    def write(cls, folder: Path, megabytes: float, frames: int) -> Streams:
+        """Write large streams of that size, and a small one with that number of frames."""
+        line = stream_a(TABLE, min(REPEATED, max(frames, round(megabytes * 70_000))))
+        bad = noisy(TABLE, line)
+        for name, data in (("clean", line.data), ("noisy", bad.data)):
+            times = max(1, round(megabytes * 1e6 / len(data)))
+            (folder / name).write_bytes(data * times)
+        (folder / "few").write_bytes(stream_a(TABLE, frames).data)
+        return cls(folder)
+
+    @cached_property
+    def clean(self) -> bytes:
+        """The large stream."""
+        return (self._folder / "clean").read_bytes()
+
+    @cached_property
+    def noisy(self) -> bytes:
+        """The large stream with 10 % noise."""
+        return (self._folder / "noisy").read_bytes()
+
+    @cached_property
+    def few(self) -> bytes:
+        """The small stream, which becomes Python objects."""
+        return (self._folder / "few").read_bytes()
+
+
+class Reused:
+    """Pass the previous result as ``out=``, like a program that reads many captures."""
+
+    def __init__(self, call: Callable[..., Scan | Columns]) -> None:
+        self.call = call
+        self.last: Scan | Columns | None = None
+
+    def __call__(self) -> object:
+        """Call once more."""
+        self.last = self.call(out=self.last)
+        return self.last
+
+
+def frames_of(codec: Codec, data: bytes) -> Iterator[Frame]:
+    """Yield all frames of a buffer block by block, so that memory stays small."""
+    framer = codec.framer("reply")
+    for start in range(0, len(data), 1 << 16):
+        for event in framer.feed(data[start : start + (1 << 16)]):
+            if not isinstance(event, Noise):
+                yield event
+
+
+def _iterated(codec: Codec, data: bytes) -> None:
+    for frame in frames_of(codec, data):
+        frame.values  # noqa: B018  (reading it is the work)
+
+
+def _in_chunks(codec: Codec, data: bytes) -> None:
+    framer = codec.framer("reply")
+    for start in range(0, len(data), CHUNK):
+        framer.feed(data[start : start + CHUNK])
+
+
+def _eager(codec: Codec, data: bytes) -> list[tuple[object, ...]]:
+    return [
+        event.values for event in codec.framer("reply").feed(data) if not isinstance(event, Noise)
+    ]
+
+
+def _feed(codec: Codec, _: Streams) -> Timed:
+    framer, frame = codec.framer("reply"), codec.encode("get_angles", "reply", (ANGLES,))
+    return Timed(lambda: framer.feed(frame)[0].values, MANY)  # type: ignore[union-attr]
+
+
+def _encode(codec: Codec, _: Streams) -> Timed:
+    values = (ANGLES, 30)
+    return Timed(lambda: codec.encode("send_angles", "request", values), MANY)
+
+
+class _Captures:
+    """Two captures, read in turn or in two threads; each reuses its own memory."""
+
+    def __init__(self, codec: Codec, data: bytes) -> None:
+        self.codec, self.data = codec, data
+        self.out: list[Columns | None] = [None, None]
+
+    def read(self, place: int) -> None:
+        out = self.out[place]
+        self.out[place] = self.codec.decode_columns(self.data, "reply", out=out)
+
+    def in_turn(self) -> None:
+        for place in (0, 1):
+            self.read(place)
+
+    def together(self) -> None:
+        both = [threading.Thread(target=self.read, args=(place,)) for place in (0, 1)]
+        for thread in both:
+            thread.start()
+        for thread in both:
+            thread.join()
+
+
+Row = Callable[[Codec, Streams], Timed]
+
+BULK: dict[str, Row] = {
+    "memcpy": lambda _, streams: Timed(peers.memcpy(streams.clean)),
+    "memcpy of the noisy stream": lambda _, streams: Timed(peers.memcpy(streams.noisy)),
+    "scan": lambda codec, streams: _reused(codec.scan, streams.clean),
+    "noisy scan": lambda codec, streams: _reused(codec.scan, streams.noisy),
+    "fresh": lambda codec, streams: Timed(partial(codec.decode_columns, streams.clean, "reply")),
+    "reused": lambda codec, streams: _reused(codec.decode_columns, streams.clean),
+    "raw": lambda codec, streams: _reused(codec.decode_columns, streams.clean, raw=True),
+    "noisy raw": lambda codec, streams: _reused(codec.decode_columns, streams.noisy, raw=True),
+}
+OBJECTS: dict[str, Row] = {
+    "list": lambda codec, streams: _objects(_lazy, codec, streams),
+    "iterated": lambda codec, streams: _objects(_iterated, codec, streams),
+    "chunks": lambda codec, streams: _objects(_in_chunks, codec, streams),
+    "eager": lambda codec, streams: _objects(_eager, codec, streams),
+}
+SINGLE: dict[str, Row] = {
+    "a no-op call": lambda *_: Timed(lambda: None, MANY),
+    "feed": _feed,
+    "encode": _encode,
+}
+THREADS: dict[str, Row] = {
+    "one thread": lambda codec, streams: Timed(_Captures(codec, streams.clean).in_turn),
+    "two": lambda codec, streams: Timed(_Captures(codec, streams.clean).together),
+}
+
+
+def _lazy(codec: Codec, data: bytes) -> object:
+    return codec.framer("reply").feed(data)
+
+
+def _reused(call: Callable[..., Scan | Columns], data: bytes, **options: bool) -> Timed:
+    return Timed(Reused(partial(call, data, "reply", **options)))
+
+
+def _objects(work: Callable[[Codec, bytes], object], codec: Codec, streams: Streams) -> Timed:
+    return Timed(partial(work, codec, streams.few))

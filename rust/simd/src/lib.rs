@@ -1,0 +1,23 @@
+//! Instructions that plain Rust cannot express: the one place with unsafe code below the binding.
+//!
+//! Each function has the same result as plain code, which runs on processors that lack the
+//! instructions, and with which the tests compare it.
+
+mod six;
+mod window;
+
+pub use six::Six;
+pub use window::{Pattern, SEEN, WINDOW, Window};
+
+/// Request that memory near `bytes`, which may end before it, is loaded into the cache.
+#[inline(always)]
+pub fn prefetch(bytes: &[u8], ahead: usize) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: a prefetch has no effect on the program, whatever the address is.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>(bytes.as_ptr().wrapping_add(ahead).cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (bytes, ahead);
+}

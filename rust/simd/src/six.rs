@@ -1,0 +1,229 @@
+//! Reads rows of six big-endian numbers of two bytes, as joint angles and coordinates are.
+
+/// The numbers in a row.
+const NUMBERS: usize = 6;
+
+/// The rules of the numbers of a row. The last two of each array belong to no number.
+#[derive(Clone, Copy, Debug)]
+pub struct Six {
+    /// Added before a number is cut to two bytes, and subtracted afterwards.
+    pub bias: [i32; 8],
+    /// The least raw value.
+    pub least: [i32; 8],
+    /// How far the largest raw value is from the least.
+    pub span: [u32; 8],
+    /// The factor of a physical value, in two parts: `raw * high + raw * low`.
+    pub high: [f64; 8],
+    /// The second part.
+    pub low: [f64; 8],
+}
+
+impl Six {
+    /// Append the physical values of rows, which start at `starts` in `block`. Return whether all
+    /// raw values are within their bounds; if not, nothing is appended. `None`: this processor
+    /// lacks the instructions.
+    #[inline]
+    pub fn append_physical(
+        &self,
+        out: &mut Vec<f64>,
+        block: &[u8],
+        starts: impl Iterator<Item = usize>,
+    ) -> Option<bool> {
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has the instructions, as was just checked.
+            return Some(unsafe { avx2::append_physical(self, out, block, starts) });
+        }
+        let _ = (out, block, starts);
+        None
+    }
+
+    /// Do the same with the raw values. Those within their bounds fit the type.
+    #[inline]
+    pub fn append_raw(
+        &self,
+        out: &mut Vec<i16>,
+        block: &[u8],
+        starts: impl Iterator<Item = usize>,
+    ) -> Option<bool> {
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has the instructions, as was just checked.
+            return Some(unsafe { avx2::append_raw(self, out, block, starts) });
+        }
+        let _ = (out, block, starts);
+        None
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use std::arch::x86_64::*;
+
+    use super::{NUMBERS, Six};
+
+    /// The rules in registers.
+    struct Rules {
+        swap: __m128i,
+        low_half: __m256i,
+        bias: __m256i,
+        least: __m256i,
+        span: __m256i,
+    }
+
+    impl Rules {
+        #[target_feature(enable = "avx2")]
+        #[inline]
+        fn new(six: &Six) -> Self {
+            // SAFETY: each array has the 32 bytes that are loaded.
+            let [bias, least, span] = unsafe {
+                [
+                    _mm256_loadu_si256(six.bias.as_ptr().cast()),
+                    _mm256_loadu_si256(six.least.as_ptr().cast()),
+                    _mm256_loadu_si256(six.span.as_ptr().cast()),
+                ]
+            };
+            Self {
+                swap: _mm_set_epi8(14, 15, 12, 13, 10, 11, 8, 9, 6, 7, 4, 5, 2, 3, 0, 1),
+                low_half: _mm256_set1_epi32(0xFFFF),
+                bias,
+                least,
+                span,
+            }
+        }
+
+        /// Return the raw values of a row, after the sign rule.
+        #[target_feature(enable = "avx2")]
+        #[inline]
+        fn raws(&self, bytes: &[u8; 16]) -> __m256i {
+            // SAFETY: the array has the 16 bytes that are loaded.
+            let bytes = unsafe { _mm_loadu_si128(bytes.as_ptr().cast()) };
+            let words = _mm256_cvtepu16_epi32(_mm_shuffle_epi8(bytes, self.swap));
+            let cut = _mm256_and_si256(_mm256_add_epi32(words, self.bias), self.low_half);
+            _mm256_sub_epi32(cut, self.bias)
+        }
+
+        /// Return zero where a raw value is within its bounds.
+        #[target_feature(enable = "avx2")]
+        #[inline]
+        fn outside(&self, raws: __m256i) -> __m256i {
+            let above = _mm256_sub_epi32(raws, self.least);
+            _mm256_xor_si256(_mm256_max_epu32(above, self.span), self.span)
+        }
+    }
+
+    /// Define a function that reserves memory for all rows, stores each row there, and sets the
+    /// length of the vector at the end.
+    macro_rules! append {
+        ($name:ident, $type:ty, $six:ident => $prepare:expr, $store:expr) => {
+            #[target_feature(enable = "avx2")]
+            pub(super) fn $name(
+                $six: &Six,
+                out: &mut Vec<$type>,
+                block: &[u8],
+                starts: impl Iterator<Item = usize>,
+            ) -> bool {
+                let rules = Rules::new($six);
+                let prepared = $prepare;
+                let mut outside = _mm256_setzero_si256();
+                out.reserve(starts.size_hint().0 * NUMBERS);
+                let room = (out.capacity() - out.len()) / NUMBERS;
+                let mut done = 0;
+                // SAFETY: the vector has at least this length.
+                let first = unsafe { out.as_mut_ptr().add(out.len()) };
+                for start in starts {
+                    let bytes = block.get(start..).and_then(<[u8]>::first_chunk);
+                    let (Some(bytes), true) = (bytes, done < room) else {
+                        return false;
+                    };
+                    let raws = rules.raws(bytes);
+                    outside = _mm256_or_si256(outside, rules.outside(raws));
+                    // SAFETY: there is room for more than `done` rows after the vector's end.
+                    unsafe { $store(raws, &prepared, first.add(done * NUMBERS)) };
+                    done += 1;
+                }
+                if _mm256_testz_si256(outside, outside) == 0 {
+                    return false;
+                }
+                // SAFETY: there was room for `done` rows, and all of them were stored.
+                unsafe { out.set_len(out.len() + done * NUMBERS) };
+                true
+            }
+        };
+    }
+
+    append!(append_physical, f64, six => Factors::new(six), store_physical);
+    append!(append_raw, i16, six => (), store_raw);
+
+    /// The factors of the first four numbers, and of the last two.
+    struct Factors {
+        high: (__m256d, __m128d),
+        low: (__m256d, __m128d),
+    }
+
+    impl Factors {
+        #[target_feature(enable = "avx2")]
+        #[inline]
+        fn new(six: &Six) -> Self {
+            // SAFETY: each array has eight numbers, of which the first six are loaded.
+            unsafe {
+                let parts = |all: &[f64; 8]| {
+                    (
+                        _mm256_loadu_pd(all.as_ptr()),
+                        _mm_loadu_pd(all.as_ptr().add(4)),
+                    )
+                };
+                Self {
+                    high: parts(&six.high),
+                    low: parts(&six.low),
+                }
+            }
+        }
+    }
+
+    /// Store six physical values.
+    ///
+    /// # Safety
+    /// `to` must be writable for six values.
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn store_physical(raws: __m256i, factors: &Factors, to: *mut f64) {
+        // The products are not fused with the sum: the factors are proved for this arithmetic.
+        let four = _mm256_cvtepi32_pd(_mm256_castsi256_si128(raws));
+        let four = _mm256_add_pd(
+            _mm256_mul_pd(four, factors.high.0),
+            _mm256_mul_pd(four, factors.low.0),
+        );
+        let two = _mm_cvtepi32_pd(_mm256_extracti128_si256::<1>(raws));
+        let two = _mm_add_pd(
+            _mm_mul_pd(two, factors.high.1),
+            _mm_mul_pd(two, factors.low.1),
+        );
+        // SAFETY: as the caller promises.
+        unsafe {
+            _mm256_storeu_pd(to, four);
+            _mm_storeu_pd(to.add(4), two);
+        }
+    }
+
+    /// Store six raw values.
+    ///
+    /// # Safety
+    /// `to` must be writable for six values.
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn store_raw(raws: __m256i, (): &(), to: *mut i16) {
+        // A value that does not fit is out of bounds, so it does not matter that it is changed.
+        let all = _mm_packs_epi32(
+            _mm256_castsi256_si128(raws),
+            _mm256_extracti128_si256::<1>(raws),
+        );
+        // SAFETY: as the caller promises; the first store has four values, the second one two.
+        unsafe {
+            _mm_storel_epi64(to.cast(), all);
+            to.add(4)
+                .cast::<i32>()
+                .write_unaligned(_mm_extract_epi32::<2>(all));
+        }
+    }
+}
