@@ -11,6 +11,7 @@ import gc
 import sys
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
 import cobotwire
@@ -37,7 +38,7 @@ def main() -> None:
                 name, timed = line.strip(), None
                 gc.collect()
                 row = {**ROWS, **client_rows}[name]
-                timed = _ready(lambda row=row: row(codec, streams))
+                timed = _ready(partial(row, codec, streams))
             print(_seconds(timed), flush=True)
 
 

@@ -57,17 +57,18 @@ impl Lanes {
         })
     }
 
-    /// Scan a block from its start, into which no earlier frame reaches. Return the number of lanes
-    /// that count, and the end of the last of them.
+    /// Scan a block up to `stop` from its start, into which no earlier frame reaches. Return the
+    /// number of lanes that count, and the end of the last of them.
     #[inline(never)]
     #[allow(clippy::indexing_slicing)] // by lane, below their number
-    pub(crate) fn run(&mut self, quick: Quick<'_>, data: &Block) -> (usize, usize) {
+    pub(crate) fn run(&mut self, quick: Quick<'_>, data: &Block, stop: usize) -> (usize, usize) {
+        let stop = stop.min(BLOCK);
         let start: [usize; LANES] = std::array::from_fn(|lane| match lane {
             0 => 0,
-            _ => guess(quick, data, lane * BLOCK / LANES),
+            _ => guess(quick, data, lane * stop / LANES, stop),
         });
         let end: [usize; LANES] =
-            std::array::from_fn(|lane| start.get(lane + 1).copied().unwrap_or(BLOCK));
+            std::array::from_fn(|lane| start.get(lane + 1).copied().unwrap_or(stop));
         let mut at = start;
         let mut counts = [0; LANES];
         let Self {
@@ -151,15 +152,15 @@ fn next(quick: Quick<'_>, data: &Block, from: usize, end: usize) -> (usize, usiz
     (at, lengths)
 }
 
-/// Return the first position from `at` on where a frame starts, or the end of the block if the
-/// search takes too long: then the lane would cost more than it saves.
-fn guess(quick: Quick<'_>, data: &Block, mut at: usize) -> usize {
-    let enough = at + GUESSING;
+/// Return the first position from `at` on where a frame starts, or `stop` if the search takes
+/// too long: then the lane would cost more than it saves.
+fn guess(quick: Quick<'_>, data: &Block, mut at: usize, stop: usize) -> usize {
+    let enough = stop.min(at + GUESSING);
     while at < enough {
         if let Look::Frame { .. } = quick.look(data, at) {
             return at;
         }
         (at, _) = next(quick, data, at, enough);
     }
-    BLOCK
+    stop
 }

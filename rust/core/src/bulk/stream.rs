@@ -10,6 +10,10 @@ use crate::reason::Reason;
 use crate::scan::{Sink, scan};
 use crate::seam::Seam;
 use crate::tally::Tally;
+use cobotwire_simd::SEEN;
+
+/// A shorter block is scanned position by position: its lanes would need more memory than it has.
+const WORTH: usize = 1 << 15;
 
 /// Receives the frames of a stream in order, in portions.
 pub(crate) trait Collect {
@@ -133,15 +137,31 @@ impl Stream {
         self.seam.keep(crossing, chunk, at);
     }
 
-    /// Scan the whole blocks at the start of `data`; return the end of the last one.
+    /// Scan the blocks at the start of `data`, the last of which may be short; return the end of it.
     fn blocks(&mut self, offset: u64, data: &[u8], collect: &mut impl Collect) -> usize {
         let Some(quick) = Quick::new(&self.rules) else {
             return 0;
         };
         let mut at = 0;
-        while let Some(block) = data.get(at..).and_then(<[u8]>::first_chunk) {
-            let lanes = self.space.lanes.get_or_insert_with(Lanes::new);
-            let (counted, end) = lanes.run(quick, block);
+        loop {
+            let Space { lanes, scratch } = &mut self.space;
+            let rest = data.get(at..).unwrap_or_default();
+            let (block, stop) = match rest.first_chunk() {
+                Some(block) => (block, BLOCK),
+                None => {
+                    let stop = rest.len().saturating_sub(self.rules.longest().max(SEEN));
+                    if stop < WORTH {
+                        break;
+                    }
+                    let scratch = scratch.get_or_insert_with(Scratch::new);
+                    if let Some(start) = scratch.block.get_mut(..rest.len()) {
+                        start.copy_from_slice(rest);
+                    }
+                    (&*scratch.block, stop)
+                }
+            };
+            let lanes = lanes.get_or_insert_with(Lanes::new);
+            let (counted, end) = lanes.run(quick, block, stop);
             let start = offset + at as u64;
             let mut found = [&[][..]; LANES];
             for (found, lane) in found.iter_mut().zip(lanes.first(counted)) {
