@@ -1,0 +1,81 @@
+"""Test independent subjects with planted defects; print what is found, and whether it is named.
+
+make defects                              run all; write the tables into docs/conformance.md
+make defects DEFECTS='arm firmware'       run some subjects; print only
+PYTHONPATH=tests python -m defects arm --only two-joints-swapped --messages
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from fnmatch import fnmatch
+
+from defects.judging import Judgement, Message, judge, messages_of
+from defects.key import SUBJECTS, Defect, defects
+from defects.page import rewritten, tables
+from defects.running import CORRECT, report_on
+from vectors import ROOT
+
+PAGE = ROOT / "docs" / "conformance.md"
+
+
+def main() -> int:
+    """Run the subjects; return 1 if a defect is missed, or a correct subject does not conform."""
+    given = _arguments()
+    began = time.monotonic()
+    planted = [d for d in defects(*given.subjects) if fnmatch(d.switch, given.only)]
+    subjects = dict.fromkeys(defect.subject for defect in planted)
+    right = [(subject, line) for subject in subjects for line in CORRECT.get(subject, ())]
+    with ProcessPoolExecutor(given.processes) as pool:
+        correct: dict[str, list[Message]] = {}
+        for (subject, _), messages in zip(right, pool.map(_correct, right)):
+            correct.setdefault(subject, []).extend(messages)
+        judgements = []
+        for judgement in pool.map(_judged, planted):
+            judgements.append(judgement)
+            _print(judgement, all_of_them=given.messages)
+    text = tables(judgements, correct)
+    print(text[: text.index("\n\n")])
+    for subject, failures in correct.items():
+        for message in failures:
+            print(f"REJECTED correct {subject}: {message}")
+    print(f"{time.monotonic() - began:.0f} s")
+    if given.write:
+        PAGE.write_text(rewritten(PAGE.read_text("utf-8"), text), "utf-8")
+    sound = all(each.found for each in judgements) and not any(correct.values())
+    return 0 if sound else 1
+
+
+def _correct(run: tuple[str, str]) -> list[Message]:
+    subject, line = run
+    return messages_of(report_on(subject, "", line))
+
+
+def _judged(defect: Defect) -> Judgement:
+    return judge(defect, messages_of(report_on(defect.subject, defect.switch, defect.line)))
+
+
+def _print(judgement: Judgement, *, all_of_them: bool) -> None:
+    verdict = "named" if judgement.named else "found" if judgement.found else "MISSED"
+    print(f"{verdict:<7}{judgement.defect.subject}: {judgement.defect.switch}", flush=True)
+    if judgement.named is None or all_of_them:
+        for message in judgement.messages[: None if all_of_them else 4]:
+            print(f"       {message!s:.300}")
+
+
+def _arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("subjects", nargs="*", choices=[*SUBJECTS, []], help="default: all")
+    parser.add_argument("--only", default="*", help="a pattern of the switches")
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--messages", action="store_true", help="print every message")
+    parser.add_argument("--write", action="store_true", help="write the tables into the page")
+    return parser.parse_args(words)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,49 @@
+"""Let the referee judge independent clients: in plain Python, and in C."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from cobotwire.cli.conform_client import read_script
+from cobotwire.conformance import Report
+from cobotwire.conformance.client import Referee, faulty_replies
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.simulator import TcpServer
+from cobotwire.simulator.kinematics import prepare
+from defects.devices import built
+
+HERE = Path(__file__).parent / "client"
+DELAY, EVERY = 0.008, 3
+# After this time without a request, everything that a client has sent has arrived; in seconds.
+SETTLED, LONGEST = 0.15, 60.0
+
+
+def report_on_client(defect: str = "", line: str = "") -> Report:
+    """Judge the client in plain Python."""
+    command = [sys.executable, str(HERE / "plain.py"), "PORT", *([defect] if defect else [])]
+    return _judged(command, HERE / "calls.txt", line)
+
+
+def report_on_c_client(defect: str = "", line: str = "") -> Report:
+    """Judge the client in C."""
+    return _judged([str(built(HERE / "client.c", defect)), "PORT"], HERE / "calls_c.txt", line)
+
+
+def _judged(command: list[str], calls: Path, line: str) -> Report:
+    prepare()
+    referee = Referee(
+        TABLE,
+        scenario=faulty_replies(DELAY, [line] if line else [], EVERY),
+        script=list(read_script(TABLE, str(calls))),
+    )
+    with TcpServer(lambda: referee) as server:
+        port = str(urlsplit(server.url).port)
+        command = [port if word == "PORT" else word for word in command]
+        subprocess.run(command, stderr=subprocess.DEVNULL, timeout=LONGEST, check=False)
+        while (referee.silence or 0.0) < SETTLED:
+            time.sleep(SETTLED / 3)
+    return referee.finish()

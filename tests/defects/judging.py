@@ -1,0 +1,56 @@
+"""Judge by a fixed rule whether the messages of a run name the cause of a planted defect."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cobotwire.conformance import Report
+from defects.key import ANY, Defect
+
+
+class Message(NamedTuple):
+    """What a report says of one failure; ``command`` is empty if it is about the whole line."""
+
+    case: str
+    command: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.case} {self.command}: {self.text}" if self.command else self[0] + self.text
+
+
+class Judgement(NamedTuple):
+    """What a run found of a defect. ``named`` is the message that names it; None: there is none."""
+
+    defect: Defect
+    messages: tuple[Message, ...]
+    named: Message | None
+
+    @property
+    def found(self) -> bool:
+        """Whether any test case failed, or the run could not end."""
+        return bool(self.messages)
+
+
+def messages_of(report: Report) -> list[Message]:
+    """Return what a report says of its failures, and why it ended early, if it did."""
+    found = [
+        Message(result.case, result.command, " | ".join((result.reason, *result.further)))
+        for result in report.failures
+    ]
+    return found + ([Message("run ended", "", report.stopped)] if report.stopped else [])
+
+
+def judge(defect: Defect, messages: Sequence[Message]) -> Judgement:
+    """Judge the messages of a run: one of them must have the command and every pattern."""
+    named = next((message for message in messages if _names(defect, message)), None)
+    return Judgement(defect, tuple(messages), named)
+
+
+def _names(defect: Defect, message: Message) -> bool:
+    if ANY not in defect.names and message.command not in defect.names:
+        return False
+    text = f"{message.case} {message.command} {message.text}"
+    return all(re.search(word, text, re.IGNORECASE) for word in defect.words)

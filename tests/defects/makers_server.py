@@ -1,0 +1,77 @@
+"""The maker's server between the tester and a correct arm: the firmware in C on its pty.
+
+The server is a program of the maker's repository, which is fetched for the run.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+
+from cobotwire.conformance import Report
+from defects.devices import report_on_port, running_firmware
+from demos.scripts import COMMIT, REPOSITORY
+
+SERVER = "demo/Server_280.py"
+START = """import sys
+from Server_280 import MycobotServer
+MycobotServer("127.0.0.1", int(sys.argv[1]), sys.argv[2], 115200)
+"""
+# It accepts one connection at a time, so whether it listens cannot be tried.
+START_SECONDS = 2.0
+BY_DEFECT: dict[str, tuple[str, ...]] = {
+    "drops-text": (),
+    "takes-acks-for-echoes": ("setting", "power"),
+    "dies-on-short-writes": ("malformed",),
+}
+
+
+def report_on_server(defect: str = "") -> Report:
+    """Test the server with the permissions that show one of its defects."""
+    with running_firmware() as port, _serving(port) as url:
+        return report_on_port(url, BY_DEFECT[defect])
+
+
+@contextmanager
+def _serving(port: str) -> Iterator[str]:
+    """Run the server in front of a port while the block runs."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "Server_280.py").write_text(_source(), "utf-8")
+        # The library for the pins of its computer is not installed here.
+        (folder / "RPi").mkdir()
+        (folder / "RPi" / "GPIO.py").write_text("def setwarnings(on): pass\n")
+        number = _free_port()
+        command = [sys.executable, "-c", START, str(number), port]
+        with subprocess.Popen(
+            command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        ) as server:
+            try:
+                time.sleep(START_SECONDS)
+                yield f"socket://127.0.0.1:{number}"
+            finally:
+                server.kill()
+
+
+def _free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port: int = server.getsockname()[1]
+        return port
+
+
+@cache
+def _source() -> str:
+    """Return the server's source, as the maker publishes it."""
+    repository = os.environ.get("MAKERS_REPOSITORY", REPOSITORY)
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["git", "clone", "--quiet", "--bare", repository, folder], check=True)
+        shown = ["git", "-C", folder, "show", f"{COMMIT}:{SERVER}"]
+        return subprocess.run(shown, check=True, capture_output=True, text=True).stdout

@@ -1,0 +1,26 @@
+"""Run the tester that fits a subject."""
+
+from __future__ import annotations
+
+from cobotwire.conformance import Report
+from defects.clients import report_on_c_client, report_on_client
+from defects.devices import report_on_arm, report_on_firmware
+from defects.makers_server import report_on_server
+
+LINES = ("", "lost", "late", "noise", "split", "twice", "merged")
+# Without a defect: on which lines each subject must conform. The maker's server has its own defects.
+CORRECT = {"arm": ("",), "firmware": ("",), "client": LINES, "c_client": LINES}
+
+
+def report_on(subject: str, defect: str = "", line: str = "") -> Report:
+    """Test a subject with a defect; ``line`` is what the referee does to replies to a client."""
+    if subject == "client":
+        return report_on_client(defect, line)
+    if subject == "c_client":
+        return report_on_c_client(defect, line)
+    by_subject = {
+        "arm": report_on_arm,
+        "firmware": report_on_firmware,
+        "server": report_on_server,
+    }
+    return by_subject[subject](defect)
