@@ -17,12 +17,15 @@ import time
 from collections.abc import Sequence
 
 PATIENCE, ATTEMPTS, BETWEEN = 0.17, 3, 0.004
+# How often two queries are sent in turns at the end.
+ROUNDS = 8
 # A late reply was seen after this time.
 LATEST = 0.75
 POSE, STEEP = (10, -20.5, 33.33, -45, 60, -70.07), -33.3
 PLACE = (160.5, -80.2, 210.7, -170, 10.5, 30)
 TOOL = (1.5, -20, 30, 4, -5, 60)
-LENGTHS, DEGREES = (10, 10, 10, 100, 100, 100), (100,) * 6
+# The scales of coordinates, and of angles and references.
+COORDS, HUNDREDTHS = (10, 10, 10, 100, 100, 100), (100,) * 6
 QUERIES = {0x12, 0x20, 0x23, 0x2B, 0x3B, 0x40}
 
 
@@ -42,15 +45,15 @@ class Client:
         self.call(0x12)
         self.call(0x41, bytes([40]))
         self.call(0x20)
-        self.call(0x22, self.words(self.pose(), DEGREES) + bytes([self.speed(40)]))
+        self.call(0x22, self.words(self.pose(), HUNDREDTHS) + bytes([self.speed(40)]))
         self.call(0x2B)
         joint = 4 if wrong == "joint-off-by-one" else 3
         angle = struct.pack(">h", self.rounded(STEEP * 100))
         self.call(0x21, bytes([joint]) + angle + bytes([40]))
         self.call(0x23)
         mode = 0 if wrong == "wrong-mode" else 1
-        self.call(0x25, self.words(PLACE, LENGTHS) + bytes([30, mode]))
-        self.call(0x81, self.words(self.tool(), LENGTHS))
+        self.call(0x25, self.words(PLACE, COORDS) + bytes([30, mode]))
+        self.call(0x81, self.words(self.tool(), HUNDREDTHS))
         self.call(0x3B, bytes([5]))
         self.call(0x3B, bytes([4]))
         self.call(0x66, bytes([int(wrong == "open-is-1"), 50]))
@@ -67,7 +70,9 @@ class Client:
         if wrong == "moves-after-power-off":
             self.call(0x11)
         self.call(0x21, bytes([1]) + struct.pack(">h", 0) + bytes([20]))
-        self.call(0x20)
+        for _ in range(ROUNDS):
+            self.call(0x20)
+            self.call(0x2B)
         if wrong == "last-frame-cut":
             self._line.sendall(b"\xfe\xfe\x02")
         else:
@@ -78,7 +83,7 @@ class Client:
         if self._defect == "radians":
             return [math.radians(angle) for angle in POSE]
         if self._defect == "one-angle-tenfold":
-            return (*POSE[:2], POSE[2] * 10, *POSE[3:])
+            return (POSE[0], POSE[1] * 10, *POSE[2:])
         return POSE[::-1] if self._defect == "joints-in-reverse" else POSE
 
     def speed(self, wanted: int) -> int:
@@ -173,7 +178,7 @@ class Client:
                 return False
             finally:
                 self._line.settimeout(None)
-            if self._defect == "takes-noise-for-the-reply" or self.holds_reply(id):
+            if self._defect == "takes-text-for-the-reply" or self.holds_reply(id):
                 return True
         return False
 

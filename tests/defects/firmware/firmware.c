@@ -93,10 +93,10 @@ static void coords(int32_t found[6])
     for (i = 0; i < 3; i++) {
         place[i] = m[i][3];
         for (k = 0; arm.end && k < 3; k++) {
-            place[i] += m[i][k] * arm.references[TOOL][k] / 10.0;
+            place[i] += m[i][k] * arm.references[TOOL][k] / 100.0;
         }
         if (arm.frame) {
-            place[i] += arm.references[WORLD][i] / 10.0;
+            place[i] += arm.references[WORLD][i] / 100.0;
         }
         found[i] = (int32_t)lround(place[i] * 10);
     }

@@ -9,6 +9,7 @@ from cobotwire.conformance.client.history import REMEMBERED, Received
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.faults import (
+    CommandError,
     Duplicated,
     Fault,
     Late,
@@ -39,6 +40,9 @@ FAULTS: Mapping[str, Callable[[int, int], Fault]] = {
     "split": lambda every, first: Split(every=every, first=first, seconds=PAUSE_SECONDS),
     "merged": lambda every, first: Merged(every=every, first=first, at_most_seconds=A_DAY),
     "noise": lambda every, first: ServoLeak(every=every, first=first, packets=("status",)),
+    "text": lambda every, first: CommandError(
+        every=every, first=first, only="replies", seconds=SOON_SECONDS
+    ),
     "twice": lambda every, first: Duplicated(every=every, first=first),
     "event": lambda every, first: UnrequestedEvent(
         every=every, first=first, only="replies", seconds=SOON_SECONDS
