@@ -44,13 +44,14 @@ def messages_of(report: Report) -> list[Message]:
 
 
 def judge(defect: Defect, messages: Sequence[Message]) -> Judgement:
-    """Judge the messages of a run: one of them must have the command and every pattern."""
+    """Judge the messages of a run: one of them must name a command and have every pattern."""
     named = next((message for message in messages if _names(defect, message)), None)
     return Judgement(defect, tuple(messages), named)
 
 
 def _names(defect: Defect, message: Message) -> bool:
-    if ANY not in defect.names and message.command not in defect.names:
-        return False
     text = f"{message.case} {message.command} {message.text}"
+    about = {message.command, *re.findall(r"\w+", message.text)}
+    if ANY not in defect.names and not about & set(defect.names):
+        return False
     return all(re.search(word, text, re.IGNORECASE) for word in defect.words)

@@ -25,8 +25,8 @@ class Defect(NamedTuple):
     """A planted defect.
 
     ``switch`` turns it on. ``what`` describes it. A message names it if it is about one of the
-    commands in ``names`` and has all patterns in ``words``. ``line`` is what the referee does to
-    replies, if the subject is a client.
+    commands in ``names``, or mentions one, and has all patterns in ``words``. ``line`` is what the
+    referee does to replies, if the subject is a client.
     """
 
     subject: str

@@ -17,7 +17,9 @@ from functools import cache
 from pathlib import Path
 
 from cobotwire.conformance import Report
-from defects.devices import report_on_port, running_firmware
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.transport import open_transport
+from defects.devices import firmware, report_on
 from demos.scripts import COMMIT, REPOSITORY
 
 SERVER = "demo/Server_280.py"
@@ -29,15 +31,30 @@ MycobotServer("127.0.0.1", int(sys.argv[1]), sys.argv[2], 115200)
 START_SECONDS = 2.0
 BY_DEFECT: dict[str, tuple[str, ...]] = {
     "drops-text": (),
-    "takes-acks-for-echoes": ("setting", "power"),
     "dies-on-short-writes": ("malformed",),
 }
 
 
 def report_on_server(defect: str = "") -> Report:
     """Test the server with the permissions that show one of its defects."""
-    with running_firmware() as port, _serving(port) as url:
-        return report_on_port(url, BY_DEFECT[defect])
+    with _firmware() as port, _serving(port) as url:
+        transport = open_transport(url, TABLE.baudrate)
+        try:
+            return report_on(transport, BY_DEFECT[defect])
+        finally:
+            transport.close()
+
+
+@contextmanager
+def _firmware() -> Iterator[str]:
+    """Run the correct firmware while the block runs; return its port."""
+    program = [str(firmware())]
+    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        try:
+            yield process.stdout.readline().strip()
+        finally:
+            process.kill()
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from defects.devices import report_on_arm, report_on_firmware
 from defects.makers_server import report_on_server
 
 LINES = ("", "lost", "late", "noise", "text", "split", "twice", "merged")
-# Without a defect: on which lines each subject must conform. The maker's server has its own defects.
+# Where each subject must conform without a defect. The maker's server has its own defects.
 CORRECT = {"arm": ("",), "firmware": ("",), "client": LINES, "c_client": LINES}
 
 

@@ -75,7 +75,9 @@ class MemoryTransport:
         """
         with self._news:
             self._must_be_open("cannot be read")
-            deadline = self.clock() + timeout
+            # Adding less than a tick may not change the clock, and a caller that reads until its
+            # time is over would read for ever.
+            deadline = self.clock() + (max(timeout, TICK_SECONDS) if timeout > 0 else 0.0)
             while True:
                 self._with_peer(self._connection.pass_time)
                 if data := self._take():

@@ -8,7 +8,7 @@ from cobotwire.conformance.client import FAULTS, Referee, faulty_replies
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator.clock import SteppedClock
-from cobotwire.simulator.faults.noise import LEAKS
+from cobotwire.simulator.faults.noise import COMMAND_ERROR, LEAKS
 
 REQUEST, REPLY = bytes.fromhex("FEFE0212FA"), bytes.fromhex("FEFE031201FA")
 SERVO_PACKET = LEAKS["status"]
@@ -42,6 +42,7 @@ def test_each_fault_changes_the_reply_as_its_name_says() -> None:
     assert _replies("lost") == []
     assert _replies("late") == [(0.608, REPLY)]
     assert _replies("noise") == [(0.008, SERVO_PACKET + REPLY)]
+    assert _replies("text") == [(0.008, COMMAND_ERROR), (0.028, REPLY)]
     assert _replies("twice") == [(0.008, REPLY * 2)]
     assert _replies("merged", every=2, requests=3) == [(0.008, REPLY), (2.008, REPLY * 2)]
     (first, head), (second, tail) = _replies("split")
@@ -62,4 +63,4 @@ def test_unknown_fault_and_period_are_rejected(faults: list[str], every: int) ->
 def test_every_fault_is_tested_here() -> None:
     # Events and addresses have tests of their own: test_other_messages.py.
     others = {"event", "address"}
-    assert set(FAULTS) == {"lost", "late", "split", "merged", "noise", "twice", *others}
+    assert set(FAULTS) == {"lost", "late", "split", "merged", "noise", "text", "twice", *others}

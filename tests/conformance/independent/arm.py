@@ -39,6 +39,7 @@ SIZES = {
     0xB1: 0,
 }
 FLAGS = (0x1A, 0x16, 0x85, 0x89)
+OUTPUTS = (0x61, 0xA0)
 JOINTS = (0x3B, 0x4A, 0x4B, 0x50, 0x53, 0x4C, 0x4D, 0x52, 0x54, 0x55, 0x56, 0x57, 0x21)
 
 
@@ -164,6 +165,8 @@ class Arm:
         if id == 0xB1:
             return b"ssid: MyCobotWiFi2.4G password: mycobot123\r\n"
         if (id in FLAGS and data[0] > 1) or (id in JOINTS and not 1 <= data[0] <= 6):
+            return b""
+        if (id in OUTPUTS and data[1] > 1) or (id == 0x41 and data[0] > 100):
             return b""
         if (id == 0x53 and not 20 <= data[1] <= 24) or (id == 0x2A and data[12] > 1):
             return b""

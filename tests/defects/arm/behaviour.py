@@ -134,9 +134,9 @@ class IgnoresFooters(MovingArm):
     """The last byte of a frame may be anything."""
 
     def _frame(self, data: bytes) -> bytes | None:
-        if len(data) >= 4 and len(data) >= (size := SIZES.get(data[3], 99) + 5):
-            if data[2] == size - 3:
-                return data[: size - 1] + b"\xfa"
+        size = SIZES.get(data[3], 99) + 5 if len(data) >= 4 else 99
+        if len(data) >= size and data[2] == size - 3:
+            return data[: size - 1] + b"\xfa"
         return super()._frame(data)
 
 

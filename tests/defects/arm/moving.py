@@ -61,6 +61,8 @@ class MovingArm(Arm):
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._travel = Travel(clock, [0.0] * 6)
+        # In the mode of interpolation, targets wait for the one before.
+        self._queue: list[tuple[list[int], float]] = []
         super().__init__(clock)
         self._width = Travel(clock, [50.0])
         self._width_zero = 0.0
@@ -72,6 +74,11 @@ class MovingArm(Arm):
     @_ticks.setter
     def _ticks(self, ticks: Sequence[float]) -> None:
         self._travel.put(ticks)
+
+    def _reply(self, id: int, data: bytes) -> bytes:
+        if self._queue and not self._travel.moves and not self._travel.held:
+            self._travel.go(*self._queue.pop(0))
+        return super()._reply(id, data)
 
     def _answer(self, id: int, data: bytes) -> bytes | None:
         if id == 0x65:
@@ -93,6 +100,7 @@ class MovingArm(Arm):
             0x67: lambda data: self._grip(data[0], data[1]),
         }
         if id in (0x11, 0x13, 0x29, 0x34):
+            self._queue = []
             self._travel.put(self._travel.place())
         if id == 0x26:
             self._travel.hold()
@@ -115,7 +123,12 @@ class MovingArm(Arm):
             [limit / 10 * TICKS_PER_DEGREE for limit in self._limits[id]] for id in (0x4A, 0x4B)
         )
         goal = [min(max(tick, a), b) for tick, a, b in zip(ticks, low, high)]
-        self._travel.go([round(tick) for tick in goal], TICKS_PER_SECOND * max(speed, 1) / 100)
+        target = ([round(tick) for tick in goal], TICKS_PER_SECOND * max(speed, 1) / 100)
+        if self._travel.moves and not self._flags[0x16]:
+            self._queue.append(target)
+        else:
+            self._queue = []
+            self._travel.go(*target)
 
     def _go_to_degrees(self, hundredths: Sequence[float], speed: int) -> None:
         self._go([n / 100 * TICKS_PER_DEGREE for n in hundredths], speed)

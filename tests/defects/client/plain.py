@@ -187,9 +187,9 @@ class Client:
         at = self._received.find(b"\xfe\xfe")
         while at >= 0:
             part = self._received[at:]
-            if len(part) > 4 and len(part) >= part[2] + 3 and part[part[2] + 2] == 0xFA:
-                if part[3] == id or self._defect == "takes-any-frame-for-the-reply":
-                    return True
+            whole = len(part) > 4 and len(part) >= part[2] + 3 and part[part[2] + 2] == 0xFA
+            if whole and (part[3] == id or self._defect == "takes-any-frame-for-the-reply"):
+                return True
             at = self._received.find(b"\xfe\xfe", at + 1)
         return False
 

@@ -367,7 +367,9 @@ static void take(const mycobot_event_t *event)
         }
 #endif
 #ifdef DEFECT_BLOCKS_AFTER_NOISE
-        usleep(600000);
+        if (event->reason == MYCOBOT_BAD_CHECK) {
+            usleep(600000);
+        }
 #endif
         return;
     }
@@ -440,7 +442,9 @@ static void serve(void)
 #ifndef DEFECT_NEVER_FLUSHES
             mycobot_framer_flush(&framer);
 #endif
+#ifndef DEFECT_ONE_FRAME_PER_READ
             take_all(&framer);
+#endif
         }
 #ifdef DEFECT_TERMINAL_ECHO
         send_bytes(data, (size_t)size);

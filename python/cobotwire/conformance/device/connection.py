@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.report import Direction, Exchange
 from cobotwire.simulator.clock import Clock, RunningClock
 from cobotwire.transport.interface import Transport
@@ -37,6 +38,16 @@ class DeviceConnection:
     def between(self, first: int, last: int, most: int) -> tuple[Exchange, ...]:
         """Return the last ``most`` exchanges between two marks."""
         return tuple(self._exchanges[max(first, last - most) : last])
+
+    def received_since(self, mark: int) -> bytes:
+        """Return all bytes that were received since a mark."""
+        later = self._exchanges[mark:]
+        return b"".join(each.data for each in later if each.direction == "received")
+
+    def last_sent(self, most: int = 3) -> str:
+        """Return the last requests that were sent, in words."""
+        sent = [each for each in self._exchanges if each.direction == "sent"][-most:]
+        return ", ".join(f"{each.note} ({shown(each.data)})" for each in sent)
 
     def send(self, data: bytes, note: str = "") -> None:
         """Send ``data``; ``note`` describes it in reports.

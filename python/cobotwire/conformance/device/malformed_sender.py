@@ -75,9 +75,20 @@ class MalformedSender:
         response = self._send_alone(what, data)
         silent = not response.replies and not response.unexpected
         self._probe.expect(case, silent, f"{what}: expected no reply; came {response.summary}")
-        good = self._device.count(self._device.requester.send(self._request))
-        expect_one_reply(self._probe, RECOVERS, good, f"the good request after {what}")
+        good = self._device.count(self._device.requester.send(self._good(data)))
+        call = f"the good request {good.request.command.name} after {what}"
+        expect_one_reply(self._probe, RECOVERS, good, call)
         return silent and good.only_valid
+
+    def _good(self, data: bytes) -> EncodedRequest:
+        """Return the request to send next: after half a request one that does not complete it."""
+        frame = self._device.table.frame
+        missing = frame.read_length(data) + frame.overhead - len(data)
+        query = self._device.command("powered")
+        if missing <= 0 or query is None or not query.reply:
+            return self._request
+        short = self._device.requester.prepare(query.request_type())
+        return short if len(short.frame) < missing else self._request
 
     def _send_alone(self, what: str, data: bytes) -> Response:
         device, frame = self._device, self._device.table.frame

@@ -166,10 +166,10 @@ def _pose(reply: ReceivedReply) -> Pose:
     return tuple(reply.message.result)
 
 
-def off_by(pose: Pose, wanted: Pose, tolerance: float) -> list[str]:
+def off_by(pose: Pose, wanted: Pose, tolerance: float, why: str = "sent to") -> list[str]:
     """Describe the joints that are further from where they should be than the tolerance."""
     return [
-        f"joint {at}: sent to {want} degree, is at {have}"
+        f"joint {at}: {why} {want} degree, is at {have}"
         for at, (have, want) in enumerate(zip(pose, wanted), 1)
         if abs(have - want) > tolerance
     ]

@@ -14,6 +14,7 @@ from cobotwire.conformance.device.requests import (
     requests,
     revealing,
 )
+from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.places import is_list, numbers_of
 from cobotwire.conformance.samples import ordinary, physical_values
 from cobotwire.protocol.fields import named_fields
@@ -117,7 +118,7 @@ class Setting:
         """
         if reply is None:
             return ["nothing was reported"]
-        found, sent = [], wanted.fields
+        found, sent, pairs = [], wanted.fields, list[Pair]()
         for name, value in self._reported(reply).items():
             if self.command.request_text is None and _is_whole(self._field(name)):
                 if sent[name] != value:
@@ -127,7 +128,16 @@ class Setting:
                 most = (near or {}).get(self._unit(name, at), EXACT)
                 if want != have and not (_number(want) and abs(want - have) <= most):
                     found.append(f"{self._label(name, at)}: set {want}, read {have}")
-        return found
+                if _number(want):
+                    pairs.append(self._pair(name, at, want, have, most))
+        mistake = likely_mistake(pairs) if len(pairs) > 1 else ""
+        return [*found, mistake] if mistake else found
+
+    def _pair(self, name: str, at: int, want: float, have: float, near: float) -> Pair:
+        """Return a number that was set, and the one that was read."""
+        number = self._field(name).cases[0].numbers[at]
+        label = f"{name}.{number.name}" if number.name else name
+        return Pair(label, want, have, near, number)
 
     def _label(self, name: str, at: int) -> str:
         """Return the name of a field and its part, with the unit."""

@@ -51,6 +51,8 @@ class Requester:
         self._requests = RequestEncoder(codec, address)
         self._framer = codec.framer("reply")
         self._diagnoser = Diagnoser(codec)
+        # The last two requests, of different commands, that had a reply.
+        self._replied: list[EncodedRequest] = []
 
     def prepare(self, request: Request[Any]) -> EncodedRequest:
         """Validate and encode a request.
@@ -82,7 +84,7 @@ class Requester:
         if request.text:
             self._connection.send(request.text, "the text of the request")
         start = self._connection.now
-        response = Response(request)
+        response = self._begin(request)
         if request.command.text is not None:
             self._await_text(response, request.command.text, start)
         elif request.command.requires_reply:
@@ -97,9 +99,14 @@ class Requester:
     ) -> Response:
         """Send ``data``, to which no reply is due, and listen for ``seconds``."""
         self._connection.send(data, note)
-        response = Response(request)
+        response = self._begin(request)
         self.listen(response, self._connection.now, seconds)
         return response
+
+    def _begin(self, request: EncodedRequest) -> Response:
+        """Return an empty response, which knows the last request of another command."""
+        others = [each for each in self._replied if each.command.id != request.command.id]
+        return Response(request, others[-1] if others else None)
 
     def listen(self, response: Response, start: float, seconds: float) -> None:
         """Listen until nothing has come for ``seconds``, and classify all that came."""
@@ -165,6 +172,8 @@ class Requester:
             if self._is_event(event):
                 continue
             if own and command.reply:
+                self._replied = [e for e in self._replied if e.command is not command][-1:]
+                self._replied.append(request)
                 response.replies.append(self._read(event, self._connection.now - start, command))
             else:
                 response.others.append(event)

@@ -34,6 +34,8 @@ class Response:
     """Everything that was received between a request and the next one."""
 
     request: EncodedRequest
+    # The last request of another command that had a reply.
+    earlier: EncodedRequest | None = None
     replies: list[ReceivedReply] = field(default_factory=list)
     others: list[Frame] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
@@ -46,12 +48,22 @@ class Response:
     @property
     def unexpected(self) -> list[str]:
         """What was not requested and is not explained as noise, in words."""
-        found = [f"the frame {shown(frame.data)}" for frame in self.others]
+        found = [f"the frame {shown(frame.data)}{self._again(frame)}" for frame in self.others]
         return found + [
-            f"{finding.kind} {shown(finding.data)}"
+            f"{self._kind(finding)} {shown(finding.data)}"
             for finding in self.findings
             if not finding.ordinary
         ]
+
+    def _again(self, frame: Frame) -> str:
+        """Return which earlier request a frame may be a second reply to."""
+        if self.earlier is None or frame.command != self.earlier.command.id:
+            return ""
+        return f" (a second or late reply to {self.earlier.command.name})"
+
+    def _kind(self, finding: Finding) -> str:
+        is_copy = finding.data == self.request.frame
+        return "a copy of the request (an echo)" if is_copy else finding.kind
 
     @property
     def damaged(self) -> list[DamagedFrame]:

@@ -136,7 +136,7 @@ class Tester:
             self._halt()
             raise
         except LinkError as error:
-            self._ended = str(error)
+            self._ended = f"{error}; sent last: {self.connection.last_sent()}"
             raise
         finally:
             self._close(steps[done:])

@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.mover import POSES, Mover, angle_tolerance
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, request_of, units
+from cobotwire.conformance.mistakes import ANOTHER_ORDER, Pair, likely_mistake
 from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.table import Command, Table
+from cobotwire.protocol.table import Command, Number, Table
 
 AGREES = TestCase("agrees", "While the arm rests, queries of the same quantity agree.")
 
 # The tolerance between two readings of a quantity, by unit: a joint at rest jitters by a tick.
 APART = {"millimetre": 1.0, "tick": 2.0}
 
-Reading = list[tuple[str, str, Any]]
+
+class _Part(NamedTuple):
+    """A number that a query reports, with its name for people."""
+
+    name: str
+    number: Number
+    value: Any
+
+    @property
+    def unit(self) -> str:
+        """The unit of the number."""
+        return self.number.unit
 
 
 def _has_equals(table: Table, command: Command) -> bool:
@@ -32,16 +44,20 @@ def _agree(probe: Probe) -> None:
         mover.go(mover.pose(0))
     for name in probe.command.agrees_with:
         other = probe.device.table.command(name)
-        rows = _reading(probe, other)
+        theirs = _reading(probe, other)
         if probe.command.request[0].fields:
-            for part, row in enumerate(rows[: probe.device.table.joints], 1):
-                _compare(probe, other, _reading(probe, probe.command, part), [row])
+            theirs = theirs[: probe.device.table.joints]
+            parts = enumerate(theirs, 1)
+            mine = [_matching(_reading(probe, probe.command, part), [one]) for part, one in parts]
+            pairs = [(found[0], one) for found, one in zip(mine, theirs) if found]
         else:
-            _compare(probe, other, _reading(probe, probe.command), rows)
+            pairs = list(zip(_matching(_reading(probe, probe.command), theirs), theirs))
+        if pairs:
+            _compare(probe, other, pairs)
 
 
-def _reading(probe: Probe, query: Command, *values: Any) -> Reading:
-    """Return the numbers of a query's reply, each with its name and unit.
+def _reading(probe: Probe, query: Command, *values: Any) -> list[_Part]:
+    """Return the numbers of a query's reply, but not those that repeat its arguments.
 
     Raises:
         NotSupported: no valid reply comes.
@@ -50,34 +66,62 @@ def _reading(probe: Probe, query: Command, *values: Any) -> Reading:
     if valid is None or valid.decoded is None:
         raise NotSupported(f"{query.name} reports nothing")
     fields = valid.decoded.fields
+    of = f"({', '.join(map(str, values))})" if values else ""
     return [
-        (place.name, place.number.unit, as_row(fields[place.field.name])[place.element])
+        _Part(place.name + of, place.number, as_row(fields[place.field.name])[place.element])
         for place in places(valid.decoded.variant)
         if not place.field.echo
     ]
 
 
-def _compare(probe: Probe, other: Command, mine: Reading, theirs: Reading) -> None:
-    """Compare the parts that have the same units as the other's, part by part."""
-    table = probe.device.table
-    encoders, tolerances = table.robot.encoders, {**APART, "degree": angle_tolerance(table) + 0.001}
-    for one, two in zip(_matching(mine, theirs), theirs):
-        (name, unit, value), (its, its_unit, its_value) = one, two
-        if unit == "tick" and its_unit == "degree":
-            if encoders is None:
-                continue  # nothing says what a tick is
-            # The direction of an encoder may be unknown.
-            value, its_value = abs(value - encoders.zero) * encoders.degrees, abs(its_value)
-        reason = f"{name} is {one[2]} {unit}, but {other.name} reports {its} = {two[2]} {its_unit}"
-        apart = tolerances.get(its_unit, 0.0)
-        probe.expect(AGREES, abs(value - its_value) <= apart, f"{probe.command.name}: {reason}")
+def _compare(probe: Probe, other: Command, pairs: list[tuple[_Part, _Part]]) -> None:
+    """Compare two readings, part by part."""
+    encoders = probe.device.table.robot.encoders
+    # Without a statement about encoders, nothing says what a tick is.
+    known = [pair for pair in pairs if encoders is not None or _same_unit(*pair)]
+    compared = [_compared(probe.device.table, *pair) for pair in known]
+    wrong = [
+        f"{one.name} is {one.value} {one.unit}, but {other.name} reports {two.name} = {two.value} "
+        f"{two.unit}"
+        for (one, two), pair in zip(known, compared)
+        if pair.wrong
+    ]
+    reason = f"{probe.command.name}: {'; '.join(wrong)}{_likely(probe.command, other, compared)}"
+    probe.expect(AGREES, not wrong, reason)
 
 
-def _matching(mine: Reading, theirs: Reading) -> Reading:
+def _compared(table: Table, one: _Part, two: _Part) -> Pair:
+    """Return two readings of a part in the same unit, as if the first one were right."""
+    tolerances = {**APART, "degree": angle_tolerance(table) + 0.001}
+    near, encoders = tolerances.get(two.unit, 0.0), table.robot.encoders
+    if encoders is None or _same_unit(one, two):
+        return Pair(two.name, one.value, two.value, near, two.number)
+    # The direction of an encoder may be unknown.
+    degrees = abs(one.value - encoders.zero) * encoders.degrees
+    return Pair(two.name, degrees, abs(two.value), near)
+
+
+def _same_unit(one: _Part, two: _Part) -> bool:
+    return not (one.unit == "tick" and two.unit == "degree")
+
+
+def _likely(mine: Command, other: Command, compared: list[Pair]) -> str:
+    """Return the likely mistake of the other query, or else of this one."""
+    guesses = [
+        (mine, other, likely_mistake(compared)),
+        (other, mine, likely_mistake([pair.turned for pair in compared])),
+    ]
+    # What fits both says the least.
+    guesses.sort(key=lambda guess: guess[2] in ("", ANOTHER_ORDER))
+    right, wrong, mistake = guesses[0]
+    return f"; if {right.name} is right, {wrong.name} has {mistake}" if mistake else ""
+
+
+def _matching(mine: list[_Part], theirs: list[_Part]) -> list[_Part]:
     """Return the part of a reading that is as long as the other, with the same units."""
-    units = [unit for _, unit, _ in theirs]
+    units = [part.unit for part in theirs]
     for at in range(len(mine) - len(units) + 1):
-        if [unit for _, unit, _ in mine[at : at + len(units)]] == units:
+        if [part.unit for part in mine[at : at + len(units)]] == units:
             return mine[at : at + len(units)]
     return mine if len(mine) == len(theirs) else []
 
@@ -110,11 +154,11 @@ def _calculate(probe: Probe) -> None:
         if any(units(numbers) not in known for numbers in given):
             raise NotSupported("no query reports where the arm is")
         mine = _reading(probe, probe.command, *(known[units(numbers)] for numbers in given))
-        reported = known[tuple(unit for _, unit, _ in mine)]
+        reported = known[tuple(part.unit for part in mine)]
         wrong = [
-            f"{name} is {value} {unit}, but the arm is at {actual}"
-            for (name, unit, value), actual in zip(mine, reported)
-            if abs(value - actual) > CALCULATED[unit]
+            f"{part.name} is {part.value} {part.unit}, but the arm is at {actual}"
+            for part, actual in zip(mine, reported)
+            if abs(part.value - actual) > CALCULATED[part.unit]
         ]
         probe.expect(AGREES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
 

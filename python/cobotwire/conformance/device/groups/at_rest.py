@@ -8,6 +8,7 @@ from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.motion import REACHED
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import request_of, units
+from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.roles import ANGLES, COORDS, ReachedQuery, as_reached_query
 from cobotwire.protocol.table import Command, Table
@@ -57,7 +58,25 @@ def _geometry(probe: Probe) -> None:
         f"{joints.name} reports {_short(angles)}, so the end is at {_short(right)}; "
         f"{probe.command.name} reports {_short(reported)}"
     )
+    if mistake := likely_mistake(_pairs(probe.command, right, reported)):
+        reason += f": if {joints.name} is right, {probe.command.name} has {mistake}"
     probe.expect(GEOMETRY, apart <= NEAR_MILLIMETRES and turned <= NEAR_DEGREES, reason)
+
+
+def _pairs(query: Command, right: Sequence[float], came: Sequence[float]) -> list[Pair]:
+    """Return the calculated coordinates with those that a query reports."""
+    field = query.reply[0].fields[0]
+    near = {"millimetre": NEAR_MILLIMETRES, "degree": NEAR_DEGREES}
+    return [
+        Pair(
+            f"{field.name}.{number.name}",
+            a,
+            b,
+            near[number.unit],
+            number,
+        )
+        for number, a, b in zip(field.cases[0].numbers, right, came)
+    ]
 
 
 def _frames(table: Table) -> list[tuple[Command, str]]:
@@ -100,7 +119,7 @@ def _expect(
     probe.expect(REACHED, reported is there, f"at rest, {call}: expected {there}; came {came}")
 
 
-def _is_limit(table: Table, command: Command) -> bool:
+def is_limit(table: Table, command: Command) -> bool:
     """Return whether a query reports one limit, in degrees, of each joint."""
     stated = table.robot.joint_limits
     if command.safety != "query" or len(command.request[0].fields) != 1 or not stated:
@@ -150,7 +169,7 @@ JOINT_LIMITS = Group(
     "joint limits",
     (LIMITS,),
     _limits,
-    _is_limit,
+    is_limit,
     sends="The query for each joint.",
     subject="each query of the joints' limits, if the edition states them",
 )

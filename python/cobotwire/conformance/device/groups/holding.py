@@ -43,6 +43,18 @@ def _switch_each(probe: Probe) -> None:
             reason = f"after {call}: expected {single.name}({arguments_of(query)}) to report"
             case = EFFECT if other == part else NEIGHBOURS
             probe.expect(case, value == right, f"{reason} {right}; came {value}")
+        if not int(wanted):
+            _expect_of_all(probe, name, call)
+
+
+def _expect_of_all(probe: Probe, name: str, call: str) -> None:
+    """Expect the query of all parts to report that one of them is switched off."""
+    back = probe.command.read_by
+    assert back is not None, "the group selects commands with a query"
+    query = probe.device.table.command(back.query)
+    value = int(getattr(probe.device.require(query.request_type()), name))
+    reason = f"after {call}, while the others are on: expected {query.name} to report 0"
+    probe.expect(EFFECT, value == 0, f"{reason}; came {value}")
 
 
 def _single(table: Table, command: Command) -> Command | None:

@@ -77,13 +77,18 @@ def _nearby(probe: Probe, part: Field, *, absolute: bool) -> None:
         for sign in (1, -1)
     ]
     reason = f"{probe.command.name}: the arm moved from none of {len(POSES)} poses"
-    probe.expect(ARRIVES, not all(stays), reason)
+    reason += f"; {next(filter(None, stays), '')}"
+    probe.expect(ARRIVES, None in stays, reason)
 
 
 def _stays(
     probe: Probe, mover: Mover, part: Field, chosen: int, sign: int, *, absolute: bool
-) -> bool:
-    """Move a part one way, from pose to pose, until it moves; return whether it never does."""
+) -> str | None:
+    """Move a part one way, from pose to pose, until it moves.
+
+    Return what was sent and what came of it if it never moves; None: it moves.
+    """
+    stayed = ""
     for which in mover.poses:
         mover.go_near(which)
         before, numbers = _where(probe, part)
@@ -98,29 +103,43 @@ def _stays(
             continue
         mover.wait()
         after, _ = _where(probe, part)
+        call = f"{probe.command.name}({part.name}={chosen}), {distance} {numbers[at].units}"
+        stayed = stayed or f"{call} from there: it moved by {after[at] - before[at]:.2f}"
         if _off(numbers, before, after):
             mover.prefer(which)
             wrong = _off(numbers, [*before[:at], target, *before[at + 1 :]], after)
-            call = f"{probe.command.name}({part.name}={chosen}), {distance} {numbers[at].units}"
             probe.expect(ARRIVES, not wrong, f"{call} from there: {'; '.join(wrong)}")
-            return False
-    return True
+            return None
+    return stayed
 
 
 def _jogs(probe: Probe) -> None:
     """Jog each part both ways and stop; as with steps, some may be out of reach."""
     mover, (part, way) = Mover(probe), _parts(probe)
-    goes = [
-        _jog(probe, mover, part, chosen, direction)
-        for chosen in _choices(part)
-        for direction in way.choices
-    ]
+    went = False
+    for chosen in _choices(part):
+        moved = [_jog(probe, mover, part, chosen, direction) for direction in way.choices]
+        went = went or any(moved)
+        if all(moved) and not part.choices:
+            # Of a joint, the edition does not state the direction.
+            one, other = (by[chosen - 1] for by in moved if by is not None)
+            reason = (
+                f"{probe.command.name}({part.name}={chosen}): expected the directions "
+                f"{way.choices[0]} and {way.choices[1]} to be opposite; it moved by {one:.2f} and "
+                f"by {other:.2f} degrees"
+            )
+            probe.expect(ARRIVES, one * other < 0, reason)
     reason = f"{probe.command.name}: the arm moved from none of {len(POSES)} poses"
-    probe.expect(ARRIVES, any(goes), reason)
+    probe.expect(ARRIVES, went, reason)
 
 
-def _jog(probe: Probe, mover: Mover, part: Field, chosen: int, direction: int) -> bool:
-    """Jog a part in a direction, from pose to pose, until it moves; return whether it does."""
+def _jog(
+    probe: Probe, mover: Mover, part: Field, chosen: int, direction: int
+) -> list[float] | None:
+    """Jog a part in a direction, from pose to pose, until it moves.
+
+    Return by how much each joint or axis has moved, in units of what may stray; None: nothing has.
+    """
     for which in mover.poses:
         mover.go_near(which)
         before, numbers = _where(probe, part)
@@ -132,13 +151,13 @@ def _jog(probe: Probe, mover: Mover, part: Field, chosen: int, direction: int) -
         moved = [now - then for now, then in zip(after, before)]
         if any(abs(by) > STRAYS[number.unit] for by, number in zip(moved, numbers)):
             mover.prefer(which)
-            way = probe.command.request[0].fields[1]
+            way = _parts(probe)[1]
             wrong = _not_so(part, chosen, way, direction, numbers, moved)
             call = f"{probe.command.name}({part.name}={chosen}, {direction})"
             reason = f"{call}: expected {wrong}; it moved by {_short(moved)}"
             probe.expect(ARRIVES, not wrong, reason)
-            return True
-    return False
+            return moved
+    return None
 
 
 def _under_way(probe: Probe, mover: Mover, part: Field, before: Sequence[float]) -> None:

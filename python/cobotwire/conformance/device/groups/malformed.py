@@ -21,7 +21,7 @@ from cobotwire.conformance.device.requests import requests
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.table import Command, FrameFormat, Table
+from cobotwire.protocol.table import Command, FrameFormat, Table, Variant
 from cobotwire.session.request import EncodedRequest
 from cobotwire.simulator.faults.noise import NOISE
 
@@ -73,35 +73,41 @@ def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, b
     yield WRONG_FOOTER, "a wrong footer", data[:-1] + bytes([data[-1] ^ 0xFF])
     yield CUT, "broken off before the footer", data[:-1]
     yield CUT, "broken off after LEN", data[: frame.length_at + frame.length_number.width]
+    if end > frame.data_at:
+        yield CUT, "broken off after the id", data[: frame.data_at]
 
 
 def _can_be_out_of_range(table: Table, command: Command) -> bool:
     """Return whether bytes can express arguments that the edition does not allow."""
-    return _is_framed_query(table, command) and any(map(_forbidden, places(command.request[0])))
+    return _is_framed_query(table, command) and any(map(forbidden, places(command.request[0])))
 
 
 def _out_of_range(probe: Probe) -> None:
     """Send arguments that the edition does not allow."""
     request = _sample(probe)
     sender = MalformedSender(probe, request)
-    for what, data in _wrong_values(probe.device.table, probe.command, request.frame):
+    variant = probe.command.request[0]
+    for what, _, data in wrong_values(probe.device.table, variant, request.frame):
         # Another constant may mean another command.
         if not probe.device.requester.is_legal(data):
             sender.send(OUT_OF_RANGE, what, data)
 
 
-def _wrong_values(table: Table, command: Command, data: bytes) -> Iterator[tuple[str, bytes]]:
-    """Yield a request with a number outside each field's range or list, if bytes can hold it."""
+def wrong_values(table: Table, variant: Variant, data: bytes) -> Iterator[tuple[str, bool, bytes]]:
+    """Yield a request with a number outside each field's range or list, if bytes can hold it.
+
+    Each comes with a text, and with whether the field has a list.
+    """
     frame, rest = table.frame, table.frame.data(data)
     id, address = frame.read_id(data), frame.address(data)
-    for place in places(command.request[0]):
-        at, width = place.start, place.number.width
-        for value in _forbidden(place):
+    for place in places(variant):
+        at, width, listed = place.start, place.number.width, bool(place.field.choices)
+        for value in forbidden(place):
             wrong = rest[:at] + value.to_bytes(width, place.number.order) + rest[at + width :]
-            yield f"{place.name} = {value}", frame.enclose(id, wrong, address)
+            yield f"{place.name} = {value}", listed, frame.enclose(id, wrong, address)
 
 
-def _forbidden(place: Place) -> list[int]:
+def forbidden(place: Place) -> list[int]:
     """Return unsigned values that are illegal, whichever way the firmware reads their sign."""
     choices, number = place.field.choices, place.number
     if number.minimum < 0:

@@ -115,7 +115,7 @@ def _stops(probe: Probe) -> None:
     expect_moving(probe, mover, moving, False)
     stopped = mover.angles()
     mover.rest(4 * UNDER_WAY)
-    wrong = off_by(mover.angles(), stopped, mover.tolerance)
+    wrong = off_by(mover.angles(), stopped, mover.tolerance, "was at")
     probe.expect(STOPS, not wrong, f"after {probe.command.name}: {'; '.join(wrong)}")
     short = bool(off_by(stopped, mover.pose(1), mover.tolerance))
     probe.expect(STOPS, short, f"{probe.command.name}: expected the arm to stop on its way")

@@ -79,6 +79,9 @@ def _judge(probe: Probe, response: Response) -> None:
     for damaged in response.damaged:
         expected = _expected_frame(probe.device.table, command)
         probe.expect(FRAME, False, f"{call}: {expected}; came {shown(damaged.data)}")
+    if response.unexpected and not response.replies and not response.damaged and command.reply:
+        expected = _expected_frame(probe.device.table, command)
+        probe.expect(FRAME, False, f"{call}: {expected}; came {response.summary}")
     for reply in response.replies:
         probe.expect(FRAME, True, "")
         error = reply.error
@@ -96,8 +99,8 @@ def _judge(probe: Probe, response: Response) -> None:
 def _expected_frame(table: Table, command: Command) -> str:
     frame = table.frame
     lengths = " or ".join(f"{frame.length(each.size, 'reply'):02X}" for each in command.reply)
-    id = f" id {command.id:02X} and" if frame.reply_has_id else ""
-    return f"expected a whole frame with{id} LEN {lengths}"
+    id = f", id {command.id:02X}" if frame.reply_has_id else ""
+    return f"expected a whole frame with the header {shown(frame.header)}{id} and LEN {lengths}"
 
 
 def _wrong_echo(call: str, response: Response, reply: ReceivedReply) -> str:
