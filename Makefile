@@ -6,7 +6,7 @@ RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name C
 # that two processors are seldom idle. The first lets the others go first (nice), because a test
 # that waits for a reply has a deadline. The last lane has all tests that no other lane names.
 COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec)
-SIMULATING := $(addprefix tests/,conformance docs inspect simulator)
+SIMULATING := $(addprefix tests/,conformance defects docs inspect simulator)
 CALLING := $(addprefix tests/,cli newcomer peers)
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
@@ -17,7 +17,7 @@ ATTACK_SECONDS ?= 180
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform attack archives bench-archive bench-compare rust-asan robots layer demos front-end four-hours studio-pictures
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end four-hours studio-pictures
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -140,6 +140,9 @@ table: .venv/.tools .venv/.native ## compare our clients with pymycobot on bad l
 
 conform: .venv/.tools .venv/.native ## break subjects on purpose; count how many the conformance tests find
 	PYTHONPATH=tests $(BIN)/python -m mutation
+
+defects: .venv/.tools .venv/.native ## test independent subjects with planted defects; write the table of docs/conformance.md
+	PYTHONPATH=tests:tests/peers $(BIN)/python -m defects $(or $(DEFECTS),--write)
 
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(ATTACK)

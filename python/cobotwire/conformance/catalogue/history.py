@@ -18,5 +18,13 @@ class CatalogueVersion(NamedTuple):
     what: str
 
 
-HISTORY = (CatalogueVersion(1, "06c50cbca37d", "the first version with a number"),)
+HISTORY = (
+    CatalogueVersion(1, "06c50cbca37d", "the first version with a number"),
+    CatalogueVersion(
+        2,
+        "4b95d75c60b2",
+        "new: `replies-in-order`, `others-stay`, `pauses`, `faster`, `limits-kept`, and settings "
+        "with values that are not allowed",
+    ),
+)
 VERSION = HISTORY[-1].number

@@ -1,0 +1,114 @@
+"""A sample of the planted defects is found and named; `make defects` runs all of them."""
+
+from __future__ import annotations
+
+import ast
+import sys
+
+import pytest
+
+from cobotwire.conformance import Report
+from defects.arm.planted import DEFECTS
+from defects.clients import report_on_client
+from defects.devices import report_on_arm
+from defects.judging import Message, judge, messages_of
+from defects.key import HERE, SUBJECTS, Defect, defects
+from defects.page import BEGIN, END, rewritten, tables
+from stalls import unstalled
+
+KEY = {(defect.subject, defect.switch): defect for defect in defects()}
+# One for each rule that finds what no other rule finds, and for each way to name a cause.
+ARM = (
+    *("wrong-header", "little-endian", "hundredths-of-millimetres", "reply-of-the-request-before"),
+    *("two-joints-swapped", "double-reply", "echo", "replies-in-reverse", "settings-coupled"),
+    *("stores-forbidden-values", "never-gives-up-half-a-request", "any-instead-of-all", "dies"),
+    *("pause-only-reports", "resume-discards", "limits-not-kept", "jog-one-way-only"),
+    *("speed-of-motion-ignored", "forgets-after-wrong-len", "y-mirrored"),
+)
+CLIENTS = ("truncates", "takes-text-for-the-reply", "moves-after-release")
+# A reply takes 8 ms, and a client waits 170 ms for it; in seconds.
+ALLOWED_STALL = 0.1
+
+
+@pytest.mark.parametrize("switch", ARM)
+def test_defect_of_the_arm_is_named(switch: str) -> None:
+    judgement = judge(KEY["arm", switch], messages_of(report_on_arm(switch)))
+    assert judgement.named, judgement.messages
+
+
+def test_correct_arm_conforms() -> None:
+    assert messages_of(report_on_arm()) == []
+
+
+@pytest.mark.parametrize("switch", CLIENTS)
+def test_defect_of_the_client_is_named(switch: str) -> None:
+    defect = KEY["client", switch]
+
+    def run() -> Report:
+        return report_on_client(switch, defect.line)
+
+    judgement = judge(defect, messages_of(unstalled(run, ALLOWED_STALL)))
+    assert judgement.named, judgement.messages
+
+
+@pytest.mark.parametrize("line", ["", "text", "late"])
+def test_correct_client_conforms(line: str) -> None:
+    def run() -> Report:
+        return report_on_client("", line)
+
+    assert messages_of(unstalled(run, ALLOWED_STALL)) == []
+
+
+def test_key_lists_each_switch_of_the_subjects() -> None:
+    assert {switch for subject, switch in KEY if subject == "arm"} == set(DEFECTS)
+    for subject, source in {
+        "firmware": "firmware/firmware.c",
+        "c_client": "client/client.c",
+        "client": "client/plain.py",
+    }.items():
+        text = (HERE / source).read_text("utf-8")
+        for switch in (switch for of, switch in KEY if of == subject):
+            name = f'"{switch}"' if source.endswith(".py") else f"DEFECT_{switch}"
+            assert name in text, switch
+
+
+@pytest.mark.parametrize("folder", ["arm", "client", "../conformance/independent"])
+def test_subjects_import_only_the_standard_library_and_each_other(folder: str) -> None:
+    allowed = {*sys.stdlib_module_names, "defects.arm", "conformance.independent"}
+    for path in (HERE / folder).glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            modules += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            for module in modules:
+                first, second = module.split(".")[0], ".".join(module.split(".")[:2])
+                assert first in allowed or second in allowed, (path, module)
+
+
+DEFECT = Defect("arm", "x", "it is wrong", ("get_angles",), ("LEN", "0F"))
+
+
+@pytest.mark.parametrize(
+    ("command", "text", "named"),
+    [
+        ("get_angles", "expected LEN 0E; came 0F", True),
+        ("stop", "after get_angles: LEN is 0F", True),
+        ("stop", "LEN is 0F", False),
+        ("get_angles", "expected LEN 0E", False),
+    ],
+)
+def test_message_names_a_cause_by_command_and_every_word(
+    command: str, text: str, named: bool
+) -> None:
+    message = Message("reply-frame", command, text)
+    assert judge(DEFECT, [message]).named == (message if named else None)
+
+
+def test_tables_count_and_show_each_defect() -> None:
+    message = Message("reply-frame", "get_angles", "LEN is 0F | more")
+    found = [judge(DEFECT, [message]), judge(DEFECT._replace(words=("x",)), [message])]
+    text = tables([*found, judge(DEFECT, [])], {"arm": [message]})
+    assert f"| {SUBJECTS['arm']} | 3 | 2 | 1 | 1 failures |" in text
+    assert "| arm | it is wrong | yes | `reply-frame` get_angles: LEN is 0F / more |" in text
+    assert "| **not found** |  |" in text
+    page = rewritten(f"before {BEGIN} old {END} after", text)
+    assert (page[:7], page[-6:], "old" in page) == ("before ", " after", False)
