@@ -152,6 +152,8 @@ class IgnoresLengths(MovingArm):
 class NeverGivesUp(MovingArm):
     """Half a request waits for its remainder for ever."""
 
+    wait = None
+
     def flush(self) -> bytes:
         """Keep half a request."""
         return b""
