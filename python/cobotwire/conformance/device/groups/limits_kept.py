@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from cobotwire.conformance.device.groups.at_rest import is_limit
 from cobotwire.conformance.device.groups.changes import request_change
@@ -37,7 +38,7 @@ def _keeps(probe: Probe) -> None:
         _try(probe, setting, query)
 
 
-def _try(probe: Probe, setting: Setting, query: Request[object]) -> None:
+def _try(probe: Probe, setting: Setting, query: Request[Any]) -> None:
     mover, device = Mover(probe), probe.device
     before = device.require(query)
     [joint] = query.values
