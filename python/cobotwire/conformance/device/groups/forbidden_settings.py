@@ -6,11 +6,17 @@ from functools import partial
 from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.groups.malformed import MALFORMED, OUT_OF_RANGE, wrong_values
+from cobotwire.conformance.device.groups.malformed import (
+    MALFORMED,
+    OUT_OF_RANGE,
+    forbidden,
+    wrong_values,
+)
 from cobotwire.conformance.device.malformed_sender import KEPT
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import Setting, settings_of
 from cobotwire.conformance.hex_text import shown
+from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Request
@@ -20,8 +26,7 @@ from cobotwire.protocol.table import Command, Table
 def _takes_forbidden_values(table: Table, command: Command) -> bool:
     """Return whether a setting that a query reads back can be sent a value that is not allowed."""
     return command.safety == "setting" and any(
-        any(wrong_values(table, setting.variant, bytes(99)))
-        for setting in settings_of(table, command)
+        any(map(forbidden, places(setting.variant))) for setting in settings_of(table, command)
     )
 
 
