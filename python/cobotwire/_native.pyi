@@ -173,6 +173,15 @@ class NativeFramer:
             system takes no bytes.
         """
 
+    def read_reply(
+        self, descriptor: int, alarm: int, request: bytes, of: str, /
+    ) -> tuple[Frame, dict[str, Any]] | list[Event] | None:
+        """Read what has come, without waiting, and feed it; return what :meth:`swap` returns.
+
+        ``request`` and its command ``of`` were sent earlier. None means that nothing has come, or
+        that the data has ended or cannot be read, which the next read reports.
+        """
+
     @property
     def pending(self) -> int:
         """How many fed bytes no event covers yet; fewer than the longest frame has."""

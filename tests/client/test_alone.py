@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import signal
 import time
 from typing import Any
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cobotwire import MyCobot, ReplyTimeout, RetryPolicy
+from cobotwire import AsyncMyCobot, MyCobot, ReplyTimeout, RetryPolicy
 from cobotwire import codec as codecs
 from cobotwire.protocol.errors import CobotwireError
 from scripted_peer import ScriptedPeer
@@ -56,16 +57,41 @@ def results(scripts: list[list[Any]], *, alone: bool) -> list[object]:
     return [*found, peer.received]
 
 
+async def async_results(scripts: list[list[Any]], *, alone: bool) -> list[object]:
+    """Return the same of the asyncio client."""
+    found: list[object] = []
+    with ScriptedPeer(*scripts) as peer:
+        async with AsyncMyCobot(peer.url, timeout=0.05, retry=FAST, codec="native") as arm:
+            connection = arm._connection
+            assert connection._polled is not None
+            if not alone:
+                connection._polled = None
+            for _ in scripts:
+                try:
+                    found.append(await arm.get_angles())
+                except ReplyTimeout as error:
+                    found.append((error.request, error.received, error.attempts))
+                except CobotwireError as error:
+                    found.append((type(error), str(error)))
+                await asyncio.sleep(4 * PAUSE)
+        return [*found, peer.received]
+
+
+def run_async(scripts: list[list[Any]], *, alone: bool) -> list[object]:
+    return asyncio.run(async_results(scripts, alone=alone))
+
+
+@pytest.mark.parametrize("run", [results, run_async], ids=["blocking", "asyncio"])
 @given(scripts=SCRIPTS)
-@settings(max_examples=40, deadline=None)
-def test_same_traffic_has_the_same_results_in_one_call_and_in_steps(scripts: Any) -> None:
-    in_steps = results(scripts, alone=False)
+@settings(max_examples=25, deadline=None)
+def test_same_traffic_has_the_same_results_in_one_call_and_in_steps(run: Any, scripts: Any) -> None:
+    in_steps = run(scripts, alone=False)
     # A part that comes late on a busy machine is another traffic.
     for _ in range(3):
-        in_one = results(scripts, alone=True)
+        in_one = run(scripts, alone=True)
         if in_one == in_steps:
             return
-        in_steps = results(scripts, alone=False)
+        in_steps = run(scripts, alone=False)
     assert in_one == in_steps
 
 

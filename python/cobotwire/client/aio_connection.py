@@ -11,10 +11,11 @@ from functools import partial
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
+from cobotwire.codec.interface import Event, Frame
 from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.transport import forks
-from cobotwire.transport.aio import attach
+from cobotwire.transport.aio import NativePolled, PolledTransport, attach
 from cobotwire.transport.interface import AsyncTransport
 from cobotwire.transport.timing import times_of
 
@@ -52,6 +53,8 @@ class AsyncConnection:
         self._exchange = exchange
         self._alignment = exchange.alignment
         self._attached: AsyncTransport | None = None
+        # Set if a native call can write, read and decode.
+        self._polled: NativePolled | None = None
         self._lost: LinkError | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._timer_at = 0.0
@@ -80,6 +83,8 @@ class AsyncConnection:
         self._memory = PortMemory(transport)
         self._exchange.take_over(self._memory.recall())
         self._attached = attach(transport, self._turn)
+        if hasattr(self._exchange.framer, "swap") and isinstance(self._attached, PolledTransport):
+            self._polled = self._attached.native(self._exchange.framer)
 
     async def send(self, request: EncodedRequest, ack_within: float | None) -> None:
         """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement."""
@@ -103,11 +108,14 @@ class AsyncConnection:
         Raises:
             LinkError: the connection is not open.
         """
-        self._transport()
-        pending = self._exchange.submit(request, self.now(), policy, wait)
+        transport = self._transport()
+        pending = PendingRequest(request, wait, policy, self.now())
         try:
-            self._turn()
-            await self._await(pending)
+            self._start(pending, transport)
+            if not pending.done:
+                over: asyncio.Future[None] = self._loop.create_future()
+                pending.when_done(partial(_wake, over))
+                await over
         finally:
             # A call that was cancelled leaves everything ready for the next one.
             if not pending.done:
@@ -176,16 +184,8 @@ class AsyncConnection:
         What was cut is noted even if the caller was cancelled meanwhile.
         """
         align = self._alignment.align
-
-        def ended(error: LinkError | None) -> None:
-            if error is None:
-                self._written(align, request)
-            else:
-                error.written = self._alignment.cut(align, request, error.written)
-            done(error)
-
         try:
-            taken = transport.write(align + request, ended)
+            taken = transport.write(align + request, partial(self._end_write, align, request, done))
         except LinkError as error:
             error.written = self._alignment.cut(align, request, error.written)
             raise
@@ -193,39 +193,134 @@ class AsyncConnection:
             self._written(align, request)
         return taken
 
+    def _end_write(
+        self,
+        align: bytes,
+        request: bytes,
+        done: Callable[[LinkError | None], None],
+        error: LinkError | None,
+    ) -> None:
+        """Note the end of a write that was not taken at once."""
+        if error is None:
+            self._written(align, request)
+        else:
+            error.written = self._alignment.cut(align, request, error.written)
+        done(error)
+
     def _written(self, align: bytes, request: bytes) -> None:
         if align:
             self._alignment.end()
         self.listeners.sent(align, request)
 
+    def _start(self, pending: PendingRequest, transport: AsyncTransport) -> None:
+        """Send a request at once if nothing else is under way; otherwise queue it.
+
+        What has come already is taken first.
+        """
+        if self._start_alone(pending):
+            return
+        exchange, data = self._exchange, self._read(transport)
+        if not data and self._lost is None:
+            now = self.now()
+            frame = exchange.begin(pending, now)
+            if frame:
+                self._write_request(pending, frame)
+                self._set_timer(now)
+                return
+        else:
+            exchange.enqueue(pending)
+        self._advance(data)
+
+    def _start_alone(self, pending: PendingRequest) -> bool:
+        """Send a request that is alone, with one native call; return whether it was sent.
+
+        If anything but the reply has come then, the request goes on as any other does.
+        """
+        exchange, request, polled = self._exchange, pending.request, self._polled
+        if polled is None or not request.plain or self._lost or not self.listeners.silent:
+            return False
+        now = pending.queued_at
+        alone = exchange.begin_alone(request, now, pending.policy.grace) if polled.idle else None
+        if alone is None:
+            return False
+        self._starting = pending
+        try:
+            found = polled.swap(request.frame, request.command.name, self._finish_write)
+        except BaseException:
+            exchange.settle(alone)
+            raise
+        if found is None:
+            exchange.end_unsent()
+            return False
+        events = exchange.resume(alone, pending, _events(found), now)
+        self._set_timer(now)
+        if events:
+            self.listeners.received(events, now)
+            self._news.set()
+        return True
+
+    def _finish_write(self, request: bytes, written: int) -> None:
+        """Write the rest of a request of which so many bytes were taken."""
+        assert self._polled is not None, "it has written the beginning"
+        done = partial(self._request_written, self._starting)
+        self._polled.write_rest(request, written, partial(self._end_write, b"", request, done))
+
     def _turn(self) -> None:
         """Take what has come, let time pass, send the request that is next, and set the timer."""
-        exchange = self._exchange
-        try:
-            data = b"" if self._lost is not None else self._transport().read()
-        except LinkError as error:
-            self._lose(error)
-            self.listeners.lost(error)
+        exchange, polled = self._exchange, self._polled
+        waiting = exchange.waiting_plainly
+        if waiting is None or polled is None or self._lost or not self.listeners.silent:
+            self._advance(self._read(self._transport()))
+            return
+        fed = exchange.framer.fed
+        found = polled.read_reply(waiting.frame, waiting.command.name)
+        if found is None:
+            # Time has passed, or the transport is gone.
+            self._advance(self._read(self._transport()))
             return
         now = self.now()
-        events = exchange.receive(data, now) if data else []
-        events += exchange.wake(now)
+        if isinstance(found, tuple) and exchange.take_reply(found[0], found[1], now):
+            self._news.set()
+            if exchange.busy:
+                self._advance(b"", drained=False)
+            return
+        self.listeners.received(exchange.sort(_events(found), fed, now), now)
+        self._news.set()
+        self._advance(b"", drained=False)
+
+    def _read(self, transport: AsyncTransport) -> bytes:
+        if self._lost is None:
+            try:
+                return transport.read()
+            except LinkError as error:
+                self._lose(error)
+                self.listeners.lost(error)
+        return b""
+
+    def _advance(self, data: bytes, drained: bool = True) -> None:
+        exchange, now = self._exchange, self.now()
+        events, outgoing = exchange.advance(data, now)
         if self._lost is not None:
             events += exchange.fail(self._lost, now)
-        elif exchange.has_outgoing(now):
-            self._send_request(now, drained=not data)
-        idle = exchange.idle_seconds(now)
-        if idle is not None:
-            self._wake_at(now + idle)
+        elif outgoing:
+            self._send_request(now, drained and not data)
+        self._set_timer(now)
         if events:
             self.listeners.received(events, now)
             self._news.set()
 
+    def _set_timer(self, now: float) -> None:
+        idle = self._exchange.idle_seconds(now)
+        if idle is not None:
+            self._wake_at(now + idle)
+
     def _send_request(self, now: float, drained: bool) -> None:
         data = self._exchange.outgoing(now, drained)
         pending = self._exchange.sent_last
-        if not data or pending is None:
-            return
+        if data and pending is not None:
+            self._write_request(pending, data)
+
+    def _write_request(self, pending: PendingRequest, data: bytes) -> None:
         try:
             self._begin_write(self._transport(), data, partial(self._request_written, pending))
         except LinkError as error:
@@ -261,6 +356,11 @@ class AsyncConnection:
             self._timer = None
         now = self.now()
         self.listeners.received(self._exchange.fail(self._lost, now), now)
+
+
+def _events(found: tuple[Frame, object] | list[Event]) -> list[Event]:
+    """Return the events of a native call, which may have decoded the only frame."""
+    return [found[0]] if isinstance(found, tuple) else found
 
 
 def _close_unwanted(work: asyncio.Future[OpenPort]) -> None:

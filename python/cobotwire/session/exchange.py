@@ -215,8 +215,10 @@ class Exchange:
             soonest, repeat_at = waiting.ends_at, self._repeat_at(waiting)
             if repeat_at is not None and repeat_at < soonest:
                 soonest = repeat_at
-        else:
+        elif self._queue:
             soonest = min([self._free_at(p, now) for p in self._queued()], default=inf)
+        else:
+            soonest = inf
         if self._acks.waiting:
             soonest = min(soonest, self._acks.next_end)
         return None if soonest == inf else max(0.0, soonest - now)
@@ -341,6 +343,34 @@ class Exchange:
         if self._alone is not None and (alone is None or alone is self._alone):
             (request, sent_at, _, grace), self._alone = self._alone, None
             self._outstanding.expect(request, sent_at + grace)
+
+    @property
+    def waiting_plainly(self) -> EncodedRequest | None:
+        """The request that waits, if it is plain."""
+        last = self._last
+        return None if last is None or last.done or not last.request.plain else last.request
+
+    def take_reply(self, frame: Frame, fields: dict[str, Any], now: float) -> bool:
+        """End the plain request that waits, with the only frame that came; return whether it did.
+
+        The codec has decoded the frame as the reply. If it may be a copy of another request, the
+        caller sorts it.
+        """
+        waiting = self._last
+        if waiting is None or not self._echo.sent_no_other(frame):
+            return False
+        self._reply(waiting, fields, now)
+        return True
+
+    def sort(self, received: Sequence[Event], fed: int, now: float) -> list[SessionEvent]:
+        """Return what events are; the framer had been fed ``fed`` bytes before theirs."""
+        self._chunk_at = fed
+        return self._sort(received, now)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request waits for its turn or its reply, or for its acknowledgement."""
+        return bool(self._queue or self._acks.waiting) or self._waiting() is not None
 
     def _begin(self, pending: PendingRequest, now: float) -> None:
         request, fed = pending.request, self.framer.fed

@@ -8,10 +8,16 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Any
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
-from cobotwire.transport.interface import AsyncTransport, PollableTransport, Transport
+from cobotwire.transport.interface import (
+    AsyncTransport,
+    LendingTransport,
+    PollableTransport,
+    Transport,
+)
 
 # A write fails when no byte of it was taken for this long.
 WRITE_TIMEOUT = 1.0
@@ -62,12 +68,30 @@ class PolledTransport:
             taken = self._transport.write_some(data)
             if taken == len(data):
                 return True
-            self._taken = taken
-            self._progress_at = self._loop.time()
-            self._loop.add_writer(self._descriptor, self._write_on)
-            self._try_later()
+            self.write_rest(data, taken, done)
+            return False
         self._waiting.append((data, done))
         return False
+
+    def write_rest(self, data: bytes, taken: int, done: Done) -> None:
+        """Send what follows the first ``taken`` bytes of ``data``; nothing else is being sent."""
+        self._taken = taken
+        self._progress_at = self._loop.time()
+        self._loop.add_writer(self._descriptor, self._write_on)
+        self._try_later()
+        self._waiting.append((data, done))
+
+    @property
+    def idle(self) -> bool:
+        """Whether everything that was written was taken."""
+        return not self._waiting
+
+    def native(self, framer: Any) -> NativePolled | None:
+        """Return native calls for this transport and a native framer; None: there are none."""
+        transport = self._transport
+        if isinstance(transport, LendingTransport) and transport.lends:
+            return NativePolled(self, transport.lend_now, framer)
+        return None
 
     def _write_on(self) -> None:
         data, done = self._waiting[0]
@@ -126,6 +150,34 @@ class PolledTransport:
     def leave_to_parent(self) -> None:
         """Leave the loop alone, whose epoll a forked child shares with its parent."""
         self._closed = True
+
+
+class NativePolled:
+    """Native calls that write, read and decode at once what one request needs; none of them waits.
+
+    ``framer`` is a native one; what its methods return says :mod:`cobotwire._native`.
+    """
+
+    def __init__(self, transport: PolledTransport, lend_now: Callable[..., Any], framer: Any):
+        self._transport = transport
+        self._lend_now = lend_now
+        self._swap, self._read_reply = framer.swap, framer.read_reply
+        self.write_rest = transport.write_rest
+        # One thread writes.
+        self._writing = threading.Lock()
+
+    @property
+    def idle(self) -> bool:
+        """Whether everything that was written was taken."""
+        return self._transport.idle
+
+    def swap(self, request: bytes, of: str, finish: Callable[[bytes, int], None]) -> Any:
+        """Send a request if nothing has come, and read what has come by then."""
+        return self._lend_now(self._swap, 0.0, request, of, self._writing, finish)
+
+    def read_reply(self, request: bytes, of: str) -> Any:
+        """Read what has come since a request was sent."""
+        return self._lend_now(self._read_reply, request, of)
 
 
 class ThreadedTransport:

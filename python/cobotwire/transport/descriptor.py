@@ -92,6 +92,11 @@ class DescriptorTransport(ABC):
                 return None
             return call(self._descriptor, alarm, *arguments)
 
+    def lend_now(self, call: Callable[..., T], *arguments: object) -> T | None:
+        """Return the result of ``call(descriptor, -1, *arguments)``; None if it is closed."""
+        with self._reading:
+            return None if self._closed else call(self._descriptor, -1, *arguments)
+
     def _read_within(self, timeout: float) -> bytes | None:
         """Return what has come; None: nothing has. Empty bytes are the end of the data."""
         deadline = time.monotonic() + timeout

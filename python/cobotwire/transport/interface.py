@@ -74,6 +74,10 @@ class LendingTransport(PollableTransport, Protocol):
         """
         ...
 
+    def lend_now(self, call: Callable[..., T], *arguments: object) -> T | None:
+        """Do the same with a call that does not wait, and needs no alarm: -1 takes its place."""
+        ...
+
     def finish_write(self, data: bytes, written: int) -> None:
         """Send what follows the first ``written`` bytes of ``data``, as :meth:`write` does."""
         ...

@@ -122,6 +122,20 @@ pub enum Swapped<T> {
     Sent(Option<T>),
 }
 
+/// Return what `take` makes of what has come by now; None if nothing has, or the read failed.
+pub fn read_now<T>(
+    py: Python<'_>,
+    descriptor: RawFd,
+    take: impl FnOnce(&[u8]) -> T,
+) -> PyResult<Option<T>> {
+    match receive(py, borrow(descriptor)?, None, take) {
+        Ok(taken) => Ok(taken),
+        // The next read fails in the same way, and reports it.
+        Err(Fault::System(_)) => Ok(None),
+        Err(Fault::Handler(error)) => Err(error),
+    }
+}
+
 /// Return what `take` makes of what has come, as soon as there is something.
 fn receive<T>(
     py: Python<'_>,

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 
 #[cfg(unix)]
-use crate::descriptor::{Line, Swapped};
+use crate::descriptor::{Line, Swapped, read_now};
 use crate::events::Events;
 use crate::frame::{NativeFrame, Origin};
 use crate::names::Names;
@@ -77,6 +77,29 @@ impl NativeFramer {
             Swapped::Sent(Some(taken)) => taken.map(Some),
             Swapped::Sent(None) => Ok(Some(PyList::empty(py).into_any())),
         }
+    }
+
+    /// Read what has come to a line, and feed it, in one call: `swap` without a request to send.
+    /// Return None if nothing has come, or the data has ended, which the next read reports.
+    #[cfg(unix)]
+    #[pyo3(signature = (descriptor, alarm, request, of, /))]
+    fn read_reply<'py>(
+        slf: &Bound<'py, Self>,
+        descriptor: i32,
+        alarm: i32,
+        request: &[u8],
+        of: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let _ = alarm;
+        let py = slf.py();
+        let take = |data: &[u8]| match data {
+            [] => Ok(None),
+            _ => slf
+                .try_borrow_mut()?
+                .take_reply(py, data, request, of)
+                .map(Some),
+        };
+        read_now(py, descriptor, take)?.unwrap_or(Ok(None))
     }
 
     /// The number of bytes fed that no event covers yet.
