@@ -9,7 +9,7 @@
 ``codec_in_use()`` returns the name of the codec: ``native`` (Rust) or ``reference`` (Python).
 """
 
-from typing import TYPE_CHECKING, Any
+from cobotwire.protocol.light import TYPE_CHECKING
 
 __all__ = [
     "AsyncMechArm270",
@@ -153,14 +153,18 @@ else:
         "identify": "inspect.identification",
     }
 
-    def __getattr__(name: str) -> Any:
+    def __getattr__(name: str) -> object:
         if name not in __all__:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         if name == "__version__":
             # That of the installed distribution; Cargo.toml states it once for all parts.
-            from importlib.metadata import version
+            try:
+                from cobotwire._native import __version__ as version
+            except ImportError:
+                from importlib.metadata import version as installed
 
-            return version("cobotwire")
+                version = installed("cobotwire")
+            return version
         from importlib import import_module
 
         module = import_module(f"{__name__}.{_PLACES.get(name, 'protocol.errors')}")

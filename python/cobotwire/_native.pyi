@@ -32,9 +32,12 @@ __all__ = [
     "NativeFrame",
     "NativeFramer",
     "NativeSurvey",
+    "__version__",
     "read_within",
     "write_now",
 ]
+
+__version__: str
 
 @final
 class NativeCodec:

@@ -2,36 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import suppress
-from copy import copy
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from cobotwire.protocol.light import TYPE_CHECKING
 
-from cobotwire import codec as codecs
-from cobotwire.client.aio_connection import AsyncConnection
-from cobotwire.client.opening import (
-    OnError,
-    PortOpener,
-    RecordPath,
-    check_on_error,
-    check_seconds,
-    settings,
-)
-from cobotwire.client.traffic import TrafficListener
-from cobotwire.protocol.addresses import find_address
-from cobotwire.protocol.errors import CaptureError, CobotwireError
-from cobotwire.protocol.messages import Request, Result
-from cobotwire.protocol.table import Table
-from cobotwire.session import Exchange, RetryPolicy
-from cobotwire.session.request import RequestEncoder, check_acknowledged, result_of
-from cobotwire.transport import Transport
-
+# Imported when a client is opened, or when it needs them. So a program that only imports a client
+# loads neither the session nor the table of an edition.
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+    from typing import Any, ClassVar, Self
+
+    from cobotwire import codec as codecs
     from cobotwire.client.aio_events import AsyncEventStream
     from cobotwire.client.aio_streaming import AsyncStream
     from cobotwire.client.events import EventHandler, EventT
+    from cobotwire.client.opening import OnError, RecordPath
+    from cobotwire.client.traffic import TrafficListener
     from cobotwire.protocol.limits import Limits
+    from cobotwire.protocol.messages import Request, Result
+    from cobotwire.protocol.table import Table
+    from cobotwire.session import RetryPolicy
+    from cobotwire.transport import Transport
 
 
 class AsyncClient:
@@ -62,6 +52,12 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed.
         """
+        from cobotwire.client.aio_connection import AsyncConnection
+        from cobotwire.client.opening import PortOpener, check_on_error, settings
+        from cobotwire.protocol.addresses import find_address
+        from cobotwire.session.exchange import Exchange
+        from cobotwire.session.request import RequestEncoder
+
         self._settings = settings(self.table, timeout, retry, codec, limits)
         self._stops = check_on_error(on_error) == "stop"
         self._stopped_for: BaseException | None = None
@@ -108,6 +104,8 @@ class AsyncClient:
             await self.close()
             return
         await self._stop_all_for(error)
+        from cobotwire.protocol.errors import CaptureError
+
         try:
             await self.close()
         except CaptureError as incomplete:
@@ -128,6 +126,11 @@ class AsyncClient:
         Raises:
             UsageError: the edition has no such address.
         """
+        from copy import copy
+
+        from cobotwire.protocol.addresses import find_address
+        from cobotwire.session.request import RequestEncoder
+
         wanted = find_address(self.table, address)
         if wanted is None or wanted == self._address:
             return self
@@ -181,7 +184,6 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed, or is not a query; nothing was sent.
         """
-        # Imported here: few programs stream, and all of them import this.
         from cobotwire.client.aio_streaming import AsyncStream
 
         settings = self._settings.for_stream(timeout)
@@ -209,11 +211,11 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed, or the edition has no such event.
         """
-        check_seconds("timeout", timeout)
-        # Imported here: few editions have events, and all clients import this.
         from cobotwire.client.aio_events import AsyncEventStream
         from cobotwire.client.events import EventQueue, Wanted
+        from cobotwire.client.opening import check_seconds
 
+        check_seconds("timeout", timeout)
         queue = EventQueue(Wanted(self.table, types, self._address), capacity)
         return AsyncEventStream(self._connection, queue, timeout)
 
@@ -229,7 +231,6 @@ class AsyncClient:
         Raises:
             UsageError: the edition has no such event, or the handler is not a function.
         """
-        # Imported here: few editions have events, and all clients import this.
         from cobotwire.client.events import EventHandler, Wanted
 
         made = EventHandler(Wanted(self.table, (event,), self._address), handler)
@@ -252,11 +253,14 @@ class AsyncClient:
         if not self._stops or stop is None or error is self._stopped_for:
             return False
         self._stopped_for = error
-        # The error is what is reported; one of sending ``stop`` would hide it.
-        with suppress(CobotwireError):
+        from cobotwire.protocol.errors import CobotwireError
+
+        try:
             await self._send(stop.request_type())
-            return True
-        return False
+        except CobotwireError:
+            # The first error is what is reported; this one would hide it.
+            return False
+        return True
 
     async def _call(self, request: Request[Result], longest: float | None = None) -> Result:
         """Send a request, wait for its reply, and return the reply's result.
@@ -268,11 +272,14 @@ class AsyncClient:
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
         done = await self._connection.request(encoded, retry, wait)
-        return result_of(request, done.result())
+        return request.result_of(done.result())
 
     async def _send(self, request: Request[None], ack_within: float | None = None) -> None:
         """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says."""
         if ack_within is not None:
+            from cobotwire.client.opening import check_seconds
+            from cobotwire.session.request import check_acknowledged
+
             check_seconds("ack_within", ack_within)
         encoded = self._encoder.encode_request(request)
         if ack_within is not None:

@@ -3,35 +3,26 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
-from typing import Any
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.client.events import CAPACITY, EventQueue, Wanted
-from cobotwire.client.opening import check_seconds
-from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout
-from cobotwire.protocol.messages import Request
-from cobotwire.protocol.roles import (
-    ANGLES,
-    COORDS,
-    gripper_request,
-    kinds_of,
-    targets_request,
-)
-from cobotwire.session import EncodedRequest
-from cobotwire.session.motion import (
-    MOTION_SECONDS,
-    Goal,
-    Listen,
-    Outcome,
-    Pause,
-    Step,
-    Stop,
-    ack_seconds,
-    goal_of,
-    until_reached,
-)
+from cobotwire.protocol.light import MOTION_SECONDS, TYPE_CHECKING, Later
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from contextlib import AbstractContextManager
+    from typing import Any
+
+    from cobotwire.client import events, opening
+    from cobotwire.protocol import errors, roles
+    from cobotwire.protocol.messages import Request
+    from cobotwire.session import EncodedRequest, motion
+else:
+    # Needed when the arm is first moved.
+    events = Later("cobotwire.client.events")
+    opening = Later("cobotwire.client.opening")
+    errors = Later("cobotwire.protocol.errors")
+    roles = Later("cobotwire.protocol.roles")
+    motion = Later("cobotwire.session.motion")
 
 # Percent of the fastest, unless the caller says otherwise.
 HOME_SPEED, GRIPPER_SPEED = 10, 50
@@ -66,7 +57,9 @@ class AsyncMovingClient(AsyncClient):
             MotionTimeout: the arm is not there in time, or stands still short of the target.
         """
         command = self.table.in_role("joint targets")
-        await self._move(targets_request(command, angles, speed), angles, ANGLES, wait, timeout)
+        await self._move(
+            roles.targets_request(command, angles, speed), angles, roles.ANGLES, wait, timeout
+        )
 
     async def move_coords(
         self,
@@ -93,7 +86,9 @@ class AsyncMovingClient(AsyncClient):
         """
         command = self.table.in_role("coordinate targets")
         others = (speed,) if mode is None else (speed, mode)
-        await self._move(targets_request(command, coords, *others), coords, COORDS, wait, timeout)
+        await self._move(
+            roles.targets_request(command, coords, *others), coords, roles.COORDS, wait, timeout
+        )
 
     async def wait_until_reached(
         self, target: Sequence[float], kind: int = 0, *, timeout: float = MOTION_SECONDS
@@ -114,8 +109,8 @@ class AsyncMovingClient(AsyncClient):
             LinkError: the transport is gone.
             MotionTimeout: the arm is not there in time, or stands still short of the target.
         """
-        check_seconds("timeout", timeout)
-        goal = goal_of(self.table, target, kind)
+        opening.check_seconds("timeout", timeout)
+        goal = motion.goal_of(self.table, target, kind)
         with self._motion_ended() as ended:
             try:
                 await self._wait(goal, timeout, ended)
@@ -150,7 +145,7 @@ class AsyncMovingClient(AsyncClient):
             UsageError: the speed is not allowed, or the edition has no such command.
             LinkError: the transport is gone.
         """
-        await self._send(gripper_request(self.table, "OPEN", speed))
+        await self._send(roles.gripper_request(self.table, "OPEN", speed))
 
     async def close_gripper(self, speed: int = GRIPPER_SPEED) -> None:
         """Close the gripper, and return when the request is sent. It can pinch.
@@ -162,7 +157,7 @@ class AsyncMovingClient(AsyncClient):
             UsageError: the speed is not allowed, or the edition has no such command.
             LinkError: the transport is gone.
         """
-        await self._send(gripper_request(self.table, "CLOSE", speed))
+        await self._send(roles.gripper_request(self.table, "CLOSE", speed))
 
     async def _move(
         self,
@@ -172,10 +167,12 @@ class AsyncMovingClient(AsyncClient):
         wait: bool,
         timeout: float,
     ) -> None:
-        check_seconds("timeout", timeout)
+        opening.check_seconds("timeout", timeout)
         # A bad target is reported as such, before it is waited for.
         encoded = self._encoder.encode_request(request)
-        goal = goal_of(self.table, target, kinds_of(self.table)[label]) if wait else None
+        goal = (
+            motion.goal_of(self.table, target, roles.kinds_of(self.table)[label]) if wait else None
+        )
         with self._motion_ended() as ended:
             try:
                 await self._send_motion(encoded, wait and ended is not None)
@@ -185,33 +182,27 @@ class AsyncMovingClient(AsyncClient):
                 await self._stop_for(error)
                 raise
 
-    @contextmanager
-    def _motion_ended(self) -> Iterator[EventQueue | None]:
-        """Yield a queue for the event that ends a motion; None if the edition has none."""
-        command = self.table.find_role("motion ended")
-        if command is None:
-            yield None
-            return
-        event: Any = command.reply_type
-        queue = EventQueue(Wanted(self.table, (event,), self._address), CAPACITY)
-        remove = self._connection.listeners.add(queue.take)
-        try:
-            yield queue
-        finally:
-            remove()
+    def _motion_ended(self) -> AbstractContextManager[events.EventQueue | None]:
+        """Return a context with a queue for the event that ends a motion; None if there is none."""
+        add = self._connection.listeners.add
+        return events.motion_ended(self.table, self._address, add)
 
     async def _send_motion(self, request: EncodedRequest, in_stages: bool) -> None:
         """Send a motion; in an edition with two stages the arm accepts or refuses it first."""
-        within = ack_seconds(request) if in_stages else None
+        within = motion.ack_seconds(request) if in_stages else None
         if within is None:
             await self._connection.send(request, None)
             return
         # The acceptance may be lost; the queries tell whether the arm moves.
-        with suppress(ReplyTimeout):
+        try:
             await self._connection.send(request, within)
+        except errors.ReplyTimeout:
+            return
 
-    async def _wait(self, goal: Goal, timeout: float, ended: EventQueue | None) -> None:
-        steps = until_reached(self.table, goal, timeout, self._connection.now())
+    async def _wait(
+        self, goal: motion.Goal, timeout: float, ended: events.EventQueue | None
+    ) -> None:
+        steps = motion.until_reached(self.table, goal, timeout, self._connection.now())
         step = next(steps)
         try:
             while True:
@@ -219,24 +210,26 @@ class AsyncMovingClient(AsyncClient):
                 step = steps.send(outcome)
         except StopIteration:
             return
-        except MotionTimeout as error:
+        except errors.MotionTimeout as error:
             if error.stopped:
                 # This arm needs no further stop for the error; others that it ends do.
                 self._stopped_for = error
             raise
 
-    async def _take(self, step: Step, ended: EventQueue | None) -> Outcome:
+    async def _take(self, step: motion.Step, ended: events.EventQueue | None) -> motion.Outcome:
         now, result = self._connection.now, None
-        if isinstance(step, Pause):
+        if isinstance(step, motion.Pause):
             await self._connection.sleep(max(0.0, step.until - now()))
-        elif isinstance(step, Listen):
+        elif isinstance(step, motion.Listen):
             assert ended is not None, "the edition has the event"
             wait = max(0.0, step.until - now())
             await self._connection.listen(wait, lambda: ended.filled)
             result = ended.next()
-        elif isinstance(step, Stop):
+        elif isinstance(step, motion.Stop):
             result = await self._stop_for(TimeoutError())
         else:
-            with suppress(ReplyTimeout):
+            try:
                 result = await self._call(step.request, step.longest)
-        return Outcome(now(), result)
+            except errors.ReplyTimeout:
+                result = None
+        return motion.Outcome(now(), result)

@@ -3,36 +3,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import suppress
-from copy import copy
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from cobotwire.protocol.light import TYPE_CHECKING
 
-from cobotwire import codec as codecs
-from cobotwire.client.connection import Connection
-from cobotwire.client.opening import (
-    OnError,
-    PortOpener,
-    RecordPath,
-    check_on_error,
-    check_seconds,
-    settings,
-)
-from cobotwire.client.traffic import TrafficListener
-from cobotwire.protocol.addresses import find_address
-from cobotwire.protocol.errors import CaptureError, CobotwireError
-from cobotwire.protocol.messages import Request, Result
-from cobotwire.protocol.table import Table
-from cobotwire.session import Exchange, RetryPolicy
-from cobotwire.session.request import RequestEncoder, check_acknowledged, result_of
-from cobotwire.transport import Transport
-
+# Imported when a client is opened, or when it needs them. So a program that only imports a client
+# loads neither the session nor the table of an edition.
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+    from typing import Any, ClassVar, Self
+
+    from cobotwire import codec as codecs
     from cobotwire.client.event_streams import EventStream
     from cobotwire.client.events import EventHandler, EventT
+    from cobotwire.client.opening import OnError, RecordPath
     from cobotwire.client.streaming import Stream
+    from cobotwire.client.traffic import TrafficListener
     from cobotwire.protocol.limits import Limits
+    from cobotwire.protocol.messages import Request, Result
+    from cobotwire.protocol.table import Table
+    from cobotwire.session import RetryPolicy
+    from cobotwire.transport import Transport
 
 
 class Client:
@@ -88,6 +78,12 @@ class Client:
             UsageError: an argument is not allowed, or the file of the recording exists already.
             LinkError: the port does not exist, or cannot be opened.
         """
+        from cobotwire.client.connection import Connection
+        from cobotwire.client.opening import PortOpener, check_on_error, settings
+        from cobotwire.protocol.addresses import find_address
+        from cobotwire.session.exchange import Exchange
+        from cobotwire.session.request import RequestEncoder
+
         self._settings = settings(self.table, timeout, retry, codec, limits)
         self._stops = check_on_error(on_error) == "stop"
         self._stopped_for: BaseException | None = None
@@ -122,6 +118,8 @@ class Client:
             self.close()
             return
         self._stop_all_for(error)
+        from cobotwire.protocol.errors import CaptureError
+
         try:
             self.close()
         except CaptureError as incomplete:
@@ -142,6 +140,11 @@ class Client:
         Raises:
             UsageError: the edition has no such address.
         """
+        from copy import copy
+
+        from cobotwire.protocol.addresses import find_address
+        from cobotwire.session.request import RequestEncoder
+
         wanted = find_address(self.table, address)
         if wanted is None or wanted == self._address:
             return self
@@ -195,7 +198,6 @@ class Client:
         Raises:
             UsageError: an argument is not allowed, or is not a query; nothing was sent.
         """
-        # Imported here: few programs stream, and all of them import this.
         from cobotwire.client.streaming import Stream
 
         settings = self._settings.for_stream(timeout)
@@ -223,11 +225,11 @@ class Client:
         Raises:
             UsageError: an argument is not allowed, or the edition has no such event.
         """
-        check_seconds("timeout", timeout)
-        # Imported here: few editions have events, and all clients import this.
         from cobotwire.client.event_streams import EventStream
         from cobotwire.client.events import EventQueue, Wanted
+        from cobotwire.client.opening import check_seconds
 
+        check_seconds("timeout", timeout)
         queue = EventQueue(Wanted(self.table, types, self._address), capacity)
         return EventStream(self._connection, queue, timeout)
 
@@ -245,7 +247,6 @@ class Client:
         Raises:
             UsageError: the edition has no such event, or the handler is not a function.
         """
-        # Imported here: few editions have events, and all clients import this.
         from cobotwire.client.events import EventHandler, Wanted
 
         made = EventHandler(Wanted(self.table, (event,), self._address), handler)
@@ -268,11 +269,14 @@ class Client:
         if not self._stops or stop is None or error is self._stopped_for:
             return False
         self._stopped_for = error
-        # The error is what is reported; one of sending ``stop`` would hide it.
-        with suppress(CobotwireError):
+        from cobotwire.protocol.errors import CobotwireError
+
+        try:
             self._send(stop.request_type())
-            return True
-        return False
+        except CobotwireError:
+            # The first error is what is reported; this one would hide it.
+            return False
+        return True
 
     def _call(self, request: Request[Result], longest: float | None = None) -> Result:
         """Send a request, wait for its reply, and return the reply's result.
@@ -283,11 +287,14 @@ class Client:
         _, wait, retry = self._settings
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
-        return result_of(request, self._connection.call(encoded, retry, wait))
+        return request.result_of(self._connection.call(encoded, retry, wait))
 
     def _send(self, request: Request[None], ack_within: float | None = None) -> None:
         """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says."""
         if ack_within is not None:
+            from cobotwire.client.opening import check_seconds
+            from cobotwire.session.request import check_acknowledged
+
             check_seconds("ack_within", ack_within)
         encoded = self._encoder.encode_request(request)
         if ack_within is not None:

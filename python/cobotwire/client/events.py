@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from inspect import iscoroutinefunction
 from typing import Any, Generic, TypeVar
 
@@ -93,6 +94,29 @@ class EventQueue:
     def filled(self) -> bool:
         """Whether an event waits."""
         return bool(self._waiting)
+
+
+@contextmanager
+def motion_ended(
+    table: Table,
+    address: Address | None,
+    add: Callable[[Callable[[Traffic], None]], Callable[[], None]],
+) -> Iterator[EventQueue | None]:
+    """Yield a queue for the event that ends a motion; None if the edition has none.
+
+    ``add`` adds a traffic listener, and returns a function that removes it.
+    """
+    command = table.find_role("motion ended")
+    if command is None:
+        yield None
+        return
+    event: Any = command.reply_type
+    queue = EventQueue(Wanted(table, (event,), address), CAPACITY)
+    remove = add(queue.take)
+    try:
+        yield queue
+    finally:
+        remove()
 
 
 class EventHandler(Generic[EventT]):

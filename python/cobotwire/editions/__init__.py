@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, cast
-
-from cobotwire.protocol.errors import UsageError, did_you_mean
+from cobotwire.protocol.light import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from typing import Any, Protocol
+
     from cobotwire.client import Client
     from cobotwire.client.aio import AsyncClient
     from cobotwire.protocol.table import Table
+else:
+    # Only type checkers compare packages with it.
+    Protocol = object
 
 DEFAULT = "mycobot280"
 
@@ -44,14 +47,18 @@ def load(name: str = DEFAULT) -> Edition:
     # Looking for one package takes a tenth of the time that listing all of them takes.
     found = find_spec(f"{__name__}.{name}") if name.isidentifier() else None
     if found is not None and found.submodule_search_locations:
-        return cast(Edition, import_module(found.name))
+        edition: Any = import_module(found.name)
+        return edition  # type: ignore[no-any-return]
     import sys
     from pathlib import Path
+
+    from cobotwire.protocol.errors import UsageError, did_you_mean
 
     folder = Path(name)
     if (folder / "__init__.py").is_file():
         sys.path.insert(0, str(folder.resolve().parent))
         name = folder.resolve().name
+    package: Any
     try:
         package = import_module(name)
     except (ModuleNotFoundError, ValueError, TypeError):
@@ -61,4 +68,4 @@ def load(name: str = DEFAULT) -> Edition:
     if not hasattr(package, "TABLE") or not hasattr(package, "CLIENT"):
         message = f"{name} is not the package of an edition; make one with cobotwire-gen build"
         raise UsageError("edition", name, message=message)
-    return cast(Edition, package)
+    return package  # type: ignore[no-any-return]

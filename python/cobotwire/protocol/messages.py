@@ -219,6 +219,11 @@ class Request(Message, Generic[Result]):
         cls._declare(**layout)
         cls.command = command
 
+    def result_of(self, fields: Mapping[str, Any]) -> Result:
+        """Return what a client's method returns, given the decoded fields of the reply."""
+        assert self.reply_type is not None, "a request that is waited for has a reply"
+        return self.reply_type.result_from(fields)  # type: ignore[no-any-return]
+
     @property
     def variant_index(self) -> int | None:
         """The index of the variant that the arguments choose; None: their number decides."""

@@ -20,8 +20,6 @@ from cobotwire.session.request import EncodedRequest
 POLL_SECONDS = 0.1
 # If the device reports the end of a motion, the queries only make up for an event that was lost.
 CONFIRM_SECONDS = 1.0
-# How long a motion is waited for by default.
-MOTION_SECONDS = 30.0
 # An arm that stands still for this long does not continue by itself.
 STILL_SECONDS = 1.0
 # How long each query after a failed motion may take.

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from urllib.parse import SplitResult, urlsplit
-
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.light import TYPE_CHECKING
 from cobotwire.transport.interface import OpenedTransport
+
+if TYPE_CHECKING:
+    from urllib.parse import SplitResult
 
 HIGHEST_BAUDRATE = 2**31 - 1
 NETWORK = ("socket://", "rfc2217://")
@@ -44,6 +46,9 @@ def _check(url: object) -> SplitResult | None:
         raise UsageError("port", url, "the name of a serial port, or a URL, in printable text")
     if not url.lower().startswith(NETWORK):
         return None
+    # Imported here, because the name of a serial port needs no parser.
+    from urllib.parse import urlsplit
+
     try:
         parts = urlsplit(url)
         complete = bool(parts.hostname and parts.port)

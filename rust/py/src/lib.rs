@@ -34,6 +34,8 @@ mod words;
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     // First, so that no class is made in a subinterpreter.
     interpreter::check_main(module.py())?;
+    // Cargo.toml states the version of all parts.
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<memory::Memory>()?;
     module.add_class::<codec::NativeCodec>()?;
     module.add_class::<bulk::NativeColumnReader>()?;

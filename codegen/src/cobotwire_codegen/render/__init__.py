@@ -95,12 +95,12 @@ def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
 def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
     """Return the client for one way of calling; the same templates generate every client."""
     sharing: Sharing = common["sharing"]
-    imports = ["from cobotwire.protocol.table import Table"]
+    imports = ["from cobotwire.protocol.light import TYPE_CHECKING, later_table"]
     if python_api.moves(sharing.edition):
         imports.append(f"from {way.moving_module} import {way.prefix}MovingClient")
     made: Files = {}
     template = jinja.get_template("python/commands/family.py.j2")
-    own = ["from .table import TABLE"]
+    own: list[str] = []
     for family in sharing.edition.families:
         module = sharing.methods_module(family, way)
         name = f"{way.prefix}{family.name.capitalize()}Commands"
@@ -112,7 +112,7 @@ def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
     if made:
         index = jinja.get_template("python/commands/__init__.py.j2")
         made[PurePosixPath(f"{way.folder}/__init__.py")] = index.render(common, way=way)
-    lines = [*sorted(imports), "", *sorted(own)]
+    lines = [*sorted(imports), *([""] if own else []), *sorted(own)]
     client = jinja.get_template("python/client.py.j2").render(common, way=way, imports=lines)
     made[PurePosixPath("client.py" if way is BLOCKING else f"{way.folder}_client.py")] = client
     return made

@@ -139,11 +139,9 @@ def imports(family: Family) -> tuple[set[str], bool]:
     return used, any("Sequence[" in argument.annotation for argument in found)
 
 
-def typing_names(family: Family) -> list[str]:
-    """Return what a family's methods import from ``typing``."""
-    used, sequence = imports(family)
-    names = ["TYPE_CHECKING"] if used or sequence else []
-    return names + (["overload"] if any(map(overloads, methods(family))) else [])
+def overloaded(family: Family) -> bool:
+    """Return whether a method of a family has several signatures."""
+    return any(map(overloads, methods(family)))
 
 
 def methods(family: Family) -> list[Command]:

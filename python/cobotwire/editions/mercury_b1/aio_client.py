@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mercury_a1.aio.drag import AsyncDragCommands
 from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
@@ -12,7 +10,7 @@ from cobotwire.editions.mercury_a1.aio.gripper import AsyncGripperCommands
 from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
 from cobotwire.editions.mercury_a1.aio.planning import AsyncPlanningCommands
 from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .aio.base import AsyncBaseCommands
 from .aio.body import AsyncBodyCommands
@@ -22,7 +20,11 @@ from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class AsyncMercuryB1(
@@ -58,7 +60,7 @@ class AsyncMercuryB1(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 ASYNC_CLIENT = AsyncMercuryB1

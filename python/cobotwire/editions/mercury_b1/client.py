@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mercury_a1.commands.drag import DragCommands
 from cobotwire.editions.mercury_a1.commands.frames import FramesCommands
@@ -12,7 +10,7 @@ from cobotwire.editions.mercury_a1.commands.gripper import GripperCommands
 from cobotwire.editions.mercury_a1.commands.io import IoCommands
 from cobotwire.editions.mercury_a1.commands.planning import PlanningCommands
 from cobotwire.editions.mercury_a1.commands.serial import SerialCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .commands.base import BaseCommands
 from .commands.body import BodyCommands
@@ -22,7 +20,11 @@ from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class MercuryB1(
@@ -58,7 +60,7 @@ class MercuryB1(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 CLIENT = MercuryB1

@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .aio.io import AsyncIoCommands
 from .aio.motion import AsyncMotionCommands
 from .aio.parameters import AsyncParametersCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class AsyncMyArmC650(
@@ -37,7 +39,7 @@ class AsyncMyArmC650(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 ASYNC_CLIENT = AsyncMyArmC650

@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .commands.io import IoCommands
 from .commands.motion import MotionCommands
 from .commands.parameters import ParametersCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class MyArmC650(
@@ -37,7 +39,7 @@ class MyArmC650(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 CLIENT = MyArmC650

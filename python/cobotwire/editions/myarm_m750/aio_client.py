@@ -3,18 +3,20 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.myarm_c650.aio.parameters import AsyncParametersCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .aio.io import AsyncIoCommands
 from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class AsyncMyArmM750(
@@ -42,7 +44,7 @@ class AsyncMyArmM750(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 ASYNC_CLIENT = AsyncMyArmM750

@@ -3,18 +3,20 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.myarm_c650.commands.parameters import ParametersCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .commands.io import IoCommands
 from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class MyArmM750(
@@ -42,7 +44,7 @@ class MyArmM750(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 CLIENT = MyArmM750

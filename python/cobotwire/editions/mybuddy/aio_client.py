@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Self
-
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mycobot.aio.gripper import AsyncGripperCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .aio.base import AsyncBaseCommands
 from .aio.coords import AsyncCoordsCommands
@@ -18,7 +16,11 @@ from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar, Self
+
+    from cobotwire.protocol.table import Table
 
 
 class AsyncMyBuddy(
@@ -50,7 +52,7 @@ class AsyncMyBuddy(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
     ALL: ClassVar[int] = 0
     LEFT: ClassVar[int] = 1

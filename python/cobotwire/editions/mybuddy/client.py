@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Self
-
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mycobot.commands.gripper import GripperCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .commands.base import BaseCommands
 from .commands.coords import CoordsCommands
@@ -18,7 +16,11 @@ from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar, Self
+
+    from cobotwire.protocol.table import Table
 
 
 class MyBuddy(
@@ -50,7 +52,7 @@ class MyBuddy(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
     ALL: ClassVar[int] = 0
     LEFT: ClassVar[int] = 1

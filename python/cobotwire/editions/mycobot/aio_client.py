@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .aio.coords import AsyncCoordsCommands
 from .aio.frames import AsyncFramesCommands
@@ -17,7 +15,11 @@ from .aio.motion import AsyncMotionCommands
 from .aio.network import AsyncNetworkCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class AsyncMyCobot(
@@ -47,7 +49,7 @@ class AsyncMyCobot(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 ASYNC_CLIENT = AsyncMyCobot

@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mycobot280.commands.drag import DragCommands
 from cobotwire.editions.mycobot280.commands.frames import FramesCommands
 from cobotwire.editions.mycobot280.commands.jog import JogCommands
 from cobotwire.editions.mycobot280.commands.kinematics import KinematicsCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .commands.accessories import AccessoriesCommands
 from .commands.coords import CoordsCommands
@@ -20,7 +18,11 @@ from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class MyCobot280RDKX5(
@@ -54,7 +56,7 @@ class MyCobot280RDKX5(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 CLIENT = MyCobot280RDKX5

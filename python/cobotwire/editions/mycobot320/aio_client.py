@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mycobot280.aio.frames import AsyncFramesCommands
 from cobotwire.editions.mycobot280.aio.kinematics import AsyncKinematicsCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .aio.accessories import AsyncAccessoriesCommands
 from .aio.coords import AsyncCoordsCommands
@@ -22,7 +20,11 @@ from .aio.network import AsyncNetworkCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class AsyncMyCobot320(
@@ -57,7 +59,7 @@ class AsyncMyCobot320(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 ASYNC_CLIENT = AsyncMyCobot320

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mycobot280.commands.frames import FramesCommands
 from cobotwire.editions.mycobot280.commands.kinematics import KinematicsCommands
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .commands.accessories import AccessoriesCommands
 from .commands.coords import CoordsCommands
@@ -22,7 +20,11 @@ from .commands.network import NetworkCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class MyCobot320(
@@ -57,7 +59,7 @@ class MyCobot320(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 CLIENT = MyCobot320

@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .aio.coords import AsyncCoordsCommands
 from .aio.drag import AsyncDragCommands
@@ -19,7 +17,11 @@ from .aio.power import AsyncPowerCommands
 from .aio.serial import AsyncSerialCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class AsyncPro450(
@@ -52,7 +54,7 @@ class AsyncPro450(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 ASYNC_CLIENT = AsyncPro450

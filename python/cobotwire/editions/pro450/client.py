@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from cobotwire.client.moving import MovingClient
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.light import TYPE_CHECKING, later_table
 
 from .commands.coords import CoordsCommands
 from .commands.drag import DragCommands
@@ -19,7 +17,11 @@ from .commands.power import PowerCommands
 from .commands.serial import SerialCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-from .table import TABLE
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from cobotwire.protocol.table import Table
 
 
 class Pro450(
@@ -52,7 +54,7 @@ class Pro450(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = TABLE
+    table: ClassVar[Table] = later_table(__package__)
 
 
 CLIENT = Pro450

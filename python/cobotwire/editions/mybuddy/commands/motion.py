@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from cobotwire.client import Client
+from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
 

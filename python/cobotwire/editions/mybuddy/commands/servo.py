@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 from cobotwire.client import Client
+from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
 
