@@ -92,6 +92,7 @@ docs: .venv/.tools .venv/.native ## build the docs site into docs/_build; a warn
 bench: .venv/.tools .venv/.native ## compare speeds with their limits; count losses on bad lines
 	$(BIN)/python bench/generator.py
 	$(BIN)/python bench/client.py
+	$(BIN)/python bench/asyncio_calls.py
 	$(BIN)/python bench/simulated_time.py
 	$(BIN)/python bench/kinematics.py
 	$(BIN)/python bench/resync.py
