@@ -151,6 +151,11 @@ attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/archive -o python_files='test_*.py on_*.py'
 
+.PHONY: wheels-check
+wheels-check: .venv/.base ## build both distributions; run the README from the wheels in fresh environments
+	$(BIN)/python -m pip install --quiet --group release
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/wheels_check.py $(PYTHONS)
+
 robots: .venv/.tools .venv/.native ## compare every request of the maker's classes with ours
 	PYTHONPATH=tests:tests/peers $(BIN)/python -W ignore -m robots $(ROBOTS)
 

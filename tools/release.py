@@ -12,6 +12,7 @@ and publishes.
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
@@ -160,7 +161,10 @@ def _git(*words: str) -> str:
 
 
 def _run(*words: str) -> str:
-    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)  # noqa: S603
+    # Files of a source distribution have one date, which makes cargo reuse what a shared target
+    # folder has of an earlier one.
+    fresh = {name: value for name, value in os.environ.items() if name != "CARGO_TARGET_DIR"}
+    ended = subprocess.run(words, cwd=ROOT, env=fresh, capture_output=True, text=True)  # noqa: S603
     if ended.returncode:
         raise Failed(f"{' '.join(words[:5])}: {ended.stderr.strip() or ended.stdout.strip()}")
     return ended.stdout.strip()
