@@ -16,7 +16,7 @@ from docs.pages import BLOCK, PORT, run
 from vectors import ROOT
 
 GUIDE = ROOT / "docs" / "guide"
-# The page programs.md includes files; test_programs.py runs them. The README is a page too.
+# The page programs.md includes files; tests/examples runs them. The README is a page too.
 PAGES = [
     ROOT / "README.md",
     ROOT / "docs" / "start.md",
