@@ -8,6 +8,7 @@ Rust on its path.
 
 from __future__ import annotations
 
+import argparse
 import os
 import subprocess
 import sys
@@ -23,12 +24,17 @@ SYSTEM = "/usr/bin:/bin"
 
 def main() -> int:
     """Check each Python; return 1 if one fails."""
-    pythons = sys.argv[1:] or [sys.executable]
+    parser = argparse.ArgumentParser(description="Run the README from built distributions.")
+    parser.add_argument("pythons", nargs="*", default=[sys.executable], metavar="PYTHON")
+    parser.add_argument("--dist", type=Path, help="distributions that were built before")
+    given = parser.parse_args()
+    pythons, built = given.pythons, given.dist
     failed = 0
     with tempfile.TemporaryDirectory(prefix="cobotwire-wheels-") as name:
-        built = Path(name) / "dist"
-        built.mkdir()
-        release.build(built)
+        if built is None:
+            built = Path(name) / "dist"
+            built.mkdir()
+            release.build(built)
         print("built and checked:", release.check_files(built), flush=True)
         for number, python in enumerate(pythons):
             print(f"--- {python}", flush=True)
