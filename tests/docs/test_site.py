@@ -100,6 +100,23 @@ def test_pages_load_nothing_from_other_hosts(pages: dict[Path, Page]) -> None:
     assert [load for load in loads if urlsplit(load).scheme or load.startswith("//")] == []
 
 
+def test_client_page_shows_command_methods_and_no_signatures_without_meaning(site: Path) -> None:
+    methods = (site / "api" / "mycobot280.html").read_text(encoding="utf-8")
+    names = ("send_angles", "get_coords", "move_angles", "set_color")
+    assert [name for name in names if f"MyCobot280.{name}" not in methods] == []
+    noisy = [page for page in site.glob("api/*.html") if "**kwargs" in page.read_text("utf-8")]
+    assert noisy == []
+
+
+def test_pages_link_to_their_source_and_generated_pages_to_the_spec(
+    site: Path, pages: dict[Path, Page]
+) -> None:
+    repository = "https://github.com/cobotwire/cobotwire"
+    assert f"{repository}/edit/main/docs/start.md" in pages[site / "start.html"].links
+    generated = pages[site / "reference" / "mycobot280" / "motion.html"]
+    assert f"{repository}/tree/main/spec" in generated.links
+
+
 @pytest.mark.parametrize("edition", sorted(TABLES))
 def test_decoder_page_of_the_site_decodes_a_request(site: Path, edition: str) -> None:
     try:
