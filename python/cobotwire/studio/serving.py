@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import threading
 import time
 import webbrowser
 from collections import deque
@@ -80,8 +81,9 @@ def serve(options: Options, announce: Callable[[Access], None]) -> None:
         async def lifespan(app: Starlette) -> AsyncIterator[None]:
             announce(access)
             if options.open_browser:
-                # A browser that starts slowly must not delay the server.
-                await asyncio.to_thread(webbrowser.open, access.url)
+                # In a thread: some browsers return only when they are closed.
+                opening = threading.Thread(target=webbrowser.open, args=(access.url,), daemon=True)
+                opening.start()
             tasks = []
             if isinstance(stage.session, LiveSession):
                 tasks.append(asyncio.create_task(stage.session.pump()))
