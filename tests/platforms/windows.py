@@ -29,7 +29,10 @@ from typing import Any
 LOADED = (asyncio, concurrent.futures, ctypes, logging.handlers, subprocess, tempfile)
 THIRD_PARTY = ("click", "rich.console", "rich.live", "rich.progress", "serial.tools.list_ports")
 # Only imported in the test that imports all of our modules.
-EXTRAS = ("libcst.codemod", "matplotlib.backends.backend_agg", "matplotlib.font_manager", "pytest")
+EXTRAS = (
+    *("libcst.codemod", "matplotlib.backends.backend_agg", "matplotlib.font_manager", "pytest"),
+    *("starlette.applications", "uvicorn.server"),
+)
 
 ABSENT_MODULES = (
     *("curses", "fcntl", "grp", "posix", "pty", "pwd", "readline", "resource", "syslog"),
