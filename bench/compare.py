@@ -3,8 +3,8 @@
 Each round of a row runs both trees, one directly after the other; the one that starts alternates.
 The ratio of a round is the time of the revision divided by that of the working tree: above 1, the
 working tree is faster. The table shows the median of the ratios and the range of their middle half.
-A row is called faster or slower only if that whole range is on one side of 1. The row "memcpy" does
-not depend on the trees: it shows how much the machine disturbs the figures.
+A row is called faster or slower only if that whole range is more than 2 % away from 1. The row
+"memcpy" does not depend on the trees: it shows how much the machine disturbs the figures.
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ from speed_rows import Streams
 from speed_table import human
 
 ALL = (*ROWS, *CLIENT_ROWS)
+# Two processes that run the same program differ by as much, because their memory lies elsewhere.
+SAME = 0.02
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Compared:
     def verdict(self) -> str:
         """Whether the working tree is faster or slower in the middle half of the rounds."""
         low, _, high = self.quartiles
-        return "faster" if low > 1 else "slower" if high < 1 else "the same"
+        return "faster" if low > 1 + SAME else "slower" if high < 1 - SAME else "the same"
 
 
 class Worker:
@@ -71,6 +73,10 @@ class Worker:
         print(row, file=self.process.stdin, flush=True)
         answer = self._line()
         return None if answer == "-" else float(answer)
+
+    def end(self) -> None:
+        """Let the process close its ports and end."""
+        self.process.communicate(timeout=60)
 
     def _line(self) -> str:
         assert self.process.stdout is not None
@@ -131,6 +137,7 @@ def worker(tree: Path, folder: Path) -> Iterator[Worker]:
             found = Worker(process)
             assert Path(found.package) == package / "cobotwire", f"imported from {found.package}"
             yield found
+            found.end()
         finally:
             process.kill()
 
