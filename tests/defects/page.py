@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from defects.judging import Judgement, Message
@@ -57,6 +58,8 @@ def _message(judgement: Judgement) -> str:
         return ""
     chosen = judgement.named or judgement.messages[0]
     text = f"`{chosen.case}` {chosen.command}: {chosen.text}".replace("|", "/")
+    # Programs are built in temporary folders.
+    text = re.sub(r"/\S*/(?=firmware-|client-)", "", text)
     text = text if len(text) <= MOST else f"{text[: MOST - 3].rstrip()}..."
     others = len(judgement.messages) - 1
     return f"{text} (+{others})" if others else text

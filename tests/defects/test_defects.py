@@ -7,14 +7,12 @@ import sys
 
 import pytest
 
-from cobotwire.conformance import Report
 from defects.arm.planted import DEFECTS
 from defects.clients import report_on_client
 from defects.devices import report_on_arm
 from defects.judging import Message, judge, messages_of
 from defects.key import HERE, SUBJECTS, Defect, defects
 from defects.page import BEGIN, END, rewritten, tables
-from stalls import unstalled
 
 KEY = {(defect.subject, defect.switch): defect for defect in defects()}
 # One for each rule that finds what no other rule finds, and for each way to name a cause.
@@ -26,8 +24,6 @@ ARM = (
     *("speed-of-motion-ignored", "forgets-after-wrong-len", "y-mirrored"),
 )
 CLIENTS = ("truncates", "takes-text-for-the-reply", "moves-after-release")
-# A reply takes 8 ms, and a client waits 170 ms for it; in seconds.
-ALLOWED_STALL = 0.1
 
 
 @pytest.mark.parametrize("switch", ARM)
@@ -43,20 +39,13 @@ def test_correct_arm_conforms() -> None:
 @pytest.mark.parametrize("switch", CLIENTS)
 def test_defect_of_the_client_is_named(switch: str) -> None:
     defect = KEY["client", switch]
-
-    def run() -> Report:
-        return report_on_client(switch, defect.line)
-
-    judgement = judge(defect, messages_of(unstalled(run, ALLOWED_STALL)))
+    judgement = judge(defect, messages_of(report_on_client(switch, defect.line)))
     assert judgement.named, judgement.messages
 
 
 @pytest.mark.parametrize("line", ["", "text", "late"])
 def test_correct_client_conforms(line: str) -> None:
-    def run() -> Report:
-        return report_on_client("", line)
-
-    assert messages_of(unstalled(run, ALLOWED_STALL)) == []
+    assert messages_of(report_on_client("", line)) == []
 
 
 def test_key_lists_each_switch_of_the_subjects() -> None:

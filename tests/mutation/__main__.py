@@ -1,7 +1,7 @@
 """Count how many broken subjects the testers find; print killed / total and every survivor.
 
-PYTHONPATH=tests python -m mutation                      run all suites
-PYTHONPATH=tests python -m mutation device --sample 5    run five mutants a kind of device suites
+PYTHONPATH=tests python -m mutation --sample 3           run three mutants of each kind
+PYTHONPATH=tests python -m mutation mycobot device       run an edition, and all device suites
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from mutation.listing import lines, page
 from mutation.running import run
-from mutation.suites import SUITES
+from mutation.suites import NAMES
 
 
 def main() -> int:
@@ -21,8 +21,8 @@ def main() -> int:
     given = _arguments()
     places = [
         place
-        for place, make in enumerate(SUITES)
-        if not given.suites or any(word in make().name for word in given.suites)
+        for place, name in enumerate(NAMES)
+        if not given.suites or any(word in name.split(", ") for word in given.suites)
     ]
     began = time.monotonic()
     found = []
@@ -39,7 +39,7 @@ def main() -> int:
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "suites", nargs="*", help="words in the names of the suites to run; default: all"
+        "suites", nargs="*", help="editions, or device, client with a script, codec; default: all"
     )
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--sample", type=int, help="at most this many mutants of each kind")

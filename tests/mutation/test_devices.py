@@ -25,7 +25,15 @@ BOTH = pytest.mark.parametrize("table", TABLES, ids=lambda table: table.edition)
 KINDS = {
     *("sign", "scale", "width", "order", "endianness", "range", "value", "echo", "text"),
     *("LEN", "id", "footer", "header", "no reply", "late reply", "double reply"),
-    *("ignored", "stored wrong", "wrong part", "undefined ack", "malformed input"),
+    *(
+        "ignored",
+        "stored wrong",
+        "wrong part",
+        "wrong ack",
+        "malformed input",
+        "state lost",
+        "stale reply",
+    ),
 }
 
 

@@ -41,6 +41,10 @@ class Fault:
         """Return the reply to bytes that are not a legal request; a correct arm sends nothing."""
         return b""
 
+    def forgets(self, kind: Stimulus) -> bytes:
+        """Return a request that the arm carries out by itself after malformed input."""
+        return b""
+
 
 class BrokenArm:
     """A simulated arm with a fault; a peer."""
@@ -96,18 +100,23 @@ class BrokenArm:
             # What is refuted here is refuted for the inner arm too, whatever comes next.
             self._send(0.0, self._arm.receive(noise) + self._arm.flush())
             kind = kind_of(self._codec.table, noise)
-            self._send(0.0, self._fault.malformed(self._codec, kind, noise))
+            self._malformed(kind, noise)
 
     def _receive(self, data: bytes) -> None:
         try:
             request = self._codec.decode("request", data)
         except ProtocolError:
-            self._send(0.0, self._fault.malformed(self._codec, "illegal value", data))
+            self._malformed("illegal value", data)
             return
         received = self._fault.request(self._codec, request, data)
         answer = self._arm.receive(received) if received else b""
         for sent in self._fault.reply(self._codec, request, answer):
             self._send(sent.delay, sent.data)
+
+    def _malformed(self, kind: Stimulus, data: bytes) -> None:
+        self._send(0.0, self._fault.malformed(self._codec, kind, data))
+        if request := self._fault.forgets(kind):
+            self._arm.receive(request)
 
     def _send(self, delay: float, data: bytes) -> None:
         if data:

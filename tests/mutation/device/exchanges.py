@@ -31,7 +31,8 @@ def distinct(table: Table) -> list[Command]:
         except ProtocolError as error:
             raise AssertionError(f"{command.name}: an illegal request was drawn") from error
 
-    return [command for command in table.commands if is_own(command)]
+    # Nothing is sent for an event.
+    return [command for command in table.commands if command.request and is_own(command)]
 
 
 def reply_fields(command: Command) -> list[Field]:
