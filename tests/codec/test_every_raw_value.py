@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import pytest
@@ -119,6 +120,13 @@ def _codec_of(variant: CommandVariant, codec: Codec) -> Codec:
     return codecs.load(variant.table, codec.name)
 
 
+@lru_cache
+def _nearest(kind: Number) -> list[float]:
+    """Return for each raw value the float nearest to its exact quotient."""
+    words = (word.to_bytes(2, kind.order) for word in range(WORDS))
+    return [kind.unpack(word, 0) * kind.multiply / kind.divide for word in words]
+
+
 def _shares(kinds: list[Number]) -> tuple[list[int], int]:
     """Return the first raw value of each slot, and the number of steps.
 
@@ -141,6 +149,10 @@ def test_every_raw_value_of_every_field_survives_decode_and_encode(
     codec = _codec_of(variant, codec)
     name, way = variant.command.name, variant.direction
     starts, steps = _shares([slot.kind for slot in variant.slots])
+    parts = [
+        (start, slot, variant.variant.fields[slot.field].many, _nearest(slot.kind))
+        for start, slot in zip(starts, variant.slots)
+    ]
     frame = bytearray(variant.frame)
     if codec.name == "native":
         words = range(WORDS)
@@ -149,17 +161,14 @@ def test_every_raw_value_of_every_field_survives_decode_and_encode(
     else:
         words = range(steps)
     for word in words:
-        for start, slot in zip(starts, variant.slots):
+        for start, slot, _, _ in parts:
             raw = (word + start) % WORDS
             frame[slot.position : slot.position + 2] = raw.to_bytes(2, slot.number.order)
         data = bytes(frame)
         values = codec.decode(way, data, of=name).values
-        for slot in variant.slots:
-            number = slot.number
-            value = values[slot.field]
-            value = value[slot.element] if variant.variant.fields[slot.field].many else value
-            # The float nearest to the exact quotient.
-            assert value == number.unpack(data, slot.position) * number.multiply / number.divide
+        for start, slot, many, nearest in parts:
+            value = values[slot.field][slot.element] if many else values[slot.field]
+            assert value == nearest[(word + start) % WORDS]
         assert codec.encode(name, way, values) == data
 
 
