@@ -35,4 +35,6 @@ def _suites() -> Iterator[tuple[str, Callable[[], Suite]]]:
 
 
 # What makes each suite, and its name, in the order of a run.
-NAMES, SUITES = map(tuple, zip(*_suites()))
+_EVERY = tuple(_suites())
+NAMES = tuple(name for name, _ in _EVERY)
+SUITES: tuple[Callable[[], Suite], ...] = tuple(make for _, make in _EVERY)
