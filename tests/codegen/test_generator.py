@@ -72,7 +72,10 @@ def _files(root: Path) -> dict[str, bytes]:
 def test_committed_files_are_fresh(tmp_path: Path) -> None:
     shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
     _generate(tmp_path, seed="1")
-    assert _files(tmp_path) == _files(vectors.ROOT)
+    # The package lists its test suite itself, and is not here; `make lint` compares these pages.
+    suite = "docs/reference/test-suite/"
+    here = _files(vectors.ROOT).items()
+    assert _files(tmp_path) == {name: data for name, data in here if not name.startswith(suite)}
     assert len(_files(tmp_path)) > 30
 
 
