@@ -135,6 +135,15 @@ def test_files_of_killed_exports_are_removed_and_others_are_kept(tmp_path: Path)
     assert files(tmp_path) == [".b.parquet.12345678.cobotwire-tmp"]
 
 
+def test_finished_file_is_kept_until_it_is_published(tmp_path: Path) -> None:
+    finished = AtomicFile(tmp_path / "a.parquet", overwrite=True)
+    finished.file.write(b"whole")
+    finished.finish()
+    AtomicFile(tmp_path / "a.parquet", overwrite=True).discard()
+    finished.publish()
+    assert (tmp_path / "a.parquet").read_bytes() == b"whole"
+
+
 def test_file_that_appears_during_the_export_is_not_replaced(tmp_path: Path) -> None:
     atomic = AtomicFile(tmp_path / "a.parquet", overwrite=False)
     (tmp_path / "a.parquet").write_bytes(b"other")

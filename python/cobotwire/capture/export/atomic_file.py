@@ -55,8 +55,11 @@ class AtomicFile:
             stored = open(self._temporary, "xb")  # noqa: SIM115  (closed by finish and discard)
         except OSError as error:
             raise output_error(path, error) from error
+        self._lock: int | None = None
         if fcntl is not None:
-            fcntl.flock(stored, fcntl.LOCK_EX)
+            # Held until the file has its final name, which is later than it is closed.
+            self._lock = os.dup(stored.fileno())
+            fcntl.flock(self._lock, fcntl.LOCK_EX)
         self.file = WritableFile(stored)
 
     def _refuse_existing(self) -> None:
@@ -90,6 +93,7 @@ class AtomicFile:
             self._published = True
         except OSError as error:
             raise output_error(self.path, error) from error
+        self._unlock()
 
     def discard(self) -> None:
         """Remove the temporary file; do nothing after :meth:`publish`."""
@@ -97,6 +101,12 @@ class AtomicFile:
         if not self._published:
             with suppress(OSError):
                 self._temporary.unlink()
+        self._unlock()
+
+    def _unlock(self) -> None:
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
 
 
 class WritableFile(io.BufferedIOBase):
