@@ -62,7 +62,8 @@ def test_interrupted_export_leaves_no_final_file_and_can_be_repeated(
 def limited(*words: str | Path, limit: int) -> subprocess.CompletedProcess[str]:
     """Run the command line in a process whose files may have ``limit`` bytes: a full disk."""
     script = (
-        "import resource, sys\n"
+        # Python would write a part of each compiled file, and use it in later processes.
+        "import resource, sys\nsys.dont_write_bytecode = True\n"
         f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))\n"
         "from cobotwire.cli import main\n"
         "main()"
