@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from textwrap import shorten
 
 from defects.judging import Judgement, Message
 from defects.key import SUBJECTS
@@ -60,7 +61,7 @@ def _message(judgement: Judgement) -> str:
     text = f"`{chosen.case}` {chosen.command}: {chosen.text}".replace("|", "/")
     # Programs are built in temporary folders.
     text = re.sub(r"/\S*/(?=firmware-|client-)", "", text)
-    text = text if len(text) <= MOST else f"{text[: MOST - 3].rstrip()}..."
+    text = shorten(text, MOST, placeholder=" ...")
     others = len(judgement.messages) - 1
     return f"{text} (+{others})" if others else text
 
