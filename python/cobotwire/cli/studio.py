@@ -19,7 +19,11 @@ from cobotwire.studio.extras import check_extra
 )
 @click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen on.")
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=0, help="The TCP port [default: a free one]."
+    "--http-port",
+    "port",
+    type=click.IntRange(0, 65535),
+    default=0,
+    help="The TCP port of the page [default: a free one].",
 )
 @click.option("--allow-motion", is_flag=True, help="Let the page send more than queries.")
 @click.option("--no-browser", is_flag=True, help="Print the address, but open no browser.")

@@ -136,6 +136,8 @@ def test_it():
         "cobotwire.conformance.pytest_plugin",
         "cobotwire.conformance.report",
         "cobotwire.conformance.suite",
+        "cobotwire.protocol",
+        "cobotwire.protocol.light",
         "cobotwire.simulator",
         "cobotwire.simulator.testing",
         "cobotwire.simulator.testing.plugin",
