@@ -109,7 +109,8 @@ def test_lost_transport_is_aligned_whatever_part_of_the_longest_request_got_thro
         codec.encode("stop", "request", []),
     )
     alignment = Alignment(codec)
-    alignment.lose(last)
+    alignment.last_request = last
+    alignment.lose()
     written = alignment.align + stop
     for request in (longest, last):
         for size in range(1, len(request)):

@@ -59,7 +59,7 @@ class Sharing(RuleBasedStateMachine):
         self.count = 0
         self.known: list[Known] = []
 
-    @precondition(lambda self: len(self.exchange._queue) < 3)
+    @precondition(lambda self: len(self.exchange._turns.queue) < 3)
     @rule(name=st.sampled_from(REQUESTS), joint=st.integers(1, 2))
     def submit(self, name: str, joint: int) -> None:
         """Submit a request of another caller."""
@@ -80,7 +80,7 @@ class Sharing(RuleBasedStateMachine):
         data = self.exchange.outgoing(self.now, drained=True)
         if not data:
             return
-        pending = self.exchange._last
+        pending = self.exchange.sent_last
         assert isinstance(pending, PendingRequest)
         known = next(known for known in self.known if known.pending is pending)
         self.count += 1

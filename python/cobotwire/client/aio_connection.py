@@ -236,23 +236,23 @@ class AsyncConnection:
 
         If anything but the reply has come then, the request goes on as any other does.
         """
-        exchange, request, polled = self._exchange, pending.request, self._polled
+        alone, request, polled = self._exchange.alone, pending.request, self._polled
         if polled is None or not request.plain or self._lost or not self.listeners.silent:
             return False
         now = pending.queued_at
-        alone = exchange.begin_alone(request, now, pending.policy.grace) if polled.idle else None
-        if alone is None:
+        begun = alone.begin(request, now, pending.policy.grace) if polled.idle else None
+        if begun is None:
             return False
         self._starting = pending
         try:
             found = polled.swap(request.frame, request.command.name, self._finish_write)
         except BaseException:
-            exchange.settle(alone)
+            alone.settle(begun)
             raise
         if found is None:
-            exchange.end_unsent()
+            alone.end_unsent()
             return False
-        events = exchange.resume(alone, pending, _events(found), now)
+        events = alone.resume(begun, pending, _events(found), now)
         self._set_timer(now)
         if events:
             self.listeners.received(events, now)

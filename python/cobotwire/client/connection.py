@@ -25,7 +25,8 @@ from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.codec.interface import Event, Frame
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
-from cobotwire.session.exchange import DRAIN_SECONDS, Alone
+from cobotwire.session.alone import Begun
+from cobotwire.session.turns import DRAIN_SECONDS
 from cobotwire.transport import forks
 from cobotwire.transport.interface import LendingTransport, PollableTransport, Transport
 from cobotwire.transport.timing import times_of
@@ -128,8 +129,8 @@ class Connection:
         Returns:
             None if the request was not sent, because it is not alone on the line.
         """
-        exchange = self._exchange
-        alone: Alone | None = None
+        alone = self._exchange.alone
+        begun: Begun | None = None
         pending: PendingRequest | None = None
         seconds = request.command.deadline_ms / 1000 if wait is None else wait
         # The first attempt takes at least the share of all of them.
@@ -137,8 +138,8 @@ class Connection:
         try:
             with self._state:
                 if self._leader is None:
-                    alone = exchange.begin_alone(request, self.now(), policy.grace)
-                if alone is None:
+                    begun = alone.begin(request, self.now(), policy.grace)
+                if begun is None:
                     return None
                 self._leader = threading.get_ident()
             with self._reading:
@@ -151,27 +152,27 @@ class Connection:
                     self._finish_write,
                 )
                 if found is None:
-                    exchange.end_unsent()
+                    alone.end_unsent()
                     return None
                 if isinstance(found, tuple):
                     frame, fields = found
-                    if exchange.end_alone(frame):
+                    if alone.end(frame):
                         return fields
                     found = [frame]
                 with self._state:
                     now = self.now()
-                    pending = PendingRequest(request, wait, policy, alone[1])
-                    events = exchange.resume(alone, pending, found, now)
+                    pending = PendingRequest(request, wait, policy, begun[1])
+                    events = alone.resume(begun, pending, found, now)
                 self.listeners.received(events, now)
             self._wait(pending)
             return pending.result()
         finally:
             if pending is not None:
                 self._leave(pending)
-            elif alone is not None:
-                if exchange.is_alone:
+            elif begun is not None:
+                if alone.under_way:
                     with self._state:
-                        exchange.settle(alone)
+                        alone.settle(begun)
                 self._resign()
 
     def _finish_write(self, request: bytes, written: int) -> None:

@@ -52,6 +52,7 @@ class Alignment:
 
     Attributes:
         align: what must be written before the next request; empty on an aligned line.
+        last_request: the frame that was sent last; empty if none was since the transport was lost.
     """
 
     def __init__(self, codec: Codec) -> None:
@@ -60,6 +61,7 @@ class Alignment:
         # Every part that the peer may hold: one, or several if it is not known what was written.
         self._held: tuple[Part, ...] = ()
         self.align = b""
+        self.last_request = b""
 
     @property
     def held(self) -> tuple[Part, ...]:
@@ -91,16 +93,20 @@ class Alignment:
             self.hold((Part(part.request, part.written + written),))
         return 0
 
-    def lose(self, last: bytes) -> None:
-        """Note that the transport is gone; ``last`` is the last request that was written.
+    def lose(self) -> None:
+        """Note that the transport is gone.
 
-        This request, and earlier ones that were still on their way, may be cut anywhere.
+        The last request, and earlier ones that were still on their way, may be cut anywhere.
         """
+        last = self.last_request
+        if not last:
+            return
         longest = _longest(self._codec.table)
         width, order = self._format.length_number
         begun = last[: self._format.length_at] + longest.to_bytes(width, order)
         parts = Part(begun, len(begun)), *_all_parts(self._format, last)
         self.hold(self._held + parts)
+        self.last_request = b""
 
     def hold(self, parts: tuple[Part, ...]) -> None:
         """Note every part that the peer may hold."""
