@@ -41,9 +41,9 @@ def results(scripts: list[list[Any]], *, alone: bool) -> list[object]:
         MyCobot(peer.url, timeout=0.05, retry=FAST, codec="native") as arm,
     ):
         connection = arm._connection
-        assert connection._swap is not None
+        assert connection._native is not None
         if not alone:
-            connection._swap = None
+            connection._native = None
         for _ in scripts:
             try:
                 found.append(arm.get_angles())
@@ -124,7 +124,8 @@ def test_interrupted_request_is_noted_for_the_next_session() -> None:
         def interrupted(*arguments: object) -> None:
             raise KeyboardInterrupt
 
-        connection._swap = interrupted
+        assert connection._native is not None
+        connection._native.swap = interrupted
         with pytest.raises(KeyboardInterrupt):
             arm.get_angles()
         assert [late.request for late in exchange.leave(connection.now()).late] == [REQUEST]
@@ -138,11 +139,12 @@ def test_traffic_that_somebody_reads_is_reported_step_by_step(
     traffic: list[object] = []
     calls: list[object] = []
     with ScriptedPeer([ANGLES]) as peer, MyCobot(peer.url, record=record, codec="native") as arm:
-        native = arm._connection._swap
+        native = arm._connection._native
         # A recording needs the time of each write and read.
         assert (native is None) == (reader == "recording")
         if native is not None:
-            arm._connection._swap = lambda *given: calls.append(given) or native(*given)  # type: ignore[func-returns-value]
+            swap = native.swap
+            native.swap = lambda *given: calls.append(given) or swap(*given)  # type: ignore[func-returns-value]
         if reader == "listener":
             arm.add_traffic_listener(traffic.append)
         if reader == "log":

@@ -198,8 +198,8 @@ def test_client_of_the_parent_fails_clearly_in_the_child(kind: str) -> None:
 
 def test_client_fails_in_the_child_while_a_thread_of_the_parent_is_within_a_call() -> None:
     with PEERS["pty"]() as peer, MyCobot(peer.url, timeout=1.0) as arm:
-        connection = arm._connection
-        with connection._state, connection._writing, connection._transport._reading:  # type: ignore[attr-defined]
+        steps, transport = arm._connection._steps, arm._connection._transport
+        with steps.state, steps.writer.lock, transport._reading:  # type: ignore[attr-defined]
             # Another thread forks; in its child, a thread that does not exist holds these locks.
             results: list[str] = []
 

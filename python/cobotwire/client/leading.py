@@ -1,0 +1,71 @@
+"""Which of the waiting threads reads for all.
+
+One of them leads. When its own reply has come, another takes over. Which thread leads is only a
+number, and nothing relies on it: Ctrl-C may take the leader away before it can resign. A leader
+that makes no progress is replaced, and if it was only slow, the lock of the reader keeps the bytes
+in order.
+"""
+
+from __future__ import annotations
+
+import threading
+
+from cobotwire.session import Pending
+
+# The longest that the others wait before they check whether a thread reads.
+CHECK_SECONDS = 0.05
+
+
+class Leading:
+    """The thread that leads, and those that follow it.
+
+    Attributes:
+        leader: which thread leads; None: no thread does.
+        turns: how often leaders have read; a leader that does not count on is gone.
+    """
+
+    def __init__(self, state: threading.Lock) -> None:
+        """Note the lock that is held while requests end, so that no follower misses its own end."""
+        self._state = state
+        self.leader: int | None = None
+        self.turns = 0
+        self._followers: list[threading.Lock] = []
+
+    def leads(self) -> bool:
+        """Return whether this thread leads; it does from now on if no other one does."""
+        me = threading.get_ident()
+        if self.leader != me:
+            with self._state:
+                if self.leader is None:
+                    self.leader = me
+        return self.leader == me
+
+    def resign(self) -> None:
+        """Let another thread lead, if this one does."""
+        if self.leader == threading.get_ident():
+            self.leader = None
+            self.wake_followers()
+
+    def follow(self, pending: Pending) -> None:
+        """Wait until the leader has something, or another thread must lead."""
+        baton = threading.Lock()
+        baton.acquire()
+        with self._state:
+            leader, turns = self.leader, self.turns
+            if pending.done or leader is None:
+                return
+            self._followers.append(baton)
+        if not baton.acquire(timeout=CHECK_SECONDS):
+            with self._state:
+                if (leader, turns) == (self.leader, self.turns):
+                    # Ctrl-C took it out of its loop before it could resign, or it is very slow.
+                    self.leader = None
+
+    def wake_followers(self) -> None:
+        """Have each follower check whether its request is done."""
+        if not self._followers:
+            return
+        with self._state:
+            batons, self._followers = self._followers, []
+        for baton in batons:
+            baton.release()

@@ -1,0 +1,185 @@
+"""The exchange over one transport, step by step: read, let time pass, write the next request.
+
+Writing is separate from reading. A thread that sends a one-way request writes it at once. Of the
+threads that wait for replies, one leads: it reads for all, feeds the exchange, sends the next
+request and wakes the others. So a lone caller reads its own reply without a switch of threads, and
+a one-way request never waits for another thread's reply.
+
+Ctrl-C may come anywhere. Locks are taken by ``with`` and held for moments, so none stays locked.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+from cobotwire.client.leading import Leading
+from cobotwire.client.traffic import TrafficListeners
+from cobotwire.client.writing import Writer
+from cobotwire.protocol.errors import LinkError
+from cobotwire.session import Exchange, Pending, PendingRequest
+from cobotwire.transport.interface import Transport
+
+# The longest that the reading thread waits before it checks whether others have queued a request.
+SLICE_SECONDS = 0.02
+# How long the leader leaves the line to a thread that writes, before it reads again.
+TURN_SECONDS = 0.0005
+# A write that takes longer than this was held up by a full line.
+SLOW_WRITE_SECONDS = 0.005
+
+
+class Steps:
+    """The steps of an exchange; every method may be called from any thread.
+
+    Attributes:
+        state: held around every step of the exchange.
+        reading: held from reading bytes until they are sorted and reported, so that they stay in
+            order. Reentrant, since a traffic listener may call the arm. Taken before the lock of
+            the writer, which is taken before ``state``.
+        leading: which thread reads for all.
+        writer: writes requests.
+    """
+
+    def __init__(
+        self,
+        transport: Transport,
+        exchange: Exchange,
+        listeners: TrafficListeners,
+        now: Callable[[], float],
+    ) -> None:
+        self._transport = transport
+        self.exchange = exchange
+        self.listeners = listeners
+        self.now = now
+        self.writer = Writer(transport, exchange.alignment)
+        self.state = threading.Lock()
+        self.reading = threading.RLock()
+        self.leading = Leading(self.state)
+
+    def leave_to_parent(self) -> None:
+        """Free what other threads of the parent held when it forked."""
+        self.writer.lock = threading.Lock()
+        self.state, self.reading = threading.Lock(), threading.RLock()
+        self.leading = Leading(self.state)
+
+    def start(self, pending: PendingRequest) -> None:
+        """Send a request at once if nothing else is under way; otherwise queue it.
+
+        What has come already is read first, without waiting.
+        """
+        exchange, writer = self.exchange, self.writer
+        if not self.leading.leads():
+            with self.state:
+                exchange.enqueue(pending)
+            return
+        with self.reading:
+            self.leading.turns += 1
+            data = self._read(0.0)
+            if data or writer.lock.locked():
+                with self.state:
+                    exchange.enqueue(pending)
+                self._advance(data)
+                return
+            with writer.lock:
+                with self.state:
+                    now = self.now()
+                    frame = exchange.begin(pending, now)
+                align = self._write_request(pending, frame, now) if frame else None
+            if align is not None:
+                self.listeners.sent(align, frame)
+
+    def wait(self, pending: Pending) -> None:
+        """Lead or follow until a request is done."""
+        while not pending.done:
+            if self.leading.leads():
+                self.turn(SLICE_SECONDS)
+            else:
+                self.leading.follow(pending)
+
+    def leave(self, pending: Pending) -> None:
+        """Have Ctrl-C and a vanished transport leave everything ready for the next call."""
+        if not pending.done:
+            with self.state:
+                self.exchange.give_up(pending)
+        self.leading.resign()
+
+    def turn(self, longest: float) -> None:
+        """Read once, let time pass, and send the request that is next; this thread leads."""
+        with self.reading:
+            self.leading.turns += 1
+            with self.state:
+                idle = self.exchange.idle_seconds(self.now())
+            self._advance(self._read(longest if idle is None else min(idle, longest)))
+
+    def drain(self, until: float) -> None:
+        """Read what has come, so that no buffer overflows while only one-way requests are sent."""
+        with self.reading:
+            while data := self._transport.read(0):
+                now = self.now()
+                with self.state:
+                    events = self.exchange.receive(data, now)
+                self.listeners.received(events, now)
+                if now >= until:
+                    return
+
+    def _read(self, longest: float) -> bytes:
+        try:
+            return self._transport.read(longest)
+        except LinkError as error:
+            self._lose(error)
+            raise
+
+    def _advance(self, data: bytes) -> None:
+        """Take what was read, let time pass, and send the request that is next."""
+        exchange, now = self.exchange, self.now()
+        with self.state:
+            events, outgoing = exchange.advance(data, now)
+        if outgoing:
+            if self.writer.lock.locked():
+                # Another thread writes, perhaps to a full line. Deadlines go on meanwhile.
+                time.sleep(TURN_SECONDS)
+            else:
+                self._send_request(drained=not data)
+        if events:
+            self.leading.wake_followers()
+            self.listeners.received(events, now)
+
+    def _send_request(self, drained: bool) -> None:
+        with self.writer.lock:
+            with self.state:
+                now = self.now()
+                data = self.exchange.outgoing(now, drained)
+                pending = self.exchange.sent_last
+            if not data or pending is None:
+                return
+            align = self._write_request(pending, data, now)
+        if align is not None:
+            self.listeners.sent(align, data)
+
+    def _write_request(self, pending: PendingRequest, data: bytes, now: float) -> bytes | None:
+        """Write a request that the exchange gave at ``now``; the caller holds the writer's lock.
+
+        Returns:
+            As :meth:`Writer.write`; None if the request was not written.
+        """
+        writer = self.writer
+        try:
+            return writer.write_if_free(data) if pending.repeated else writer.write(data)
+        except LinkError as error:
+            with self.state:
+                self.exchange.fail_waiting(error)
+            return None
+        finally:
+            if self.now() - now > SLOW_WRITE_SECONDS:
+                with self.state:
+                    self.exchange.written(pending, self.now())
+
+    def _lose(self, error: LinkError) -> None:
+        """End every request: the transport is gone."""
+        now = self.now()
+        with self.state:
+            events = self.exchange.fail(error, now)
+        self.leading.wake_followers()
+        self.listeners.received(events, now)
+        self.listeners.lost(error)
