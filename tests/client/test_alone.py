@@ -62,10 +62,11 @@ async def async_results(scripts: list[list[Any]], *, alone: bool) -> list[object
     found: list[object] = []
     with ScriptedPeer(*scripts) as peer:
         async with AsyncMyCobot(peer.url, timeout=0.05, retry=FAST, codec="native") as arm:
-            connection = arm._connection
-            assert connection._polled is not None
+            steps = arm._connection._steps
+            assert steps is not None
+            assert steps.native is not None
             if not alone:
-                connection._polled = None
+                steps.native = None
             for _ in scripts:
                 try:
                     found.append(await arm.get_angles())

@@ -1,0 +1,75 @@
+"""Write requests on an event loop, or remember what the peer has of one that was cut."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+
+from cobotwire.client.traffic import TrafficListeners
+from cobotwire.protocol.errors import LinkError
+from cobotwire.session.alignment import Alignment
+from cobotwire.transport.interface import AsyncTransport
+
+Done = Callable[[LinkError | None], None]
+
+
+class AsyncWriter:
+    """Writes requests, and before them what ends an earlier request that was cut."""
+
+    def __init__(
+        self, transport: AsyncTransport, alignment: Alignment, listeners: TrafficListeners
+    ) -> None:
+        self._transport = transport
+        self._alignment = alignment
+        self._listeners = listeners
+
+    async def write(self, request: bytes) -> None:
+        """Write a request, and wait until all of it was taken.
+
+        Raises:
+            LinkError: the transport is gone, or does not take the bytes.
+        """
+        over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        if not self.begin(request, partial(_end_wait, over)):
+            await over
+
+    def begin(self, request: bytes, done: Done) -> bool:
+        """Write a request; return whether it was taken at once. Otherwise ``done`` is called.
+
+        What was cut is noted even if the caller was cancelled meanwhile.
+
+        Raises:
+            LinkError: the transport is gone.
+        """
+        align = self._alignment.align
+        try:
+            taken = self._transport.write(align + request, partial(self.end, align, request, done))
+        except LinkError as error:
+            error.written = self._alignment.cut(align, request, error.written)
+            raise
+        if taken:
+            self._written(align, request)
+        return taken
+
+    def end(self, align: bytes, request: bytes, done: Done, error: LinkError | None) -> None:
+        """Note the end of a write that was not taken at once."""
+        if error is None:
+            self._written(align, request)
+        else:
+            error.written = self._alignment.cut(align, request, error.written)
+        done(error)
+
+    def _written(self, align: bytes, request: bytes) -> None:
+        if align:
+            self._alignment.end()
+        self._listeners.sent(align, request)
+
+
+def _end_wait(over: asyncio.Future[None], error: LinkError | None) -> None:
+    if over.done():
+        return
+    if error is None:
+        over.set_result(None)
+    else:
+        over.set_exception(error)
