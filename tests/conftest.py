@@ -56,6 +56,11 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
+def pytest_unconfigure() -> None:
+    """Let objects be freed when the interpreter ends; some libraries report those that are not."""
+    gc.unfreeze()
+
+
 @pytest.fixture(params=["reference", "native"])
 def codec(request: pytest.FixtureRequest) -> Codec:
     """Run the test on both codecs. A missing binary is a failure, not a skip."""

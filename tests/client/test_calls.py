@@ -53,8 +53,8 @@ def test_readme_example_runs_to_its_end(
     # The arm ignores a target beyond a limit, and never reaches it.
     simulated.state.maximum[2] = limit
     text = (vectors.ROOT / "README.md").read_text()
-    example = text.split("```python\n")[1].split("```")[0]
-    assert "/dev/ttyACM0" in example
+    blocks = [part.split("```")[0] for part in text.split("```python\n")[1:]]
+    [example] = [block for block in blocks if "/dev/ttyACM0" in block]
     exec(compile(example.replace("/dev/ttyACM0", server.url), "README.md", "exec"), {})
     assert "Coords(x=" in capsys.readouterr().out
 

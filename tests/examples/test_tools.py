@@ -115,7 +115,8 @@ def test_http_server_reads_moves_and_refuses(arm: tuple[SimulatedArm, str]) -> N
             try:
                 ask("/angles", b"[160, 0, 0, 0, 0, 0]")
             except urllib.error.HTTPError as error:
-                moving.append(error.code)
+                with error:
+                    moving.append(error.code)
 
         motion = Thread(target=move)
         motion.start()
@@ -127,7 +128,8 @@ def test_http_server_reads_moves_and_refuses(arm: tuple[SimulatedArm, str]) -> N
         for path, data, code in [("/angles", b"[999]", 400), ("/nothing", None, 404)]:
             with pytest.raises(urllib.error.HTTPError) as caught:
                 ask(path, data)
-            assert caught.value.code == code
+            with caught.value as refused:
+                assert refused.code == code
 
 
 def test_keys_of_a_terminal_jog_the_arm(arm: tuple[SimulatedArm, str]) -> None:

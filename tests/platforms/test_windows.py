@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -15,6 +16,7 @@ pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="removes what Linux has, and looks at /proc"
 )
 
+TESTS = Path(__file__).parents[1]
 # The module of POSIX ports is chosen by os.name, so nothing imports it on Windows. The editions are
 # generated from the same templates: one of them is enough.
 IMPORT_ALL = """
@@ -82,7 +84,8 @@ def as_on_windows(script: str, *arguments: str, extras: str = "") -> list[str]:
     """Run a script in such a process; return the lines that it printed."""
     first = f"from platforms import windows; windows.pretend({extras})\n"
     command = [sys.executable, "-c", first + script]
-    done = run(*command, *arguments)
+    path = os.pathsep.join([str(TESTS), os.environ.get("PYTHONPATH", "")])
+    done = run(*command, *arguments, env={**os.environ, "PYTHONPATH": path})
     assert done.stderr == ""
     return done.stdout.splitlines()
 

@@ -17,6 +17,10 @@ from cobotwire.session.request import EncodedRequest, RequestEncoder
 class NotPermitted(CobotwireError):
     """A page may not send what it wants to send; nothing was sent."""
 
+    def __init__(self, why: str) -> None:
+        super().__init__(why)
+        self.why = why
+
 
 class Control:
     """Which page may send, and whether it may move the arm.

@@ -22,6 +22,8 @@ RESERVED_FIELDS = _ANNOTATIONS | {
     "reply_type",
     "request_type",
     "result",
+    "result_from",
+    "result_of",
     "self",
     "text_values",
     "values",
