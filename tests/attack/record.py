@@ -6,6 +6,9 @@ import itertools
 import socket
 import threading
 import time
+from bisect import insort
+from collections.abc import Callable
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.transport import OpenedTransport, open_transport
@@ -13,6 +16,9 @@ from cobotwire.transport.descriptor import DescriptorTransport
 
 Ending = Literal["value", "error", "interrupted", "exception", "lost"]
 SMALL_BUFFER = 1024
+# Of a native call that sends a request: timeout, request, command, lock, function for the rest. One
+# that only reads has fewer.
+SWAP_ARGUMENTS = 5
 
 
 class Call(NamedTuple):
@@ -115,10 +121,43 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
 
     own = vars(transport)
     own["_send"] = observed
+    own["lend"] = partial(_swap_observed, record, transport.lend)
+    own["lend_now"] = partial(_swap_observed, record, transport.lend_now)
     if small:
         own["_connect"] = connected
         _shrink(transport, transport.fileno() or -1)
     return transport
+
+
+def _swap_observed(
+    record: Record, lend: Callable[..., Any], call: Callable[..., Any], *arguments: Any
+) -> Any:
+    """Lend the descriptor; record the request if the native call sends one."""
+    if len(arguments) < SWAP_ARGUMENTS:
+        return lend(call, *arguments)
+    timeout, request, of, writing, finish = arguments
+    parts = []
+
+    def finish_observed(data: bytes, written: int) -> object:
+        # The rest is sent as any other bytes are.
+        parts.append(written)
+        record.bytes_taken += written
+        return finish(data, written)
+
+    handed = (time.monotonic(), request)
+    record.handed.append(handed)
+    sent = True
+    try:
+        found = lend(call, timeout, request, of, writing, finish_observed)
+        sent = found is not None
+        return found
+    finally:
+        if not sent:
+            record.handed.remove(handed)
+        elif not parts:
+            record.bytes_taken += len(request)
+            # Other threads may have written while this one waited.
+            insort(record.taken, handed)
 
 
 def _shrink(transport: OpenedTransport, descriptor: int) -> None:
