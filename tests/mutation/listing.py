@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from mutation.running import Verdicts
 from mutation.suite import Outcome, by_kind, total
@@ -15,6 +16,49 @@ it is *unobservable*: on the line, it cannot be distinguished from a correct sub
 come from an oracle that shares no code with the testers: it has long random conversations with the
 correct subject and with the mutant, and compares bytes and times.
 """
+
+
+BEGIN = "<!-- mutants: written by make conform WRITE=1 -->"
+END = "<!-- end of mutants -->"
+
+
+class Counts(NamedTuple):
+    """How many mutants of a suite are killed and excused, and how many there are."""
+
+    name: str
+    killed: int
+    excused: int
+    every: int
+
+    def __str__(self) -> str:
+        excused = f" + {self.excused}" if self.excused else ""
+        return f"{self.killed}{excused} of {self.every}"
+
+
+def counted(verdicts: Verdicts) -> Counts:
+    """Return the counts of a suite."""
+    return Counts(verdicts.name, *total(verdicts.outcomes))
+
+
+def table(all_counts: Iterable[Counts]) -> str:
+    """Return a table with a row for each edition and a column for each tester."""
+    cells: dict[str, dict[str, Counts]] = {}
+    for counts in all_counts:
+        tester, _, edition = counts.name.partition(", ")
+        cells.setdefault(edition, {})[tester] = counts
+    testers = ("device", "client with a script", "client without a script", "codec")
+    rows = ["| edition | " + " | ".join(testers) + " |", "|---|" + "--:|" * len(testers)]
+    for edition, row in cells.items():
+        shown = (str(row.get(tester, "")) for tester in testers)
+        rows.append(f"| {edition} | " + " | ".join(shown) + " |")
+    return "\n".join(rows)
+
+
+def rewritten(document: str, text: str) -> str:
+    """Return the document with another table."""
+    before, _, rest = document.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return f"{before}{BEGIN}\n\n{text}\n\n{END}{after}"
 
 
 def lines(verdicts: Verdicts) -> Iterator[str]:

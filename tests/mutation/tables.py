@@ -86,7 +86,7 @@ def _chosen(variant: Variant, *indices: int) -> bool:
 
 def _of_field(field: Field) -> Iterator[tuple[str, str, Field]]:
     for kind, text, change in NUMBERS:
-        if field.choices and kind in NOT_USED_WITH_LISTS:
+        if field.kind in ("bytes", "text") or (field.choices and kind in NOT_USED_WITH_LISTS):
             continue
         wrong = _each_number(field, change)
         if wrong != field:

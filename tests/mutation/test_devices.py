@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from cobotwire import editions
 from cobotwire.editions import mycobot, mycobot280
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import SteppedClock
@@ -35,6 +36,8 @@ KINDS = {
         "stale reply",
     ),
 }
+
+FRAMING = {"LEN", "id", "footer", "check", "header"}
 
 
 @pytest.fixture(scope="module", params=TABLES, ids=lambda table: table.edition)
@@ -82,6 +85,16 @@ def test_each_sampled_mutant_is_killed_or_excused(suite: DeviceSuite) -> None:
     for case in sampled(suite.cases(), 2, seed=7):
         outcome = suite.judge(case)
         assert outcome.killed_by or outcome.reason, (case.id, outcome.crash)
+
+
+# Of unknown geometry; and with a check value, events and fields of bytes.
+@pytest.mark.parametrize("edition", ["mypalletizer260", "mercury_a1"])
+def test_wrong_frame_of_another_edition_is_killed_or_excused(edition: str) -> None:
+    suite = DeviceSuite(editions.load(edition).TABLE)
+    cases = [case for case in sampled(suite.cases(), 1, seed=7) if case.kind in FRAMING]
+    outcomes = [suite.judge(case) for case in cases]
+    assert [o.case.id for o in outcomes if not (o.killed_by or o.reason)] == []
+    assert sum(bool(o.killed_by) for o in outcomes) > len(outcomes) / 2
 
 
 def test_correct_device_passes_on_a_clean_line_and_a_noisy_one(suite: DeviceSuite) -> None:

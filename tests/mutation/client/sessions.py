@@ -9,8 +9,8 @@ from cobotwire.conformance.client import ScriptLine
 from cobotwire.conformance.codec.questions.frames import frame_of
 from cobotwire.conformance.samples import (
     RawValues,
-    named_values,
     ordinary,
+    physical_values,
 )
 from cobotwire.protocol.table import Command, Table, Variant
 from cobotwire.session import text
@@ -50,9 +50,15 @@ class Session(NamedTuple):
 
     @property
     def other(self) -> Command:
-        """A query with another id."""
-        role = "powered" if self.command.role != "powered" else "joints"
-        return self.table.in_role(role)  # type: ignore[arg-type]
+        """A query with another id and without arguments, such as that of the power."""
+        roles = ("powered", "joints")
+        queries = sorted(
+            (c for c in self.table.commands if c.safety == "query" and c.requires_reply),
+            key=lambda c: roles.index(c.role) if c.role in roles else len(roles),
+        )
+        return next(
+            c for c in queries if c.id != self.command.id and not any(v.fields for v in c.request)
+        )
 
     @property
     def query(self) -> bytes:
@@ -61,7 +67,7 @@ class Session(NamedTuple):
 
     def script(self, *between: ScriptLine) -> tuple[ScriptLine, ...]:
         """Return the script: query, request, query."""
-        values = tuple(named_values(self.variant, self.raw_values).values())
+        values = tuple(physical_values(self.variant, self.raw_values).values())
         query_line = ScriptLine(self.other, (), "before")
         return (query_line, ScriptLine(self.command, values, "the call"), *between, query_line)
 
@@ -77,7 +83,7 @@ def sessions(table: Table) -> list[Session]:
     for command in table.commands:
         for index, variant in enumerate(command.request):
             session = Session(table, command, variant, index, ordinary(variant))
-            values: list[Any] = list(named_values(variant, session.raw_values).values())
+            values: list[Any] = list(physical_values(variant, session.raw_values).values())
             # Skip a variant that no values select, because an earlier one allows them.
             if codec.encode(command.name, "request", values) == session.frame:
                 found.append(session)

@@ -8,8 +8,9 @@ from typing import Any
 
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec.adapter.ours import OurCodec
-from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.conformance.codec.questions.question import Json, hexed
 from cobotwire.protocol.table import Case, Field, Number, Table, Variant
+from mutation.device.cells import checked
 
 
 class Altered(OurCodec):
@@ -32,7 +33,7 @@ class Altered(OurCodec):
 Make = Callable[[Table], OurCodec]
 
 
-def _decoding(change: Callable[[Table, bytes], bytes]) -> Make:
+def decoding(change: Callable[[Table, bytes], bytes]) -> Make:
     """Make a codec that decodes other bytes than it is given."""
 
     def make(table: Table) -> OurCodec:
@@ -59,25 +60,27 @@ def _rejecting(change: Callable[[Json], Json]) -> Make:
     return make
 
 
-def _encoding(change: Callable[[bytes], bytes]) -> Make:
+def encoding(change: Callable[[Table, bytes], bytes]) -> Make:
     """Make a codec that encodes other bytes."""
 
     def make(table: Table) -> OurCodec:
         def answer(question: Json, answer: Json) -> Json:
             if "bytes" not in answer:
                 return answer
-            return {"bytes": change(bytes.fromhex(answer["bytes"])).hex()}
+            return {"bytes": change(table, bytes.fromhex(answer["bytes"])).hex()}
 
         return Altered(table, answer=answer)
 
     return make
 
 
-def _right_footer(table: Table, data: bytes) -> bytes:
+def _right_end(table: Table, data: bytes) -> bytes:
+    """Return the bytes with the check and the footer that their LEN calls for."""
     frame = table.frame
     end = frame.overhead + frame.read_length(data) if len(data) > frame.length_at else 0
-    if 0 < end <= len(data) and frame.check is None:
-        return data[: end - 1] + table.frame.footer + data[end:]
+    body = data[: max(0, end - frame.check_size)]
+    if frame.data_at <= len(body) and end <= len(data):
+        return body + frame.end(body) + data[end:]
     return data
 
 
@@ -180,16 +183,26 @@ def _unbounded(table: Table, lists: bool) -> Table:
     return replace(table, commands=tuple(commands))
 
 
+def _with_length(step: int) -> Callable[[Table, bytes], bytes]:
+    """Change LEN, and the check that covers it."""
+
+    def change(table: Table, data: bytes) -> bytes:
+        frame = table.frame
+        return checked(frame, frame.with_length(data, frame.read_length(data) + step))
+
+    return change
+
+
 def _shifted(answer: Json) -> Json:
     return {**answer, "offset": answer.get("offset", 0) + 1}
 
 
 ANSWERS: tuple[tuple[str, Make], ...] = (
-    ("ignores the footer", _decoding(_right_footer)),
-    ("ignores the header", _decoding(_right_header)),
-    ("ignores LEN", _decoding(_right_length)),
-    ("ignores bytes after the frame", _decoding(_no_rest)),
-    ("searches the bytes for the frame", _decoding(_first_header)),
+    ("ignores check and footer", decoding(_right_end)),
+    ("ignores the header", decoding(_right_header)),
+    ("ignores LEN", decoding(_right_length)),
+    ("ignores bytes after the frame", decoding(_no_rest)),
+    ("searches the bytes for the frame", decoding(_first_header)),
     ("ignores the command that the bytes must be", _unnamed),
     ("reports the byte after the wrong one", _rejecting(_shifted)),
     ("reports one reason for all", _rejecting(lambda answer: {**answer, "error": "bad-value"})),
@@ -197,12 +210,12 @@ ANSWERS: tuple[tuple[str, Make], ...] = (
     ("rounds ties away from zero", _rounding(_half_up)),
     ("ignores bounds", lambda t: OurCodec(ReferenceCodec(_unbounded(t, lists=False)))),
     ("ignores lists", lambda t: OurCodec(ReferenceCodec(_unbounded(t, lists=True)))),
-    ("writes another footer", _encoding(lambda data: data[:-1] + b"\xfb")),
-    ("leaves the footer out", _encoding(lambda data: data[:-1])),
-    ("counts the header in LEN", _encoding(lambda d: d[:2] + bytes([d[2] + 2]) + d[3:])),
-    ("does not count the footer in LEN", _encoding(lambda d: d[:2] + bytes([d[2] - 1]) + d[3:])),
-    ("writes one header byte", _encoding(lambda data: data[1:])),
-    ("writes one byte too many", _encoding(lambda data: data + data[-1:])),
+    ("writes another last byte", encoding(lambda _, data: data[:-1] + bytes([data[-1] ^ 1]))),
+    ("leaves the last byte out", encoding(lambda _, data: data[:-1])),
+    ("counts the header in LEN", encoding(_with_length(2))),
+    ("counts a byte too few in LEN", encoding(_with_length(-1))),
+    ("writes one header byte", encoding(lambda _, data: data[1:])),
+    ("writes one byte too many", encoding(lambda _, data: data + data[-1:])),
 )
 
 
@@ -210,7 +223,9 @@ def turned(table: Table, command: str, direction: str, name: str, first_two: boo
     """Return a codec that reads and writes the elements of a row in another order."""
 
     def turn(row: Any) -> Any:
-        if not isinstance(row, list):
+        if isinstance(row, str):
+            return hexed(bytes(turn(list(bytes.fromhex(row)))))
+        if not isinstance(row, list) or len(row) < 2:
             return row
         return [row[1], row[0], *row[2:]] if first_two else row[::-1]
 

@@ -12,6 +12,7 @@ from cobotwire.conformance.codec.adapter.ours import OurCodec
 from cobotwire.conformance.report import Report
 from cobotwire.protocol.table import Table
 from mutation.codec.answers import ANSWERS, turned
+from mutation.codec.formats import wrong_formats
 from mutation.codec.framers import broken_framers
 from mutation.codec.mutant import CodecMutant
 from mutation.codec.reasons import reason
@@ -123,7 +124,7 @@ def _of_framers(table: Table) -> Iterator[CodecMutant]:
 
 
 def _of_answers(table: Table) -> Iterator[CodecMutant]:
-    for name, make in ANSWERS:
+    for name, make in (*ANSWERS, *wrong_formats(table)):
         yield CodecMutant("check", f"check: {name}", "", lambda m=make: m(table))  # type: ignore[misc]
 
 

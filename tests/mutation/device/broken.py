@@ -53,6 +53,7 @@ class BrokenArm:
         self._arm = SimulatedArm(table, clock=clock)
         self._codec = codecs.load(table)
         self._framer = self._codec.framer("request")
+        self._events = {command.id for command in table.commands if command.event}
         self._fault = fault
         self._clock = clock
         self._received_at = clock()
@@ -109,9 +110,22 @@ class BrokenArm:
             self._malformed("illegal value", data)
             return
         received = self._fault.request(self._codec, request, data)
-        answer = self._arm.receive(received) if received else b""
+        answer = self._without_events(self._arm.receive(received) if received else b"")
         for sent in self._fault.reply(self._codec, request, answer):
             self._send(sent.delay, sent.data)
+
+    def _without_events(self, answer: bytes) -> bytes:
+        """Send the events in what the inner arm sends, which no request causes; return the rest."""
+        if not self._events:
+            return answer
+        framer = self._codec.framer("reply")
+        rest = b""
+        for found in (*framer.feed(answer), *framer.flush()):
+            if isinstance(found, Frame) and found.command in self._events:
+                self._send(0.0, found.data)
+            else:
+                rest += found.data
+        return rest
 
     def _malformed(self, kind: Stimulus, data: bytes) -> None:
         self._send(0.0, self._fault.malformed(self._codec, kind, data))

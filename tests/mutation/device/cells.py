@@ -46,5 +46,11 @@ def joined(fields: Iterable[Iterable[Cell]]) -> bytes:
 def framed(frame: FrameFormat, id: int, data: bytes, length: int | None = None) -> bytes:
     """Return a frame; ``length``, if given, is its LEN whatever the size of the data."""
     stated = frame.length(len(data)) if length is None else length
-    body = frame.header + bytes(frame.addresses[:1]) + bytes([stated % 256, id % 256]) + data
+    body = frame.start(id % 256, stated % 256) + data
+    return body + frame.end(body)
+
+
+def checked(frame: FrameFormat, data: bytes) -> bytes:
+    """Return a whole frame with the right check and footer at its end."""
+    body = data[: len(data) - frame.check_size]
     return body + frame.end(body)

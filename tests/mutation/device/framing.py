@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from cobotwire.codec.interface import Codec, DecodedMessage
 from cobotwire.protocol.table import Command, Table, TextReply
 from mutation.device.broken import BrokenArm, Fault, TimedBytes
-from mutation.device.cells import framed
+from mutation.device.cells import checked, framed
 from mutation.device.exchanges import distinct
 from mutation.mutant import Mutant
 
@@ -31,7 +31,8 @@ class WrongFrame(Fault):
 def wrong_frames(table: Table) -> Iterator[Mutant]:
     """Yield a mutant for each reply or acknowledgement and each kind of wrong frame."""
     for command in distinct(table):
-        ways = TEXTS if command.text is not None else FRAMES if command.reply else ()
+        framed_ways = (*FRAMES, *_of_format(table))
+        ways = TEXTS if command.text is not None else framed_ways if command.reply else ()
         for kind, text, reframe in ways:
             yield _mutant(table, command, kind, text, reframe)
 
@@ -47,19 +48,19 @@ def _mutant(table: Table, command: Command, kind: str, text: str, reframe: Refra
 
 
 def _length(step: int) -> Reframe:
-    """Change only LEN."""
+    """Change only LEN, and the check that covers it."""
 
     def reframe(table: Table, data: bytes) -> bytes:
-        at = table.frame.length_at
-        return data[:at] + bytes([data[at] + step]) + data[at + 1 :]
+        frame = table.frame
+        return checked(frame, frame.with_length(data, frame.read_length(data) + step))
 
     return reframe
 
 
 def _id(pick: Callable[[Table, int], int]) -> Reframe:
     def reframe(table: Table, data: bytes) -> bytes:
-        at = table.frame.overhead
-        return framed(table.frame, pick(table, data[at]), _payload(table, data))
+        id = table.frame.read_id(data)
+        return framed(table.frame, pick(table, id), table.frame.data(data))
 
     return reframe
 
@@ -75,23 +76,63 @@ def _other_id(table: Table, id: int) -> int:
     return ids[(ids.index(id) + 1) % len(ids)]
 
 
-def _payload(table: Table, data: bytes) -> bytes:
-    frame = table.frame
-    return data[frame.overhead + 1 : len(data) - frame.check_size]
-
-
 def _resized(change: Callable[[bytes], bytes]) -> Reframe:
     """Change the data, with a correct LEN."""
 
     def reframe(table: Table, data: bytes) -> bytes:
-        id = data[table.frame.overhead]
-        return framed(table.frame, id, change(_payload(table, data)))
+        return framed(table.frame, table.frame.read_id(data), change(table.frame.data(data)))
 
     return reframe
 
 
 def _other_footer(table: Table, data: bytes) -> bytes:
     return data[:-1] + bytes([data[-1] ^ 0xFF])
+
+
+def _other_header(table: Table, data: bytes) -> bytes:
+    return checked(table.frame, bytes([data[0] ^ 1]) + data[1:])
+
+
+def _swapped_check(table: Table, data: bytes) -> bytes:
+    """Return the frame with the bytes of its check in the opposite order."""
+    end = len(data) - table.frame.check_size
+    tail = len(data) - len(table.frame.footer)
+    return data[:end] + data[end:tail][::-1] + data[tail:]
+
+
+def _check_of_data(table: Table, data: bytes) -> bytes:
+    """Return the frame with a check that covers only the data bytes."""
+    frame = table.frame
+    assert frame.check is not None, "only formats with a check have this fault"
+    end = len(data) - frame.check_size
+    return data[:end] + frame.check.of(frame.data(data)) + frame.footer
+
+
+def _from_address(pick: Callable[[tuple[int, ...]], int]) -> Reframe:
+    """Change only the address, and the check if it covers it."""
+
+    def reframe(table: Table, data: bytes) -> bytes:
+        frame, at = table.frame, table.frame.address_at
+        assert at is not None, "only formats with addresses have this fault"
+        return checked(frame, data[:at] + bytes([pick(frame.addresses)]) + data[at + 1 :])
+
+    return reframe
+
+
+def _unused_address(addresses: tuple[int, ...]) -> int:
+    return next(other for other in range(256) if other not in addresses)
+
+
+def _of_format(table: Table) -> Iterator[tuple[str, str, Reframe]]:
+    """Yield the faults of frames with a check value, and of frames with an address."""
+    check = table.frame.check
+    if check is not None:
+        yield "check", "over the data alone", _check_of_data
+        if check.width > 1:
+            yield "check", "its bytes swapped", _swapped_check
+    if table.frame.addresses:
+        yield "address", "an address that the edition lacks", _from_address(_unused_address)
+        yield "address", "another part's address", _from_address(lambda addresses: addresses[-1])
 
 
 FRAMES: tuple[tuple[str, str, Reframe], ...] = (
@@ -103,7 +144,7 @@ FRAMES: tuple[tuple[str, str, Reframe], ...] = (
     ("footer", "another footer", _other_footer),
     ("footer", "no footer", lambda _, data: data[:-1]),
     ("header", "half a header", lambda _, data: data[1:]),
-    ("header", "another header", lambda _, data: bytes([data[0] ^ 1]) + data[1:]),
+    ("header", "another header", _other_header),
 )
 
 

@@ -46,15 +46,15 @@ def _recall(case: Case, reported: list[int], random: Random) -> list[Cell]:
     """Return the reported values, or legal values near them."""
     far = random.choice((0, 0, 5, 400))
     return [
-        Cell(number, min(max(raw + random.randint(-far, far), number.minimum), number.maximum))
+        Cell(number, number.clamp(raw + random.randint(-far, far)))
         for number, raw in zip(case.numbers, reported)
     ]
 
 
 def _draw(field: Field, number: Number, random: Random) -> int:
     """Return a bound, a value near zero, or any value: each kind reveals different faults."""
-    if field.choices:
-        return random.choice(field.choices)
+    if choices := field.choices or number.choices:
+        return random.choice(choices)
     low, high = number.minimum, number.maximum
     share = (high - low) // 16
     near = min(max(0, low), high)

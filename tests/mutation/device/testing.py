@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import NamedTuple
 
+from cobotwire import editions
+from cobotwire.cli.shared.subject_connection import Lacking
 from cobotwire.conformance.device import ALL_PERMISSIONS, DeviceConnection, Permissions, Tester
-from cobotwire.conformance.report import Result, Verdict
+from cobotwire.conformance.report import Cause, Result, Verdict
 from cobotwire.protocol.table import Table
+from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.memory import MemoryTransport
 from cobotwire.simulator.peer import Peer
@@ -31,14 +35,59 @@ class Complaint(NamedTuple):
 def complaints(
     table: Table, peer: Peer, clock: SteppedClock, only: str = ""
 ) -> Iterator[Complaint]:
-    """Yield the failures as the tester finds them; ``only`` restricts the run to one command."""
+    """Yield the failures as the tester finds them; ``only`` restricts the run to one command.
+
+    A run that ends early is a complaint too: its report says that the device stopped replying.
+    """
     for result in results(table, peer, clock, only):
         if result.verdict is Verdict.FAIL:
             yield Complaint(result.command, result.case, result.reason)
+        elif result.cause is Cause.RUN_ENDED:
+            yield Complaint("", "run ended", result.reason)
 
 
 def results(table: Table, peer: Peer, clock: SteppedClock, only: str = "") -> Iterator[Result]:
-    """Yield the results of a whole run step by step, or of the steps of one command."""
+    """Yield the results of a whole run step by step, or of the steps of one command.
+
+    What the simulated arm states that it does not support is no failure.
+    """
+    yield from _results(table, peer, clock, only, on_correct_arm(table).lacking)
+
+
+class OnCorrectArm(NamedTuple):
+    """What a whole run on the correct arm shows.
+
+    ``lacking`` are the commands that the arm does not support, with the reason it states: the
+    coordinates of an unknown geometry. ``judged`` are the commands on which a test case passed.
+    """
+
+    lacking: dict[str, str]
+    judged: frozenset[str]
+
+
+@cache
+def _of_edition(edition: str) -> OnCorrectArm:
+    table = editions.load(edition).TABLE
+    clock, stated = SteppedClock(), Lacking(table)
+    arm = SimulatedArm(table, clock=clock, on_note=stated.note)
+    passed = [
+        result.command
+        for result in _results(table, arm, clock, "", stated.reasons)
+        if result.verdict is Verdict.PASS
+    ]
+    return OnCorrectArm(stated.reasons, frozenset(passed))
+
+
+def on_correct_arm(table: Table) -> OnCorrectArm:
+    """Return what a whole run on the correct arm shows; nothing if its geometry is known."""
+    if table.robot.geometry is not None:
+        return OnCorrectArm({}, frozenset(command.name for command in table.commands))
+    return _of_edition(table.edition)
+
+
+def _results(
+    table: Table, peer: Peer, clock: SteppedClock, only: str, unsupported: dict[str, str]
+) -> Iterator[Result]:
     permissions = Permissions.of(
         ALL_PERMISSIONS,
         joints=table.joints,
@@ -46,7 +95,10 @@ def results(table: Table, peer: Peer, clock: SteppedClock, only: str = "") -> It
         workspace=dict.fromkeys(range(1, table.joints + 1), WORKSPACE),
     )
     tester = Tester(
-        DeviceConnection(MemoryTransport(peer, clock), clock), table, permissions=permissions
+        DeviceConnection(MemoryTransport(peer, clock), clock),
+        table,
+        permissions=permissions,
+        lacking=unsupported,
     )
     for step in tester.steps():
         if not only or (step.command is not None and step.command.name == only):

@@ -53,11 +53,13 @@ def _conversation(table: Table, command: str, seed: int) -> Conversation:
     If all commands took part, one that stops the arm for good would hide all motion.
     """
     random = Random(f"{table.edition} {command} {seed}")
-    some = random.sample(table.commands, len(table.commands) // SHARE)
+    # Nothing is sent for an event.
+    sent = [command for command in table.commands if command.request]
+    some = random.sample(sent, len(sent) // SHARE)
     about = []
     if command:
         broken = table.command(command)
-        family = [c for c in table.commands if c.family == broken.family]
+        family = [c for c in sent if c.family == broken.family]
         about = [broken] * 4 + random.sample(family, min(4, len(family)))
     conversation = Conversation(table, random, [*some, *about], about)
     conversation.have(STEPS)

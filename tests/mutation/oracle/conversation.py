@@ -14,7 +14,7 @@ from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.memory import TICK_SECONDS
 from cobotwire.simulator.peer import Peer
-from mutation.device.cells import framed, take_apart
+from mutation.device.cells import checked, framed, take_apart
 from mutation.device.legal import draw_request, shape
 
 # Long enough for a late reply, and for the longest motion of a joint.
@@ -148,14 +148,17 @@ def _damage(table: Table, random: Random, data: bytes) -> bytes:
     """Return bytes that are not a legal request, or several requests in one write."""
     used = {command.id for command in table.commands}
     unused = [id for id in range(256) if id not in used]
+    frame = table.frame
+    payload = frame.data(data)
+    other = bytes(random.randrange(256) for _ in payload)
     return random.choice(
         (
             data * random.choice((2, 3)),
             data[: random.randrange(1, len(data))],
             data[:-1] + bytes([random.randrange(256)]),
             bytes(random.randrange(256) for _ in range(random.randrange(1, 8))) + data,
-            framed(table.frame, random.choice(unused), data[4:-1]),
-            data[:2] + bytes([random.randrange(256)]) + data[3:],
-            data[:4] + bytes(random.randrange(256) for _ in data[4:-1]) + data[-1:],
+            framed(frame, random.choice(unused), payload),
+            checked(frame, frame.with_length(data, random.randrange(256))),
+            framed(frame, frame.read_id(data), other),
         )
     )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from cobotwire.protocol.table import Field, Table
+from cobotwire.protocol.table import Command, Field, Table
 from mutation.device.exchanges import reply_fields, request_fields
+from mutation.device.testing import on_correct_arm
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, only_legal, replies_of, values_of
 from mutation.oracle.conversation import Conversation
@@ -18,7 +19,9 @@ def reason(table: Table, mutant: Mutant) -> str:
     if undefined:
         return undefined
     field = _field(table, mutant)
+    lacks = mutant.command in on_correct_arm(table).lacking
     known = field is None or field.echo or _reported(table, mutant.command, field)
+    known = known and not lacks
     had, differs = [], False
     for conversation in conversations(table, mutant.command):
         replied = replies_of(mutant, conversation)
@@ -29,6 +32,11 @@ def reason(table: Table, mutant: Mutant) -> str:
                 return ""
     if not differs:
         return _alike(table, mutant, had)
+    if lacks:
+        return (
+            "every wrong reply is legal, and the true one is unknown: the correct arm has none, "
+            "because its geometry is not known"
+        )
     assert field is not None
     return (
         f"the true value is unknown on the line: every wrong value is legal, no command sets "
@@ -41,13 +49,17 @@ def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
     requests = sum(len(conversation.steps) for conversation in had)
     same = f"no byte differs in {len(had)} conversations with {requests} writes in all"
     field = _field(table, mutant)
+    why = on_correct_arm(table).lacking.get(mutant.command)
+    if why is not None:
+        short, _, _ = why.partition(":")
+        return f"{same}: no reply of the simulated arm shows the fault, because {short}"
     if field is None:
         return f"{same}: no reply shows the effect of the fault"
     seen = {
         value
         for conversation in had
         for reported in values_of(table, mutant.command, field.name, conversation.received)
-        for value in (reported if isinstance(reported, tuple) else (reported,))
+        for value in _numbers(reported)
     }
     return f"{same}: `{field.name}` was {_range(seen)}, which both devices encode equally"
 
@@ -59,6 +71,10 @@ TURNS = "CLOCKWISE"
 
 def _undefined(table: Table, mutant: Mutant) -> str:
     """Return what the edition does not define about a field, so that any effect is correct."""
+    if mutant.command and mutant.command not in on_correct_arm(table).judged:
+        unsafe = _unsafe(table.command(mutant.command))
+        if unsafe:
+            return unsafe
     if mutant.kind in OF_MEANING and mutant.command in LEFT_OPEN:
         return LEFT_OPEN[mutant.command]
     if not mutant.command or mutant.field in ("", *_replied(table, mutant.command)):
@@ -74,15 +90,39 @@ def _undefined(table: Table, mutant: Mutant) -> str:
     return ""
 
 
+def _unsafe(command: Command) -> str:
+    """Return why a tester does not send a motion to an arm of unknown geometry; empty if it may."""
+    if command.safety != "motion":
+        return ""
+    if any("millimetre" in _units(field) for field in request_fields(command)):
+        return (
+            "the only coordinates that are safe to send are those that the arm has reported, and "
+            "an arm of unknown geometry reports none"
+        )
+    return ""
+
+
 def _replied(table: Table, name: str) -> list[str]:
     command = table.command(name)
     return [field.name for field in reply_fields(command)] if command.requires_reply else []
 
 
-def _range(values: set[int | float]) -> str:
+def _numbers(reported: object) -> Iterator[int | float | str]:
+    """Yield the numbers of a value: those of each group, those of each byte; a text is whole."""
+    if isinstance(reported, tuple | list | bytes):
+        for part in reported:
+            yield from _numbers(part)
+    elif isinstance(reported, int | float | str):
+        yield reported
+
+
+def _range(values: set[int | float | str]) -> str:
     if not values:
         return "never reported"
-    low, high = min(values), max(values)
+    numbers = [value for value in values if not isinstance(value, str)]
+    if not numbers:
+        return f"always {', '.join(sorted(map(repr, values)))}"
+    low, high = min(numbers), max(numbers)
     return f"always {low:g}" if low == high else f"between {low:g} and {high:g}"
 
 

@@ -22,6 +22,8 @@ LEFT_OPEN = {
     "which direction is forward",
     "set_four_pieces_zero": "no query reports the four-piece motor, so it is unknown whether its "
     "zero was set",
+    "set_gripper_calibration": "no command of this arm reads the opening, and no source says that "
+    "another value counts from the new zero",
     "init_gripper": "no other reply reports whether a gripper was found",
     "drag_start_record": "no source says whether an older recording is kept, so any count is right",
     "drag_end_record": "no source says how many points a second are kept, so any count is right",

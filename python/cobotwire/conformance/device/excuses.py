@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from cobotwire.conformance.report import Cause, Result, Verdict
 
-# What reasons say if nothing came. The evidence may go on with a query that was replied to.
-SILENCE = ("came nothing", "came no valid reply")
+# What reasons say if nothing came, or nothing but the noise of a healthy line. The evidence may go
+# on with a query that was replied to.
+SILENCE = ("came nothing", "came no valid reply", "came noise ")
 
 
 def excused(

@@ -17,7 +17,7 @@ from cobotwire.conformance.device.comparison import Malformed
 from cobotwire.conformance.device.device import Device
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.read_back import Setting, has_fixed_effect, settings_of
-from cobotwire.conformance.device.requests import arguments_of
+from cobotwire.conformance.device.requests import arguments_of, gentle
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Table
@@ -141,8 +141,11 @@ class KeptState:
         name = f"{setting.command.name}({arguments_of(query)})"
         self._device.restore_at_end[name] = partial(self._device.request, old)
         self._marked.append(name)
-        self._device.request(marks[0])
-        return marks[0]
+        # The device may return to the plainest value instead of its default.
+        plain = gentle(setting.command)
+        mark = next((each for each in marks if each != plain), marks[0])
+        self._device.request(mark)
+        return mark
 
     def _compare(self, spot: _Spot, reply: Reply[Any] | None = None) -> str:
         now = reply or self._device.read(spot.query)

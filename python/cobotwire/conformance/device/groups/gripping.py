@@ -63,7 +63,7 @@ def _moving(table: Table, command: Command) -> Command | None:
     return None
 
 
-def _opens(table: Table, command: Command) -> bool:
+def opens(table: Table, command: Command) -> bool:
     """Return whether a command opens what a query of its family reports in percent."""
     labels = command.request[0].fields[0].labels if command.request[0].fields else ()
     return {OPEN, CLOSE} <= set(labels) and _opening(table, command) is not None
@@ -110,7 +110,7 @@ GRIPPER_OPENS = Group(
     "gripper opens",
     (ARRIVES, *AFTER_CHANGE),
     _open_and_close,
-    _opens,
+    opens,
     sends="Open and close, twice; the opening is read after each.",
     subject="each command that opens and closes a gripper",
 )

@@ -6,6 +6,7 @@ from functools import partial
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
+from cobotwire.conformance.device.groups.gripping import opens
 from cobotwire.conformance.device.groups.motion import resume
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
@@ -72,7 +73,10 @@ def _is_unread(table: Table, command: Command) -> bool:
     """Return whether no query reads back what a command does, and no command restores it."""
     return (
         command.safety != "query"
-        and command.role in ("", "halt")
+        and (
+            command.role in ("", "halt")
+            or (command.role == "gripper" and not opens(table, command))
+        )
         and not _is_switch(table, command)
         and not settings_of(table, command)
         and not (command.read_by is not None and command.safety == "persistent write")
