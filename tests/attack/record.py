@@ -99,7 +99,8 @@ class Record:
 def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> OpenedTransport:
     """Open a real transport whose writes are recorded as they are handed to the system.
 
-    ``small``: give a socket the smallest buffer, so that a peer that reads nothing stalls it.
+    ``small``: give a socket the smallest buffer, so that a peer that reads nothing stalls it; and
+    let native calls send nothing, because the line must not be filled between parts of a request.
     """
     transport = open_transport(url, baudrate)
     assert isinstance(transport, DescriptorTransport), "ports and sockets are"
@@ -121,8 +122,8 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
 
     own = vars(transport)
     own["_send"] = observed
-    own["lend"] = partial(_swap_observed, record, transport.lend)
-    own["lend_now"] = partial(_swap_observed, record, transport.lend_now)
+    own["lend"] = partial(_swap_observed, record, not small, transport.lend)
+    own["lend_now"] = partial(_swap_observed, record, not small, transport.lend_now)
     if small:
         own["_connect"] = connected
         _shrink(transport, transport.fileno() or -1)
@@ -130,11 +131,17 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
 
 
 def _swap_observed(
-    record: Record, lend: Callable[..., Any], call: Callable[..., Any], *arguments: Any
+    record: Record,
+    may_send: bool,
+    lend: Callable[..., Any],
+    call: Callable[..., Any],
+    *arguments: Any,
 ) -> Any:
     """Lend the descriptor; record the request if the native call sends one."""
     if len(arguments) < SWAP_ARGUMENTS:
         return lend(call, *arguments)
+    if not may_send:
+        return None  # not sent: the client sends it in steps
     timeout, request, of, writing, finish = arguments
     parts = []
 
