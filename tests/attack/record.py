@@ -104,12 +104,12 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
     """
     transport = open_transport(url, baudrate)
     assert isinstance(transport, DescriptorTransport), "ports and sockets are"
-    send, connect = transport._send, transport._connect
+    write_now, connect = transport._write_now, transport._connect
 
     def observed(data: bytes) -> int:
         record.handed.append((time.monotonic(), data))
         with record.filling:
-            size = send(data)
+            size = write_now(data)
         record.bytes_taken += size
         if size == len(data):
             record.taken.append((time.monotonic(), data))
@@ -121,7 +121,7 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
         return descriptor
 
     own = vars(transport)
-    own["_send"] = observed
+    own["_write_now"] = observed
     own["lend"] = partial(_swap_observed, record, not small, transport.lend)
     own["lend_now"] = partial(_swap_observed, record, not small, transport.lend_now)
     if small:
