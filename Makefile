@@ -17,7 +17,7 @@ ATTACK_SECONDS ?= 180
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end four-hours studio-pictures
+.PHONY: spec-mutants help demo test lint python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -26,7 +26,7 @@ help: ## list the targets
 demo: .venv/.native ## drive a simulated arm over a pty and check every reply
 	$(BIN)/cobotwire demo --codec native
 
-test: .venv/.tools .venv/.native front-end ## run everything: linters, types, generated files, Rust, Python
+test: .venv/.tools .venv/.native front-end-if-reachable ## run everything: linters, types, generated files, Rust, Python
 	$(MAKE) --no-print-directory --jobs 2 $(IN_TURN) lint rust-test
 	$(MAKE) --no-print-directory python-test
 
@@ -49,7 +49,7 @@ rust-asan: ## run the tests of the unsafe code with AddressSanitizer; needs a ni
 	RUSTFLAGS=-Zsanitizer=address cargo +nightly test --package cobotwire-simd --quiet \
 		--target $$(rustc -vV | sed -n 's/host: //p') --target-dir target/asan
 
-python-test: .venv/.tools .venv/.native front-end ## run the Python tests on both codecs, in four lanes
+python-test: .venv/.tools .venv/.native front-end-if-reachable ## run the Python tests on both codecs, in four lanes
 	$(MAKE) --no-print-directory --jobs 4 $(IN_TURN) computing-tests simulating-tests calling-tests waiting-tests
 
 computing-tests:
@@ -66,6 +66,10 @@ waiting-tests:
 
 front-end: ## fetch the JavaScript that the page of `cobotwire studio` and its test need
 	$(PYTHON) tools/front_end.py
+
+# Where only PyPI and crates.io can be reached, the tests that need the JavaScript are skipped.
+front-end-if-reachable:
+	$(PYTHON) tools/front_end.py || echo "the tests of the studio will be skipped" >&2
 
 four-hours: .venv/.tools .venv/.native front-end ## show four hours of a 50 Hz line in the studio; memory must stay the same
 	PYTHONPATH=python:tests $(BIN)/python -m studio.four_hours $(HOURS)
