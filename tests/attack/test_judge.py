@@ -123,7 +123,7 @@ def test_call_that_ends_after_its_deadline_is_late() -> None:
 
         return Slow
 
-    assert "late" in counts(attack(chosen(users=1, seconds=4.0), change))
+    assert "late" in counts(attack(chosen(users=1, seconds=1.0), change))
 
 
 def test_call_that_never_ends_is_lost() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import threading
 from collections.abc import Callable
 
@@ -75,9 +76,12 @@ class MemoryTransport:
         """
         with self._news:
             self._must_be_open("cannot be read")
-            # Adding less than a tick may not change the clock, and a caller that reads until its
-            # time is over would read for ever.
-            deadline = self.clock() + (max(timeout, TICK_SECONDS) if timeout > 0 else 0.0)
+            now = self.clock()
+            deadline = now + timeout
+            if timeout > 0:
+                # A caller that reads until its time is over would read for ever if the rest of its
+                # time is too little to change the clock.
+                deadline = max(deadline, math.nextafter(now, math.inf))
             while True:
                 self._with_peer(self._connection.pass_time)
                 if data := self._take():

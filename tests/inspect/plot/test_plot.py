@@ -59,12 +59,10 @@ def test_series_holds_each_reply_at_its_time(tmp_path: Path) -> None:
     series = series_of(path)
     joints = series.tracks["joints"]
     assert len(joints.rows) == len(series.tracks["coordinates"].rows) == 40
-    # Listening takes at most a tick longer than it should.
-    late = [at - index * 0.1 for index, at in enumerate(joints.at)]
-    assert all(-1e-9 < seconds < (index + 1) * 1e-6 for index, seconds in enumerate(late))
+    assert joints.at == pytest.approx([index * 0.1 for index in range(40)], abs=1e-6)
     assert joints.rows[-1] == (90, 0, 0, 0, 0, -45)
     assert (series.axis, series.noise) == ("seconds", [])
-    assert series.end == pytest.approx(3.9, abs=40e-6)
+    assert series.end == pytest.approx(3.9)
     assert series.reply_times is not None
     assert (series.reply_times.late, series.reply_times.missing) == ([], [])
     # Two acknowledgements, and two replies per sample.
