@@ -32,7 +32,7 @@ from responder import within
 
 REQUEST = "FE FE 02 20 FA"
 REPLY = "FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA"
-# So many arms connect at once.
+# How many arms connect at the same time.
 TOGETHER = 50
 # The first second is warm-up.
 WARM_UP = 1.0

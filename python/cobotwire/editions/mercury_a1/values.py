@@ -72,7 +72,7 @@ class MotorErrors(NamedTuple):
     """The errors of the seven motors, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6, j7: Errors of a motor, a bit for each kind; 0 is none.
+        j1, j2, j3, j4, j5, j6, j7: Errors of a motor, a bit for each kind; 0 means no error.
     """
 
     j1: int

@@ -41,8 +41,8 @@ class RightMotorErrors(NamedTuple):
     """The errors of the seven motors of the right arm, then of joint 13, 11 and 12.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6, j7, j13, j11, j12: Errors of a motor, a bit for each kind; 0 is
-            none.
+        j1, j2, j3, j4, j5, j6, j7, j13, j11, j12: Errors of a motor, a bit for each kind; 0 means
+            no error.
     """
 
     j1: int
@@ -61,7 +61,7 @@ class RightSoftwareErrors(NamedTuple):
     """The errors that the controller found at the seven motors of the right arm, then at joint 13.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6, j7, j13: Errors of a motor, a bit for each kind; 0 is none.
+        j1, j2, j3, j4, j5, j6, j7, j13: Errors of a motor, a bit for each kind; 0 means no error.
     """
 
     j1: int

@@ -61,7 +61,8 @@ class JointErrors(NamedTuple):
     """The errors of the seven joints, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6, j7: Error of a joint; 0 is none, the other values are disputed.
+        j1, j2, j3, j4, j5, j6, j7: Error of a joint; 0 means no error, the other values are
+            disputed.
     """
 
     j1: int
@@ -123,7 +124,7 @@ class ServoTemperatures(NamedTuple):
 
 
 class ServoStatuses(NamedTuple):
-    """The faults of the seven servos, base first; 0 is none.
+    """The faults of the seven servos, base first; 0 means no fault.
 
     Attributes:
         j1, j2, j3, j4, j5, j6, j7: Faults of a servo, a bit for each: 0 voltage, 1 sensor, 2

@@ -55,7 +55,7 @@ class Encoders(NamedTuple):
 
 
 class ServoErrors(NamedTuple):
-    """The errors of the eight servos, base first; 0 is none.
+    """The errors of the eight servos, base first; 0 means no error.
 
     Attributes:
         s1, s2, s3, s4, s5, s6, s7, s8: Errors of a servo, a bit for each; no source explains the
@@ -142,7 +142,7 @@ class ServoVoltages(NamedTuple):
 
 
 class ServoStatuses(NamedTuple):
-    """The faults of the eight servos, base first; 0 is none.
+    """The faults of the eight servos, base first; 0 means no fault.
 
     Attributes:
         s1, s2, s3, s4, s5, s6, s7, s8: Faults of a servo, a bit for each: 0 voltage, 1 sensor, 2

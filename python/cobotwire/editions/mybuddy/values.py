@@ -103,8 +103,8 @@ class ServoStatuses(NamedTuple):
     """The faults of an arm's six servos, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6: Faults of a servo as bits; 0 is none. The maker lists voltage,
-            sensor, temperature, current, angle and overload.
+        j1, j2, j3, j4, j5, j6: Faults of a servo as bits; 0 means no fault. The maker lists
+            voltage, sensor, temperature, current, angle and overload.
     """
 
     j1: int

@@ -44,7 +44,7 @@ class JointErrors(NamedTuple):
     """The errors of the six joints, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6: Error of a joint; 0 is none, the other values are disputed.
+        j1, j2, j3, j4, j5, j6: Error of a joint; 0 means no error, the other values are disputed.
     """
 
     j1: int
@@ -59,7 +59,8 @@ class ServoErrors(NamedTuple):
     """The errors of seven servos, base first; the last is probably the gripper's.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6, gripper: Error of a joint; 0 is none, the other values are disputed.
+        j1, j2, j3, j4, j5, j6, gripper: Error of a joint; 0 means no error, the other values are
+            disputed.
     """
 
     j1: int
@@ -132,7 +133,7 @@ class ServoTemperatures(NamedTuple):
 
 
 class ServoStatuses(NamedTuple):
-    """The faults of the six servos, base first; 0 is none.
+    """The faults of the six servos, base first; 0 means no fault.
 
     Attributes:
         j1, j2, j3, j4, j5, j6: Faults of a servo, a bit for each: 0 voltage, 1 sensor, 2

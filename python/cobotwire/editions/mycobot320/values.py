@@ -19,7 +19,7 @@ from cobotwire.editions.mycobot280.values import WifiAccount as WifiAccount
 
 
 class RobotStatuses(NamedTuple):
-    """The findings about the six joints, base first; 0 is none.
+    """The findings about the six joints, base first; 0 means no finding.
 
     Attributes:
         j1, j2, j3, j4, j5, j6: Findings about a joint, a bit for each: 0 communication, 1 kind of

@@ -59,7 +59,7 @@ class MotorErrors(NamedTuple):
     """The errors of the six motors, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6: Errors of a motor, a bit for each kind; 0 is none.
+        j1, j2, j3, j4, j5, j6: Errors of a motor, a bit for each kind; 0 means no error.
     """
 
     j1: int

@@ -346,7 +346,7 @@ class ServoCommands(Client):
     def get_servo_status(self) -> MotorErrors:
         """Read the errors of the motors.
 
-        Reads the errors of each motor; 0 is none.
+        Reads the errors of each motor; 0 means no error.
 
         Returns: The errors of the seven motors, base first (j1, j2, j3, j4, j5, j6, j7 0..65535).
         Safety: query. Command id 0xE4.

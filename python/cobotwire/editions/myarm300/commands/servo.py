@@ -310,8 +310,8 @@ class ServoCommands(Client):
 
         Reads the faults of all seven servos, a bit for each kind of fault.
 
-        Returns: The faults of the seven servos, base first; 0 is none (j1, j2, j3, j4, j5, j6, j7
-            0..255).
+        Returns: The faults of the seven servos, base first; 0 means no fault (j1, j2, j3, j4, j5,
+            j6, j7 0..255).
         Safety: query. Command id 0xE4.
         """
         return self._call(messages.servo.GetServoStatus())

@@ -136,8 +136,8 @@ class ServoCommands(Client):
 
         Reads the faults of all eight servos, a bit for each kind of fault.
 
-        Returns: The faults of the eight servos, base first; 0 is none (s1, s2, s3, s4, s5, s6, s7,
-            s8 0..255).
+        Returns: The faults of the eight servos, base first; 0 means no fault (s1, s2, s3, s4, s5,
+            s6, s7, s8 0..255).
         Safety: query. Command id 0xE4.
         """
         return self._call(messages.servo.GetServosStatus())

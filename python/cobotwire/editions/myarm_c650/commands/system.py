@@ -86,8 +86,8 @@ class SystemCommands(Client):
 
         Reads the errors of all eight servos, a bit for each error.
 
-        Returns: The errors of the eight servos, base first; 0 is none (s1, s2, s3, s4, s5, s6, s7,
-            s8 0..65535).
+        Returns: The errors of the eight servos, base first; 0 means no error (s1, s2, s3, s4, s5,
+            s6, s7, s8 0..65535).
         Safety: query. Command id 0x15.
         """
         return self._call(messages.system.GetRobotErrorStatus())

@@ -322,7 +322,7 @@ class ServoCommands(Client):
 
         Reads the faults of all six servos, a bit for each kind of fault.
 
-        Returns: The faults of the six servos, base first; 0 is none (j1, j2, j3, j4, j5, j6
+        Returns: The faults of the six servos, base first; 0 means no fault (j1, j2, j3, j4, j5, j6
             0..255).
         Safety: query. Command id 0xE4.
         """

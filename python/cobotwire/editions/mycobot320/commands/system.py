@@ -94,8 +94,8 @@ class SystemCommands(Client):
 
         Checks the servos of all six joints, and reports a bit for each finding.
 
-        Returns: The findings about the six joints, base first; 0 is none (j1, j2, j3, j4, j5, j6
-            0..65535).
+        Returns: The findings about the six joints, base first; 0 means no finding (j1, j2, j3, j4,
+            j5, j6 0..65535).
         Safety: query. Command id 0x19.
         """
         return self._call(messages.system.GetRobotStatus())
