@@ -68,7 +68,7 @@ def _add_pages(app: Sphinx, page: str, source: list[str]) -> None:
 def _collapse(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: object) -> None:
     """Show the pages of an edition only to readers of that edition.
 
-    Otherwise each page has 200 links to them, and they take a third of the time of the build.
+    Otherwise each page has a link to every page of every edition, and the build takes longer.
     """
     whole = context.get("toctree")
     if whole is not None:

@@ -47,10 +47,7 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Keep the garbage collector from what lives to the end, such as tests and loaded editions.
-
-    It took a twentieth of the time of the tests of the generator.
-    """
+    """Keep the garbage collector from what lives to the end, such as tests and loaded editions."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000, 20, 20)

@@ -1,4 +1,4 @@
-"""Parses plain YAML in C, about 15 times as fast; the parser in Python decides everything else.
+"""Parses plain YAML in C, which is faster; the parser in Python decides everything else.
 
 The C parser is optional. It follows YAML 1.1 and has other messages, so its result counts only for
 text that both parsers read alike: one document without directives, anchors, aliases, tags and
