@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import lru_cache
 from typing import Any, NamedTuple
 
-from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture.packet import Direction, Interface
 from cobotwire.capture.reader import CaptureReader
 from cobotwire.capture.streams import DirectionStream, cut
 from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.diagnose import Diagnoser, Item
+from cobotwire.inspect.recorded_edition import codec_of_recording
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Reply, Request
 
@@ -94,8 +93,8 @@ def diagnose_capture(
 
 
 def codec_of_interface(capture: CaptureReader, interface: int, default_edition: str) -> Codec:
-    """Return the codec of the edition that the capture names, or else of the default edition."""
-    return _codec(capture.interfaces[interface].edition, default_edition)
+    """Return the codec for an interface; see :func:`~.recorded_edition.codec_of_recording`."""
+    return codec_of_recording(capture.interfaces[interface].edition, default_edition)
 
 
 def recorded_codecs(default_edition: str = editions.DEFAULT) -> Callable[[Interface], Codec]:
@@ -105,12 +104,7 @@ def recorded_codecs(default_edition: str = editions.DEFAULT) -> Callable[[Interf
 
         columns = read_columns("arm.pcapng", recorded_codecs())
 
-    If an interface names no edition, the codec is that of the default edition.
+    If an interface names no edition, the codec is that of the default edition. The function raises
+    UsageError if the edition is not installed.
     """
-    return lambda interface: _codec(interface.edition, default_edition)
-
-
-@lru_cache
-def _codec(recorded_edition: str, default_edition: str) -> Codec:
-    known = recorded_edition in editions.names()
-    return codecs.load(editions.load(recorded_edition if known else default_edition).TABLE)
+    return lambda interface: codec_of_recording(interface.edition, default_edition)

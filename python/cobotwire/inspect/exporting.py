@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
-from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture.export.plan import Forward
 from cobotwire.codec.interface import Codec
+from cobotwire.inspect.recorded_edition import codec_of_recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,8 +18,12 @@ class InstalledEditions:
     default: str = editions.DEFAULT
 
     def codec(self, name: str) -> Codec:
-        """Return the codec of an edition; of the default edition if there is none of that name."""
-        return _codec(name if name in editions.names() else self.default)
+        """Return the codec of an edition; of the default edition if ``name`` is empty.
+
+        Raises:
+            UsageError: no edition of that name is installed.
+        """
+        return codec_of_recording(name, self.default)
 
     def forward(self, name: str) -> Forward | None:
         """Return the kinematics of the edition's arm; None if its geometry is not known."""
@@ -39,8 +42,3 @@ class InstalledEditions:
         """Return whether any edition has a command of that name."""
         tables = (editions.load(name).TABLE for name in editions.names())
         return any(command == each.name for table in tables for each in table.commands)
-
-
-@lru_cache
-def _codec(edition: str) -> Codec:
-    return codecs.load(editions.load(edition).TABLE)
