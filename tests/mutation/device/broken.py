@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable
 from typing import NamedTuple
 
-from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec, DecodedMessage, Event, Frame
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.codec.interface import Codec, DecodedMessage, Noise
 from cobotwire.protocol.table import Table
-from cobotwire.simulator.arm import SimulatedArm
+from cobotwire.session import DeviceSession, RequestReceived, TextReceived
+from cobotwire.session.device import DeviceEvent
+from cobotwire.simulator.arm import ArmConnection, SimulatedArm
 from cobotwire.simulator.clock import Clock
-from cobotwire.simulator.peer import IDLE_SECONDS
 from mutation.device.stimulus import Stimulus, kind_of
 
 
@@ -46,99 +44,96 @@ class Fault:
         return b""
 
 
-class BrokenArm:
-    """A simulated arm with a fault; a peer."""
+class BrokenArm(ArmConnection):
+    """A connection to a simulated arm with a fault; a peer.
+
+    The times and the order of its replies, acknowledgements and events are those of the
+    correct arm. A fault changes single requests and replies.
+    """
 
     def __init__(self, table: Table, fault: Fault, clock: Clock) -> None:
-        self._arm = SimulatedArm(table, clock=clock)
-        self._codec = codecs.load(table)
-        self._framer = self._codec.framer("request")
-        self._events = {command.id for command in table.commands if command.event}
+        super().__init__(SimulatedArm(table, clock=clock), None)
         self._fault = fault
-        self._clock = clock
-        self._received_at = clock()
-        self._due: list[tuple[float, int, bytes]] = []
+        # What is sent later: when it is due, its number, and its bytes.
+        self._late: list[tuple[float, int, bytes]] = []
         self._count = 0
+        # Whether the arm did not receive the last request, so that its text is lost, too.
+        self._lost = False
 
     @property
     def wait(self) -> float | None:
         """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
-        times = [self._due[0][0]] if self._due else []
-        if self._framer.pending:
-            times.append(self._received_at + IDLE_SECONDS)
-        if self._arm.wait is not None:
-            times.append(self._clock() + self._arm.wait)
-        return max(0.0, min(times) - self._clock()) if times else None
+        wait = super().wait
+        if not self._late:
+            return wait
+        left = max(0.0, self._late[0][0] - self._arm.clock())
+        return left if wait is None else min(wait, left)
 
     def receive(self, data: bytes) -> bytes:
         """Take ``data``; return what is sent at once."""
-        self._received_at = self._clock()
         self._fault.chunk(data)
-        self._sort(self._framer.feed(data))
-        return self._take_due()
+        return self._take_late() + super().receive(data)
 
     def flush(self) -> bytes:
         """Let time pass; return what is due by now."""
-        if self._framer.pending and self._clock() >= self._received_at + IDLE_SECONDS:
-            self._sort(self._framer.flush())
-        self._send(0.0, self._arm.flush())
-        return self._take_due()
+        late = self._take_late()
+        if self._arm.clock() < self._idle_at:
+            return late + self.take_events()
+        return late + super().flush()
 
-    def _sort(self, events: Iterable[Event]) -> None:
+    def _handle_all(self, events: list[DeviceEvent]) -> bytes:
         # Noise is judged as a whole, because a broken request is refuted byte by byte.
-        noise = b""
+        sent = noise = b""
         for event in events:
-            if not isinstance(event, Frame):
+            if isinstance(event, Noise):
                 noise += event.data
                 continue
-            self._receive_noise(noise)
+            if isinstance(event, TextReceived):
+                sent += b"" if self._lost else self._handle(event)
+                continue
+            sent += self._after_noise(noise)
             noise = b""
-            self._receive(event.data)
-        self._receive_noise(noise)
-
-    def _receive_noise(self, noise: bytes) -> None:
-        if noise:
-            # What is refuted here is refuted for the inner arm too, whatever comes next.
-            self._send(0.0, self._arm.receive(noise) + self._arm.flush())
-            kind = kind_of(self._codec.table, noise)
-            self._malformed(kind, noise)
-
-    def _receive(self, data: bytes) -> None:
-        try:
-            request = self._codec.decode("request", data)
-        except ProtocolError:
-            self._malformed("illegal value", data)
-            return
-        received = self._fault.request(self._codec, request, data)
-        answer = self._without_events(self._arm.receive(received) if received else b"")
-        for sent in self._fault.reply(self._codec, request, answer):
-            self._send(sent.delay, sent.data)
-
-    def _without_events(self, answer: bytes) -> bytes:
-        """Send the events in what the inner arm sends, which no request causes; return the rest."""
-        if not self._events:
-            return answer
-        framer = self._codec.framer("reply")
-        rest = b""
-        for found in (*framer.feed(answer), *framer.flush()):
-            if isinstance(found, Frame) and found.command in self._events:
-                self._send(0.0, found.data)
+            if isinstance(event, RequestReceived):
+                sent += self._after_request(event)
             else:
-                rest += found.data
-        return rest
+                sent += self._after_malformed("illegal value", event.frame.data)
+        return sent + self._after_noise(noise)
 
-    def _malformed(self, kind: Stimulus, data: bytes) -> None:
-        self._send(0.0, self._fault.malformed(self._codec, kind, data))
+    def _after_request(self, received: RequestReceived) -> bytes:
+        """Return what is sent at once in reply to a legal request."""
+        message, data = received.message, received.frame.data
+        changed = self._fault.request(self._arm.codec, message, data)
+        self._lost = not changed
+        answer = b"".join(map(self._handle, self._read_again(received, changed)))
+        sent = b""
+        for delay, part in self._fault.reply(self._arm.codec, message, answer):
+            if delay <= 0:
+                sent += part
+            else:
+                self._send_later(delay, part)
+        return sent
+
+    def _read_again(self, received: RequestReceived, changed: bytes) -> list[DeviceEvent]:
+        if changed == received.frame.data:
+            return [received]
+        return DeviceSession(self._arm.codec).receive(changed)
+
+    def _after_noise(self, noise: bytes) -> bytes:
+        return self._after_malformed(kind_of(self._arm.table, noise), noise) if noise else b""
+
+    def _after_malformed(self, kind: Stimulus, data: bytes) -> bytes:
         if request := self._fault.forgets(kind):
+            # The arm's own connection, which nobody reads, takes its acknowledgement.
             self._arm.receive(request)
+        return self._fault.malformed(self._arm.codec, kind, data)
 
-    def _send(self, delay: float, data: bytes) -> None:
+    def _send_later(self, delay: float, data: bytes) -> None:
         if data:
             self._count += 1
-            heapq.heappush(self._due, (self._clock() + delay, self._count, data))
+            heapq.heappush(self._late, (self._arm.clock() + delay, self._count, data))
 
-    def _take_due(self) -> bytes:
+    def _take_late(self) -> bytes:
         sent = b""
-        while self._due and self._due[0][0] <= self._clock():
-            sent += heapq.heappop(self._due)[2]
+        while self._late and self._late[0][0] <= self._arm.clock():
+            sent += heapq.heappop(self._late)[2]
         return sent
