@@ -125,12 +125,14 @@ class Evidence:
             return TOO_LATE
         if copy:
             return COPY if self._answered(made) else ""
-        return self._displaced(made)
+        return self._displaced(found, made)
 
-    def _displaced(self, made: Made) -> str:
+    def _displaced(self, found: Found, made: Made) -> str:
         """Return the limit by which the call of a reply took another one, and left this one."""
         for call in self._calls_of(made):
-            if call.ending == "value" and call.value != made.value:
+            # Equal values do not show it, but a call cannot take what was delivered after its end.
+            took_another = call.value != made.value or call.ended < found.at
+            if call.ending == "value" and took_another:
                 limit = self._limit_of_taken(call)
                 if limit:
                     return limit
