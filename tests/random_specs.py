@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 from hypothesis import strategies as st
-from ruamel.yaml import YAML
 
 import random_values
 from cobotwire_codegen.build import build_edition
@@ -193,10 +193,8 @@ def specs(
 
 
 def _write(path: Path, data: Record) -> None:
-    yaml = YAML()
-    yaml.width = 4096
-    with path.open("w") as file:
-        yaml.dump(data, file)
+    """Write a spec as JSON, which is YAML too: to write block style takes twenty times as long."""
+    path.write_text(json.dumps(data))
 
 
 @st.composite

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from itertools import groupby
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from jinja2 import (
+    BaseLoader,
     ChoiceLoader,
     Environment,
     FileSystemLoader,
@@ -156,10 +158,22 @@ def with_used_types(edition: Edition) -> Edition:
 
 def environment(templates: Path | None = None) -> Environment:
     """Return the environment of all templates; those in ``templates`` replace the shipped ones."""
-    shipped = PackageLoader("cobotwire_codegen")
-    own = [FileSystemLoader(templates)] if templates is not None else []
+    if templates is None:
+        return _shipped()
+    # Made anew each time: the user of `watch` may add a template.
+    return _environment(FileSystemLoader(templates), PackageLoader("cobotwire_codegen"))
+
+
+@cache
+def _shipped() -> Environment:
+    """Return the environment of the shipped templates, so that each is compiled once."""
+    return _environment(PackageLoader("cobotwire_codegen"))
+
+
+def _environment(*loaders: BaseLoader) -> Environment:
+    """Return an environment that takes each template from the first loader that has it."""
     jinja = Environment(
-        loader=ChoiceLoader([*own, shipped]),
+        loader=ChoiceLoader(loaders),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
