@@ -11,7 +11,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,12 +33,23 @@ class CommandRun(NamedTuple):
     @property
     def matches(self) -> bool:
         """Return whether the command printed what the page shows."""
-        pattern = re.escape(self.expected).replace(re.escape("...\n"), r"(?:.*\n)*?")
-        return re.fullmatch(pattern, self.printed) is not None
+        return re.fullmatch(output_pattern(self.expected), self.printed) is not None
 
 
-def run(page: Path, folder: Path, port: str) -> Iterator[CommandRun]:
-    """Run a page from top to bottom, with ``port`` in place of the port that the page names."""
+def output_pattern(shown: str) -> str:
+    """Return a regular expression for the output that a page shows; ``...`` is any lines."""
+    return re.escape(shown).replace(re.escape("...\n"), r"(?:.*\n)*?")
+
+
+def run(page: Path, folder: Path, port: str, without: Container[str] = ()) -> Iterator[CommandRun]:
+    """Run a page from top to bottom, with ``port`` in place of the port that the page names.
+
+    Args:
+        page: The page.
+        folder: Where its files are written, and its commands run.
+        port: The port of an arm.
+        without: Commands that are not run.
+    """
     for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
         text = block["text"]
         if block["how"]:
@@ -47,6 +58,8 @@ def run(page: Path, folder: Path, port: str) -> Iterator[CommandRun]:
                 file.write(text.replace(PORT, port))
         elif block["kind"] == "console":
             for command, expected in _commands(text):
+                if command in without:
+                    continue
                 yield CommandRun(
                     command,
                     expected.replace(PORT, port),

@@ -1,0 +1,27 @@
+"""The plans of all pages. A page that is not here has no command and no program that needs one."""
+
+from __future__ import annotations
+
+from newcomer.website.planned import Plan
+from newcomer.website.plans import captures, conformance, guides, readme
+
+PLANS: dict[str, Plan] = {
+    "README.md": readme.README,
+    "docs/index.md": readme.INDEX,
+    "docs/start.md": readme.START,
+    "docs/guide/drive.md": guides.DRIVE,
+    "docs/simulation.md": guides.SIMULATION,
+    "docs/studio.md": guides.STUDIO,
+    "docs/pymycobot.md": guides.PYMYCOBOT,
+    "docs/attack.md": guides.ATTACK,
+    "docs/bad-lines.md": guides.BAD_LINES,
+    "docs/c.md": guides.C,
+    "docs/targets.md": guides.TARGETS,
+    "docs/captures.md": captures.CAPTURES,
+    "docs/export.md": captures.EXPORT,
+    "docs/archives.md": captures.ARCHIVES,
+    "docs/columns.md": captures.COLUMNS,
+    "docs/diagnosis.md": captures.DIAGNOSIS,
+    "docs/wireshark.md": captures.WIRESHARK,
+    "docs/conformance.md": conformance.CONFORMANCE,
+}

@@ -1,0 +1,100 @@
+"""The tutorials, and the guides to the simulated arm, to tests, and to programs of pymycobot."""
+
+from __future__ import annotations
+
+from newcomer.website.planned import INSTALLED, Expected, NotRun, Plan, Program
+from newcomer.website.plans.readme import SIM
+
+# The class of another robot takes the port that the page names, and opens a simulated one.
+SIMULATED = """\
+from cobotwire.editions import load
+from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm
+def simulate(edition):
+    module, clock = load(edition), RunningClock(50.0)
+    class Simulated(module.CLIENT):
+        def __init__(self, port, **options):
+            self.server = PtyServer(SimulatedArm(module.TABLE, clock=clock, powered=True), clock)
+            super().__init__(self.server.__enter__().url, **options)
+    setattr(module, module.CLIENT.__name__, Simulated)
+    return module
+"""
+
+DRIVE = Plan(
+    programs={
+        "from cobotwire.editions.mybuddy import MyBuddy": Program(
+            f"{SIMULATED}\nsimulate('mybuddy')"
+        ),
+        "from cobotwire import TwoArms": Program("simulate('mercury_x1')", r"\AAngles\(j1=0\.0"),
+        "for event in arm.events(MotionEnded, timeout=5):": Program(
+            "MotionEnded = simulate('mercury_a1').MotionEnded\n"
+            "arm = load('mercury_a1').MercuryA1('')\n"
+            "arm.send_angle(1, 5, 100)\n",
+            r"\A\S+\n\Z",
+        ),
+    }
+)
+
+SIMULATION = Plan(
+    prepare="""
+        printf '0 0 0 0 0 0 0\\n1 10 0 0 0 0 0\\n' > hand.txt
+        cobotwire --edition mycobot280 call /dev/ttyACM0 get_angles --record arm.pcapng
+    """,
+    commands={
+        "cobotwire sim": SIM,
+        "cobotwire sim --tcp 127.0.0.1:9000": Expected(r"socket://127\.0\.0\.1:9000", served=True),
+        "cobotwire sim --speed 10 --json": Expected(r'\{.*"/dev/pts/\d+"', served=True),
+        "cobotwire sim --powered --no-acks": SIM,
+        "cobotwire sim --led hand.txt": SIM,
+        "cobotwire sim --view arm.png": SIM,
+        "cobotwire plot arm.pcapng -o arm.svg": Expected(),
+        "cobotwire plot arm.pcapng --pose -o pose.png": Expected(),
+        "cobotwire sim --list-scenarios": Expected(r"late-replies"),
+        "cobotwire sim --scenario merged-acks": SIM,
+        "cobotwire sim --scenario ./monday.yaml --seed 7": SIM,
+    },
+    programs={
+        "from cobotwire.editions.mycobot280 import TABLE": Program(output=r"get_angles|b'"),
+        "from cobotwire import codec": Program(output=r"\A(.*\n)*Angles\(j1=0\.0"),
+    },
+)
+
+STUDIO_PAGE = r"http://127\.0\.0\.1:\d+"
+STUDIO = Plan(
+    prepare="cobotwire call /dev/ttyACM0 get_angles --record arm.pcapng",
+    commands={
+        "pip install 'cobotwire[studio]'": INSTALLED,
+        "cobotwire studio": Expected(STUDIO_PAGE, served=True),
+        "cobotwire studio /dev/ttyACM0": Expected(STUDIO_PAGE, served=True),
+        "cobotwire studio /dev/ttyACM0 --allow-motion": Expected(STUDIO_PAGE, served=True),
+        "cobotwire studio arm.pcapng": Expected(STUDIO_PAGE, served=True),
+    },
+)
+
+PYMYCOBOT = Plan(
+    programs={
+        "from cobotwire import MyCobot280": Program(
+            setup="with __import__('cobotwire').MyCobot280('/dev/ttyACM0') as arm: arm.power_on()",
+            output=r"\A(9\.\d+|10\.\d+)\n",
+        ),
+        "angles = arm.get_angles()": Program(setup="arm = MyCobot280('/dev/ttyACM0')"),
+    },
+)
+
+CLONE = "it is for a clone: it measures two clients, and writes the tables of the page"
+ATTACK = Plan(commands={"make attack": NotRun(CLONE)})
+BAD_LINES = Plan(commands={"make table": NotRun(CLONE)})
+C = Plan(
+    commands={
+        "arm-none-eabi-gcc -std=c99 -Os -mcpu=cortex-m0plus -mthumb -ffreestanding -fstack-usage"
+        " -c targets/c/mycobot280/mycobot280.c && arm-none-eabi-size mycobot280.o": NotRun(
+            "it needs a compiler for Arm; tests/targets/c runs it"
+        )
+    }
+)
+TARGETS = Plan(
+    commands={
+        "cobotwire-gen render commands.csv.j2 spec/editions/mycobot280.yaml --out commands.csv": (
+            Expected()
+        )
+    }
+)
