@@ -44,6 +44,8 @@ def command_changes(old: Edition, new: Edition, known: Known) -> Iterator[Findin
     # A command without its own deadline has the transport's; frame_changes reports that change.
     transports = old.frame.deadline_ms, new.frame.deadline_ms
     for before, after in matched.pairs:
+        if before == after:
+            continue
         where = f"commands/{after.name}"
         if before.name != after.name:
             yield finding("command-renamed", where, before.name, after.name)

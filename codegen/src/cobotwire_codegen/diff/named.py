@@ -26,8 +26,9 @@ def named_types(old: Edition, new: Edition) -> tuple[Known, list[Finding]]:
     known.reported.update(found)
     # A value type comes after its quantities, and does not repeat their findings.
     for type, other in types.pairs:
-        found.extend(type_changes(f"types/{other.name}", type, other, known))
-        known.reported.update(found)
+        if type != other:
+            found.extend(type_changes(f"types/{other.name}", type, other, known))
+            known.reported.update(found)
         _note(type, other, known)
     found.extend(_listed("wire", wires))
     found.extend(_listed("types", types))

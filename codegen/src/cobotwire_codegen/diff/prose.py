@@ -39,7 +39,7 @@ def disputes(where: str, old: Sequence[Dispute], new: Sequence[Dispute]) -> Iter
 
 def history(where: str, old: Sequence[Change], new: Sequence[Change]) -> Iterator[Finding]:
     """Compare the changes that a delta states, and their reasons."""
-    if bare(old) != bare(new):
+    if old != new and bare(old) != bare(new):
         known = [bare(change) for change in old]
         fresh = [change.what for change in new if bare(change) not in known]
         yield finding("history-changed", where, "", words.short(" ".join(fresh)) or "fewer changes")
@@ -70,6 +70,8 @@ def _listed(
     new: Sequence[T],
     shown: Callable[[T], str],
 ) -> Iterator[Finding]:
+    if old == new:
+        return
     # Equal items match first; after that, items at the same place have changed.
     matched = match(old, new, bare).further(where)
     for item in matched.removed:
