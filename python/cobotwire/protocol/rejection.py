@@ -7,6 +7,7 @@ codecs have the same texts.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any, Literal
 
 from cobotwire.protocol.errors import ProtocolError, UsageError
@@ -286,6 +287,7 @@ def _allowed(field: Field, number: Number) -> str:
     return f"{kind} {_bound(number, number.minimum)}..{_bound(number, number.maximum)}{unit}"
 
 
+@lru_cache(maxsize=1000)  # a stream of wrong values has few bounds, and a fraction takes long
 def _bound(number: Number, raw: int) -> str:
     if number.encoding == "float":
         # The nearest float to a decimal has more digits than anyone wrote.

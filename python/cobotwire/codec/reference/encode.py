@@ -24,6 +24,9 @@ from cobotwire.protocol.table import Case, Command, Direction, Field, FrameForma
 
 # Types that are iterable but never meant as a row of numbers.
 NOT_SEQUENCES = (str, bytes, bytearray, dict, set, frozenset)
+# What has an index or a float value. The first two are quick to compare; the others, of objects of
+# other libraries such as NumPy, are not.
+NUMBERS = (float, int, SupportsFloat, SupportsIndex)
 
 
 class _Rejected(Exception):
@@ -167,7 +170,7 @@ def _integer(field: Field, number: Number, value: Any) -> int:
 
 
 def _real(number: Number, value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, (SupportsFloat, SupportsIndex)):
+    if isinstance(value, bool) or not isinstance(value, NUMBERS):
         raise _Rejected("type")
     try:
         real = float(value)
