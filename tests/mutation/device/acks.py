@@ -8,7 +8,7 @@ from functools import partial
 from cobotwire.codec.interface import Codec, DecodedMessage
 from cobotwire.protocol.table import Command, Table
 from mutation.device.broken import BrokenArm, Fault, TimedBytes
-from mutation.device.cells import framed
+from mutation.device.cells import framed, replier
 from mutation.device.exchanges import distinct
 from mutation.mutant import Mutant
 
@@ -26,7 +26,10 @@ class Acknowledged(Fault):
         """Return the wrong acknowledgement, followed by the correct reply."""
         if request.command is not self._command:
             return [TimedBytes(0.0, data)]
-        return [TimedBytes(0.0, framed(codec.table.frame, self._command.id, self._data) + data)]
+        table = codec.table
+        address = replier(table, request.address)
+        ack = framed(table.frame, self._command.id, self._data, address)
+        return [TimedBytes(0.0, ack + data)]
 
 
 class Unacknowledged(Fault):

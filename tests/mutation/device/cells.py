@@ -6,9 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from cobotwire.codec.interface import DecodedMessage
+from cobotwire.protocol.addresses import devices_of
 from cobotwire.protocol.fields import Case, Field, RawRows, Variant
 from cobotwire.protocol.frame_format import FrameFormat
 from cobotwire.protocol.numbers import Number
+from cobotwire.protocol.table import Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +45,16 @@ def joined(fields: Iterable[Iterable[Cell]]) -> bytes:
     return b"".join(cell.data for cells in fields for cell in cells)
 
 
-def framed(frame: FrameFormat, id: int, data: bytes, length: int | None = None) -> bytes:
-    """Return a frame; ``length``, if given, is its LEN whatever the size of the data."""
-    stated = frame.length(len(data)) if length is None else length
-    body = frame.start(id % 256, stated % 256) + data
+def framed(frame: FrameFormat, id: int, data: bytes, address: int | None = None) -> bytes:
+    """Return a frame; if the format has addresses, ``address`` is by default the first one."""
+    body = frame.start(id % 256, frame.length(len(data)) % 256, address) + data
     return body + frame.end(body)
+
+
+def replier(table: Table, address: int | None) -> int | None:
+    """Return the address of the simulated device that replies to a request to an address."""
+    devices = [device.value for device in devices_of(table)]
+    return address if address in devices or not devices else devices[0]
 
 
 def checked(frame: FrameFormat, data: bytes) -> bytes:

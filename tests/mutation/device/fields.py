@@ -44,7 +44,8 @@ class WrongField(Fault):
         for at, field in enumerate(decoded.variant.fields):
             if field.name == self._field.name:
                 fields[at] = self._alteration.alter(self._field, fields[at])
-        return [TimedBytes(0.0, framed(frame, request.command.id, joined(fields)))]
+        wrong = framed(frame, request.command.id, joined(fields), decoded.address)
+        return [TimedBytes(0.0, wrong)]
 
 
 def wrong_fields(table: Table) -> Iterator[Mutant]:

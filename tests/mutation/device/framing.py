@@ -59,8 +59,9 @@ def _length(step: int) -> Reframe:
 
 def _id(pick: Callable[[Table, int], int]) -> Reframe:
     def reframe(table: Table, data: bytes) -> bytes:
-        id = table.frame.read_id(data)
-        return framed(table.frame, pick(table, id), table.frame.data(data))
+        frame = table.frame
+        id = pick(table, frame.read_id(data))
+        return framed(frame, id, frame.data(data), frame.address(data))
 
     return reframe
 
@@ -80,7 +81,9 @@ def _resized(change: Callable[[bytes], bytes]) -> Reframe:
     """Change the data, with a correct LEN."""
 
     def reframe(table: Table, data: bytes) -> bytes:
-        return framed(table.frame, table.frame.read_id(data), change(table.frame.data(data)))
+        frame = table.frame
+        changed = change(frame.data(data))
+        return framed(frame, frame.read_id(data), changed, frame.address(data))
 
     return reframe
 

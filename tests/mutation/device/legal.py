@@ -16,8 +16,10 @@ def draw_request(
     table: Table, command: Command, random: Random, reported: Reported | None = None
 ) -> bytes:
     """Return a legal request of ``command``; some have reported values, or values near them."""
-    variant = random.choice(command.request)
-    return framed(table.frame, command.id, joined(draw_fields(variant, random, reported or {})))
+    variant, addresses = random.choice(command.request), table.frame.addresses
+    data = joined(draw_fields(variant, random, reported or {}))
+    address = random.choice(addresses) if addresses else None
+    return framed(table.frame, command.id, data, address)
 
 
 def draw_fields(variant: Variant, random: Random, reported: Reported) -> list[list[Cell]]:

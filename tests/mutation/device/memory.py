@@ -29,17 +29,18 @@ class Forgets(Fault):
 
 
 class Stale(Fault):
-    """One query gets the reply to the same query before."""
+    """One query gets the reply to the same query before, to the same address."""
 
     def __init__(self, command: Command) -> None:
         self._command = command
-        self._before = b""
+        self._before: dict[int | None, bytes] = {}
 
     def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
         """Return the reply before; the first time, the right one."""
         if request.command is not self._command:
             return [TimedBytes(0.0, data)]
-        sent, self._before = self._before or data, data
+        sent = self._before.get(request.address) or data
+        self._before[request.address] = data
         return [TimedBytes(0.0, sent)]
 
 

@@ -9,7 +9,7 @@ from cobotwire.codec.interface import Codec, DecodedMessage
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command, Field, Table
 from mutation.device.broken import BrokenArm, Fault, TimedBytes
-from mutation.device.cells import Cell, framed, joined, take_apart
+from mutation.device.cells import Cell, framed, joined, replier, take_apart
 from mutation.device.exchanges import distinct, pickers, request_fields
 from mutation.mutant import Mutant
 
@@ -35,7 +35,10 @@ class Ignored(Fault):
             [Cell(number, min(max(1, number.minimum), number.maximum)) for number in numbers]
             for numbers in (field.cases[0].numbers for field in self._command.reply[0].fields)
         ]
-        return [TimedBytes(0.0, framed(codec.table.frame, self._command.id, joined(fields)))]
+        table = codec.table
+        address = replier(table, request.address)
+        reply = framed(table.frame, self._command.id, joined(fields), address)
+        return [TimedBytes(0.0, reply)]
 
 
 class Misread(Fault):
@@ -56,7 +59,7 @@ class Misread(Fault):
             if field.name == self._field.name:
                 cells = fields[at]
                 fields[at] = [_fit(field, cell, self._change(field, cell)) for cell in cells]
-        changed = framed(frame, request.command.id, joined(fields))
+        changed = framed(frame, request.command.id, joined(fields), request.address)
         return changed if _is_legal(codec, request.command, changed) else data
 
     def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:

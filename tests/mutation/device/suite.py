@@ -11,7 +11,7 @@ from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import Noise, Scenario
 from cobotwire.simulator.peer import Peer
 from mutation.device import device_mutants
-from mutation.device.testing import complaints
+from mutation.device.testing import complaints, tested_addresses
 from mutation.mutant import Mutant
 from mutation.oracle.reasons import reason
 from mutation.suite import Case, Outcome, RightRun
@@ -38,7 +38,7 @@ class DeviceSuite:
         self._mutants = {mutant.id: mutant for mutant in device_mutants(table)}
         self.name = f"device, {table.edition}"
         # Failures that the correct device has, too; they do not count. Keyed by the tested command.
-        self._groundless: dict[str, set[tuple[str, str]]] = {}
+        self._groundless: dict[tuple[str, str | None], set[tuple[str, str]]] = {}
 
     def cases(self) -> Sequence[Case]:
         """Return every mutant of the edition's device."""
@@ -58,22 +58,26 @@ class DeviceSuite:
         """Return the first failure; empty if there is none.
 
         The test cases of the broken command run first, on a separate device, because they kill
-        most mutants; a whole run follows.
+        most mutants; a whole run follows. A command may be that of one address.
         """
-        for only in dict.fromkeys((mutant.command, "")):
+        addresses = tested_addresses(self._table)
+        runs = [(mutant.command, address) for address in addresses]
+        for only, address in dict.fromkeys((*runs, ("", addresses[0]))):
             clock = SteppedClock()
-            for found in complaints(self._table, mutant.make(clock), clock, only):
-                if (found.command, found.case) not in self._excuses(only):
+            for found in complaints(self._table, mutant.make(clock), clock, only, address):
+                if (found.command, found.case) not in self._excuses(only, address):
                     return str(found)
         return ""
 
-    def _excuses(self, only: str) -> set[tuple[str, str]]:
-        if only not in self._groundless:
+    def _excuses(self, only: str, address: str | None) -> set[tuple[str, str]]:
+        known = self._groundless.get((only, address))
+        if known is None:
             clock = SteppedClock()
             right = SimulatedArm(self._table, clock=clock)
-            found = complaints(self._table, right, clock, only)
-            self._groundless[only] = {(complaint.command, complaint.case) for complaint in found}
-        return self._groundless[only]
+            found = complaints(self._table, right, clock, only, address)
+            known = {(complaint.command, complaint.case) for complaint in found}
+            self._groundless[only, address] = known
+        return known
 
     def right_runs(self) -> Sequence[str]:
         """Return the names of the runs: on a clean line, and with light noise."""

@@ -10,6 +10,7 @@ from cobotwire import editions
 from cobotwire.cli.shared.subject_connection import Lacking
 from cobotwire.conformance.device import ALL_PERMISSIONS, DeviceConnection, Permissions, Tester
 from cobotwire.conformance.report import Cause, Result, Verdict
+from cobotwire.protocol.addresses import devices_of
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
@@ -33,25 +34,31 @@ class Complaint(NamedTuple):
 
 
 def complaints(
-    table: Table, peer: Peer, clock: SteppedClock, only: str = ""
+    table: Table, peer: Peer, clock: SteppedClock, only: str = "", address: str | None = None
 ) -> Iterator[Complaint]:
     """Yield the failures as the tester finds them; ``only`` restricts the run to one command.
 
+    ``address`` is one of :func:`tested_addresses`; left out: the first.
+
     A run that ends early is a complaint too: its report says that the device stopped replying.
     """
-    for result in results(table, peer, clock, only):
+    for result in results(table, peer, clock, only, address):
         if result.verdict is Verdict.FAIL:
             yield Complaint(result.command, result.case, result.reason)
         elif result.cause is Cause.RUN_ENDED:
             yield Complaint("", "run ended", result.reason)
 
 
-def results(table: Table, peer: Peer, clock: SteppedClock, only: str = "") -> Iterator[Result]:
+def results(
+    table: Table, peer: Peer, clock: SteppedClock, only: str = "", address: str | None = None
+) -> Iterator[Result]:
     """Yield the results of a whole run step by step, or of the steps of one command.
 
     What the simulated arm states that it does not support is no failure.
     """
-    yield from _results(table, peer, clock, only, on_correct_arm(table).lacking)
+    address = address or tested_addresses(table)[0]
+    lacking = on_correct_arm(table, address).lacking
+    yield from _results(table, peer, clock, only, address, lacking)
 
 
 class OnCorrectArm(NamedTuple):
@@ -66,27 +73,55 @@ class OnCorrectArm(NamedTuple):
 
 
 @cache
-def _of_edition(edition: str) -> OnCorrectArm:
+def _of_edition(edition: str, address: str | None) -> OnCorrectArm:
     table = editions.load(edition).TABLE
     clock, stated = SteppedClock(), Lacking(table)
     arm = SimulatedArm(table, clock=clock, on_note=stated.note)
     passed = [
         result.command
-        for result in _results(table, arm, clock, "", stated.reasons)
+        for result in _results(table, arm, clock, "", address, stated.reasons)
         if result.verdict is Verdict.PASS
     ]
     return OnCorrectArm(stated.reasons, frozenset(passed))
 
 
-def on_correct_arm(table: Table) -> OnCorrectArm:
+def on_correct_arm(table: Table, address: str | None = None) -> OnCorrectArm:
     """Return what a whole run on the correct arm shows; nothing if its geometry is known."""
     if table.robot.geometry is not None:
         return OnCorrectArm({}, frozenset(command.name for command in table.commands))
-    return _of_edition(table.edition)
+    return _of_edition(table.edition, address or tested_addresses(table)[0])
+
+
+def lacking(table: Table, command: str) -> str:
+    """Return why the simulated arm lacks a command at each address; empty if it has it at one."""
+    found = [
+        on_correct_arm(table, each).lacking.get(command, "") for each in tested_addresses(table)
+    ]
+    return found[0] if all(found) else ""
+
+
+def is_judged(table: Table, command: str) -> bool:
+    """Return whether a test case passes on a command of the correct arm."""
+    return any(command in on_correct_arm(table, each).judged for each in tested_addresses(table))
+
+
+def tested_addresses(table: Table) -> tuple[str | None, ...]:
+    """Return the addresses of the devices that are tested; None if frames have none.
+
+    They are those of single devices, because a request to all may have the reply of any of them.
+    Devices with as many joints as another one are left out.
+    """
+    devices = {device.joints: device.name for device in reversed(devices_of(table))}
+    return tuple(reversed(devices.values())) or (None,)
 
 
 def _results(
-    table: Table, peer: Peer, clock: SteppedClock, only: str, unsupported: dict[str, str]
+    table: Table,
+    peer: Peer,
+    clock: SteppedClock,
+    only: str,
+    address: str | None,
+    lacking: dict[str, str],
 ) -> Iterator[Result]:
     permissions = Permissions.of(
         ALL_PERMISSIONS,
@@ -98,7 +133,8 @@ def _results(
         DeviceConnection(MemoryTransport(peer, clock), clock),
         table,
         permissions=permissions,
-        lacking=unsupported,
+        address=address,
+        lacking=lacking,
     )
     for step in tester.steps():
         if not only or (step.command is not None and step.command.name == only):

@@ -157,8 +157,8 @@ def _damage(table: Table, random: Random, data: bytes) -> bytes:
             data[: random.randrange(1, len(data))],
             data[:-1] + bytes([random.randrange(256)]),
             bytes(random.randrange(256) for _ in range(random.randrange(1, 8))) + data,
-            framed(frame, random.choice(unused), payload),
+            framed(frame, random.choice(unused), payload, frame.address(data)),
             checked(frame, frame.with_length(data, random.randrange(256))),
-            framed(frame, frame.read_id(data), other),
+            framed(frame, frame.read_id(data), other, frame.address(data)),
         )
     )

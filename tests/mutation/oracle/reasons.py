@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from cobotwire.protocol.table import Command, Field, Table
 from mutation.device.exchanges import reply_fields, request_fields
-from mutation.device.testing import on_correct_arm
+from mutation.device.testing import is_judged, lacking
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, only_legal, replies_of, values_of
 from mutation.oracle.conversation import Conversation
@@ -19,7 +19,7 @@ def reason(table: Table, mutant: Mutant) -> str:
     if undefined:
         return undefined
     field = _field(table, mutant)
-    lacks = mutant.command in on_correct_arm(table).lacking
+    lacks = bool(lacking(table, mutant.command))
     known = field is None or field.echo or _reported(table, mutant.command, field)
     known = known and not lacks
     had, differs = [], False
@@ -49,8 +49,8 @@ def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
     requests = sum(len(conversation.steps) for conversation in had)
     same = f"no byte differs in {len(had)} conversations with {requests} writes in all"
     field = _field(table, mutant)
-    why = on_correct_arm(table).lacking.get(mutant.command)
-    if why is not None:
+    why = lacking(table, mutant.command)
+    if why:
         short, _, _ = why.partition(":")
         return f"{same}: no reply of the simulated arm shows the fault, because {short}"
     if field is None:
@@ -71,7 +71,7 @@ TURNS = "CLOCKWISE"
 
 def _undefined(table: Table, mutant: Mutant) -> str:
     """Return what the edition does not define about a field, so that any effect is correct."""
-    if mutant.command and mutant.command not in on_correct_arm(table).judged:
+    if mutant.command and not is_judged(table, mutant.command):
         unsafe = _unsafe(table.command(mutant.command))
         if unsafe:
             return unsafe

@@ -15,6 +15,10 @@ OF_MEANING = frozenset(
 LEFT_OPEN = {
     "clear_queue": "no source says what happens to the present motion, and no query reports the "
     "waiting targets",
+    "get_plan_speed": "no source says which of the two speeds set_plan_speed sets, nor what the "
+    "other one is",
+    "get_plan_acceleration": "no source says which of the two accelerations set_plan_acceleration "
+    "sets, nor what the other one is",
     "joint_brake": "the edition only says that a motor is braked, and no query reports brakes",
     "clear_error_information": "an error is caused by an impossible motion, and its target "
     "lies outside every workspace that a tester is permitted",

@@ -11,6 +11,7 @@ from cobotwire.codec.interface import Codec, Event, Frame
 from cobotwire.conformance.device.connection import DeviceConnection
 from cobotwire.conformance.device.response import ReceivedReply, Response
 from cobotwire.diagnose import Diagnoser, Finding
+from cobotwire.protocol.addresses import addresses_of, lacks_joints
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Address, Command, TextReply
@@ -49,6 +50,7 @@ class Requester:
         self._codec = codec
         self._timing = timing
         self._requests = RequestEncoder(codec, address)
+        self._devices: dict[int | None, Address] = {d.value: d for d in addresses_of(codec.table)}
         self._framer = codec.framer("reply")
         self._diagnoser = Diagnoser(codec)
         # The last two requests, of different commands, that had a reply.
@@ -168,7 +170,7 @@ class Requester:
             if not isinstance(event, Frame):
                 continue
             address = self._codec.table.frame.address(event.data)
-            own = request.can_have_reply(event) and can_come_from(address, request)
+            own = request.can_have_reply(event) and self._can_come_from(address, request)
             if self._is_event(event):
                 continue
             if own and command.reply:
@@ -178,6 +180,15 @@ class Requester:
             else:
                 response.others.append(event)
         self._keep(response, self._diagnoser.feed(events))
+
+    def _can_come_from(self, address: int | None, request: EncodedRequest) -> bool:
+        """Return whether a reply of an address can belong to a request.
+
+        To a request to several devices any of them may reply, if it has the joints.
+        """
+        device = self._devices.get(address)
+        lacks = lacks_joints(self._codec.table, device, request.command)
+        return can_come_from(address, request) and not lacks
 
     def _is_event(self, frame: Frame) -> bool:
         """Return whether a frame is a legal event: the device may send it at any time."""

@@ -59,10 +59,17 @@ def _agree(probe: Probe) -> None:
 def _reading(probe: Probe, query: Command, *values: Any) -> list[_Part]:
     """Return the numbers of a query's reply, but not those that repeat its arguments.
 
+    A reply with values that are not allowed agrees with nothing.
+
     Raises:
         NotSupported: no valid reply comes.
     """
-    valid = probe.device.request(request_of(query, *values)).valid
+    response = probe.device.request(request_of(query, *values))
+    valid = response.valid
+    if valid is None and response.replies:
+        call = probe.device.requester.describe(response.request)
+        error = response.replies[0].error
+        probe.expect(AGREES, False, f"{call}: expected legal values; {error or response.summary}")
     if valid is None or valid.decoded is None:
         raise NotSupported(f"{query.name} reports nothing")
     fields = valid.decoded.fields

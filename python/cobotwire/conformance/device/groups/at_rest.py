@@ -10,7 +10,7 @@ from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import request_of, units
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.roles import ANGLES, COORDS, ReachedQuery, as_reached_query
+from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, ReachedQuery, as_reached_query
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.kinematics.forward import coords_of
 from cobotwire.simulator.kinematics.geometry import geometry_of
@@ -91,11 +91,44 @@ def _frames(table: Table) -> list[tuple[Command, str]]:
 
 
 def _is_reached_query(table: Table, command: Command) -> bool:
-    return command.role == "reached"
+    return command.role == "reached" or _single_angle(table, command) is not None
+
+
+def _single_angle(table: Table, command: Command) -> Command | None:
+    """Return the query of a joint's angle, if a command is the query for a device with one joint.
+
+    It is a variant of the query in the role ``reached``, with one number in place of a row.
+    """
+    reached, joints = table.find_role("reached"), table.find_role("joints")
+    if reached is None or joints is None or command.id != reached.id or command is reached:
+        return None
+    if command.request[0].fields[0].many:
+        return None
+    return next((c for c in table.commands if joints.name in c.agrees_with and _is_angle(c)), None)
+
+
+def _is_angle(command: Command) -> bool:
+    """Return whether a query with one argument reports one angle."""
+    reported = [field.cases[0].numbers[0].unit for field in command.reply[0].fields]
+    return len(command.request[0].fields) == 1 and reported == ["degree"]
+
+
+def _reached_by_one(probe: Probe, angle: Command) -> None:
+    """Send the present angle of the only joint, and another one."""
+    here = probe.device.require(request_of(angle, 1)).result
+    for target, there in ((here, True), (here + FAR["degree"], False)):
+        reported = probe.device.is_set(request_of(probe.command, target, KINDS[ANGLES]))
+        call = f"{probe.command.name}({target:.4g})"
+        came = "no valid reply" if reported is None else str(reported)
+        probe.expect(REACHED, reported is there, f"at rest, {call}: expected {there}; came {came}")
 
 
 def _reached(probe: Probe) -> None:
     """Send the present position, and others that differ in one part each."""
+    angle = _single_angle(probe.device.table, probe.command)
+    if angle is not None:
+        _reached_by_one(probe, angle)
+        return
     query = as_reached_query(probe.command)
     for kind, role in ((ANGLES, "joints"), (COORDS, "coordinates")):
         source = probe.device.command(role) if kind in query.kinds else None  # type: ignore[arg-type]

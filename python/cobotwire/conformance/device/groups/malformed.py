@@ -118,8 +118,13 @@ def forbidden(place: Place) -> list[int]:
 
 
 def _crowded(probe: Probe) -> None:
-    """Send legal requests after noise, in pieces, and several at once."""
+    """Send legal requests in pieces, several at once, and after noise.
+
+    Noise comes last: a device that is confused by it may have lost what comes next.
+    """
     device, request = probe.device, _sample(probe)
+    _in_pieces(probe, request)
+    _together(probe, request)
     sender = MalformedSender(probe, request)
     for name in NOISES:
         # The same pieces in each run, so that reports can be compared.
@@ -133,8 +138,6 @@ def _crowded(probe: Probe) -> None:
         probe.expect(NOISE_BEFORE, not copied, reason)
         again = partial(device.requester.send_instead, request, data, what)
         sender.expect_kept(f"noise {name!r}", data, again)
-    _in_pieces(probe, request)
-    _together(probe, request)
 
 
 def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
@@ -211,13 +214,13 @@ FORBIDDEN = Group(
 )
 CROWDED = Group(
     "crowded requests",
-    (NOISE_BEFORE, TOGETHER, PIECES, KEPT),
+    (PIECES, TOGETHER, NOISE_BEFORE, KEPT),
     _crowded,
     _is_framed_query,
     MALFORMED,
     sends=(
-        "The query after packets of the servo bus, text and bytes of a header; one byte at a "
-        "time; twice and three times in one write."
+        "The query one byte at a time; twice and three times in one write; after packets of the "
+        "servo bus, text and bytes of a header."
     ),
     subject="each query with a framed reply",
 )

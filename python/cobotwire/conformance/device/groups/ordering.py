@@ -57,6 +57,8 @@ def _ordered(probe: Probe) -> None:
         reason += "; ".join(map(shown, frames)) or "nothing"
         if ids == right[::-1]:
             reason += ": in the other order"
+        elif ids == right[:1]:
+            reason += f": {pair[1].command.name} had no reply"
         probe.expect(IN_ORDER, ids == right, reason)
 
 

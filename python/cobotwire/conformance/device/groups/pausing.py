@@ -10,7 +10,9 @@ from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 
-PAUSES = TestCase("pauses", "A pause holds the arm where it is, short of its target.")
+PAUSES = TestCase(
+    "pauses", "A pause holds the arm where it is, short of its target, and is reported."
+)
 
 
 def _pauses(table: Table, command: Command) -> bool:
@@ -51,6 +53,7 @@ def _pause(probe: Probe) -> None:
     moved = off_by(mover.angles(), paused, mover.tolerance, "was at")
     reason = f"after {probe.command.name}, expected the arm to stay"
     probe.expect(PAUSES, not moved, f"{reason}; {'; '.join(moved)}")
+    _expect_reported(probe, True)
     short = bool(off_by(paused, target, mover.tolerance))
     probe.expect(PAUSES, short, f"{reason} on its way, but it is at its target")
     request_change(probe, resume.request_type())
@@ -58,6 +61,15 @@ def _pause(probe: Probe) -> None:
     wrong = mover.differences(target)
     reason = f"{resume.name} after {probe.command.name}, expected the arm to go on to its target"
     probe.expect(ARRIVES, not wrong, f"{reason}; {'; '.join(wrong)}")
+    _expect_reported(probe, False)
+
+
+def _expect_reported(probe: Probe, paused: bool) -> None:
+    """Expect the query to report whether the arm is paused, long after it is."""
+    query = probe.device.table.in_role("paused")
+    reported = probe.device.is_set(query.request_type())
+    reason = f"after {probe.command.name}, {query.name}: expected {paused}; came {reported}"
+    probe.expect(PAUSES, reported is paused, reason)
 
 
 PAUSING = Group(

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, limits_of, requests
 from cobotwire.conformance.device.response import ReceivedReply, Response
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Field, Table
 
 # Between two requests a value with a unit may move by this share of its range.
 DRIFT = 0.02
+# How long an arm that has been switched on may take until what it reports is steady, in seconds.
+SETTLES = 1.0
+# The permission, and the name of what is restored.
+POWER = "power"
 
 
 def _echoes(command: Command) -> bool:
@@ -27,7 +34,7 @@ def _is_framed(command: Command) -> bool:
 REPLIED = TestCase("query-replied", "A query is replied to within its deadline.")
 FRAME = TestCase(
     "reply-frame",
-    "A reply is a whole frame: header, LEN, id, footer as the edition defines them.",
+    "A reply is a whole frame: header, address, LEN, id, footer as the edition defines them.",
     applies=_is_framed,
 )
 FIELDS = TestCase("reply-fields", "Each field of a reply holds a value that the edition allows.")
@@ -47,23 +54,48 @@ def is_query(table: Table, command: Command) -> bool:
 
 def _query(probe: Probe) -> None:
     """Request with each set of arguments, and with the last one again."""
-    command = probe.command
-    known = probe.device.known(command)
-    every = [
-        query
-        for variant in command.request
-        for query in requests(command, variant, known, limits_of(command, variant))
-        if _has_part(probe, query)
-    ]
+    command, every = probe.command, _every(probe)
     for query in every:
         first = probe.device.request(query)
         _judge(probe, first)
     again = probe.device.request(every[-1])
     _judge(probe, again)
     if first.valid is not None and again.valid is not None:
-        _judge_repetition(probe, first.valid, again.valid)
+        expect_repetition(probe, probe.command, first.valid, again.valid)
     if command.name in probe.device.retried:
         probe.note(REPLIED, "A reply came, but only when the query was repeated.")
+
+
+def _every(probe: Probe) -> list[Request[Any]]:
+    """Return the query with each set of arguments."""
+    command = probe.command
+    known = probe.device.known(command)
+    return [
+        query
+        for variant in command.request
+        for query in requests(command, variant, known, limits_of(command, variant))
+        if _has_part(probe, query)
+    ]
+
+
+def is_framed_query(table: Table, command: Command) -> bool:
+    """Return whether a command only reads, and has a framed reply."""
+    return is_query(table, command) and bool(command.reply)
+
+
+def _query_with_power(probe: Probe) -> None:
+    """Request twice after the arm has got power: what was true before it shows in one reply."""
+    device = probe.device
+    was_off = POWER not in device.restore_at_end
+    give_power(device)
+    if was_off and POWER in device.restore_at_end:
+        device.connection.clock.sleep(SETTLES)
+    query = _every(probe)[-1]
+    first = device.request(query).valid
+    again = None if first is None else device.request(query).valid
+    if first is None or again is None:
+        raise NotSupported(f"{probe.command.name} reports nothing")
+    expect_repetition(probe, probe.command, first, again)
 
 
 def _has_part(probe: Probe, query: Request[Any]) -> bool:
@@ -77,10 +109,10 @@ def _judge(probe: Probe, response: Response) -> None:
     command = response.request.command
     call = probe.device.requester.describe(response.request)
     for damaged in response.damaged:
-        expected = _expected_frame(probe.device.table, command)
+        expected = _expected_frame(probe.device.table, response)
         probe.expect(FRAME, False, f"{call}: {expected}; came {shown(damaged.data)}")
     if response.unexpected and not response.replies and not response.damaged and command.reply:
-        expected = _expected_frame(probe.device.table, command)
+        expected = _expected_frame(probe.device.table, response)
         probe.expect(FRAME, False, f"{call}: {expected}; came {response.summary}")
     for reply in response.replies:
         probe.expect(FRAME, True, "")
@@ -96,11 +128,22 @@ def _judge(probe: Probe, response: Response) -> None:
     probe.expect(REPLIED, in_time, _late(call, response, deadline))
 
 
-def _expected_frame(table: Table, command: Command) -> str:
-    frame = table.frame
+def _expected_frame(table: Table, response: Response) -> str:
+    frame, command = table.frame, response.request.command
     lengths = " or ".join(f"{frame.length(each.size, 'reply'):02X}" for each in command.reply)
     id = f", id {command.id:02X}" if frame.reply_has_id else ""
-    return f"expected a whole frame with the header {shown(frame.header)}{id} and LEN {lengths}"
+    header = f"{shown(frame.header)}{_expected_address(table, response)}"
+    return f"expected a whole frame with the header {header}{id} and LEN {lengths}"
+
+
+def _expected_address(table: Table, response: Response) -> str:
+    """Return the address that a reply must have; nothing if frames have none."""
+    replier = response.request.replier
+    if replier is None:
+        return ""
+    if replier in table.frame.addresses:
+        return f", address {replier:02X} ({address_name(table, replier)})"
+    return ", the address of a device that has all of these joints"
 
 
 def _wrong_echo(call: str, response: Response, reply: ReceivedReply) -> str:
@@ -116,20 +159,23 @@ def _late(call: str, response: Response, deadline: int) -> str:
     return f"{call}: expected a reply within {deadline} ms; {came}"
 
 
-def _judge_repetition(probe: Probe, first: ReceivedReply, again: ReceivedReply) -> None:
+def expect_repetition(
+    probe: Probe, query: Command, first: ReceivedReply, again: ReceivedReply
+) -> None:
     """Compare the replies to two equal requests, one right after the other."""
     if first.decoded is None or again.decoded is None:
-        both = f"expected the same text again; came {first.message}, then {again.message}"
-        probe.expect(REPEATS, first.message == again.message, both)
+        reason = f"{query.name}: expected the same text again; came {first.message}, then "
+        probe.expect(REPEATS, first.message == again.message, f"{reason}{again.message}")
         return
     old, new = first.decoded.fields, again.decoded.fields
-    both = f"expected the same variant of reply; came {old}, then {new}"
-    probe.expect(REPEATS, old.keys() == new.keys(), both)
+    reason = f"{query.name}: expected the same variant of reply; came {old}, then {new}"
+    probe.expect(REPEATS, old.keys() == new.keys(), reason)
     for field in again.decoded.variant.fields:
         if field.name not in old:
             continue
         before, after = old[field.name], new[field.name]
-        reason = f"{field.name}: expected the same again; came {before}, then {after}"
+        what = f"{query.name}: {field.name}"
+        reason = f"{what}: expected the same again; came {before}, then {after}"
         probe.expect(REPEATS, _alike(field, before, after), reason)
 
 
@@ -154,4 +200,13 @@ QUERIES = Group(
         "one twice."
     ),
     subject="each query",
+)
+WITH_POWER = Group(
+    "queries with power",
+    (REPEATS,),
+    _query_with_power,
+    is_framed_query,
+    frozenset({POWER}),
+    sends="The query twice, after the arm has been switched on if it was off.",
+    subject="each query with a framed reply",
 )

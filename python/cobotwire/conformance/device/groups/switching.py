@@ -8,6 +8,13 @@ from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
 from cobotwire.conformance.device.groups.gripping import opens
 from cobotwire.conformance.device.groups.motion import resume
+from cobotwire.conformance.device.groups.queries import (
+    REPEATS,
+    SETTLES,
+    expect_repetition,
+    is_framed_query,
+)
+from cobotwire.conformance.device.groups.shown_among import is_shown
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import has_fixed_effect, settings_of
@@ -49,6 +56,22 @@ def _switch(probe: Probe) -> None:
     value = _await(probe, query, name, int(wanted))
     reason = f"{command.name}: expected {query.name} to report {wanted}; came {value}"
     probe.expect(EFFECT, value == wanted, reason)
+    if command.safety != "power" or wanted:
+        probe.drop(REPEATS)
+    else:
+        _expect_steady_replies(probe)
+
+
+def _expect_steady_replies(probe: Probe) -> None:
+    """Send each plain query twice: what was true with power shows in one reply."""
+    device = probe.device
+    device.connection.clock.sleep(SETTLES)
+    for query in device.table.commands:
+        if is_framed_query(device.table, query) and not query.request[0].fields:
+            first = device.request(query.request_type()).valid
+            again = first and device.request(query.request_type()).valid
+            if first is not None and again is not None:
+                expect_repetition(probe, query, first, again)
 
 
 def _send(probe: Probe, command: Command) -> None:
@@ -79,6 +102,7 @@ def _is_unread(table: Table, command: Command) -> bool:
         )
         and not _is_switch(table, command)
         and not settings_of(table, command)
+        and not is_shown(table, command)
         and not (command.read_by is not None and command.safety == "persistent write")
     )
 
@@ -116,12 +140,12 @@ def _send_colours(probe: Probe) -> None:
 
 SWITCHES = Group(
     "switches",
-    (EFFECT, *AFTER_CHANGE_OR_REPLY),
+    (EFFECT, *AFTER_CHANGE_OR_REPLY, REPEATS),
     _switch,
     _is_switch,
     sends=(
         "The command that sets the opposite state, then the command itself, then the one "
-        "that restores the state."
+        "that restores the state. Without power, each query without arguments, twice."
     ),
     subject="each command with a fixed effect that a query reports",
 )
