@@ -26,5 +26,12 @@ HISTORY = (
         "new: `replies-in-order`, `others-stay`, `pauses`, `faster`, `limits-kept`, and settings "
         "with values that are not allowed",
     ),
+    CatalogueVersion(
+        3,
+        "041c17935bf7",
+        "new: `speeds-reported` and `set-is-reported`; `reply-frame` includes the address; "
+        "`reply-repeats` also with and without power; `pauses` includes the report of a pause; "
+        "noise comes last among crowded requests",
+    ),
 )
 VERSION = HISTORY[-1].number
