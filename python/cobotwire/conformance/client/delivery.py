@@ -33,10 +33,25 @@ A_DAY = 86400.0
 # and the reply still comes in the time that a client must wait.
 SOON_SECONDS = 0.02
 
+
+def _late(every: int, first: int) -> tuple[Fault, ...]:
+    """Return faults that delay a reply; until the next one, ``every`` or one more come, in turns.
+
+    A client that sends its queries in the same order again and again would otherwise always have
+    the same one late, and wait for that one when the late reply comes.
+    """
+    if every == 1:
+        return (Late(every=1, first=first, seconds=LATE_SECONDS),)
+    period = 2 * every + 1
+    return tuple(
+        Late(every=period, first=at, seconds=LATE_SECONDS) for at in (first, first + every + 1)
+    )
+
+
 # The faults of replies by name. ``every`` and ``first`` select the replies.
-FAULTS: Mapping[str, Callable[[int, int], Fault]] = {
+FAULTS: Mapping[str, Callable[[int, int], Fault | tuple[Fault, ...]]] = {
     "lost": lambda every, first: Lost(every=every, first=first),
-    "late": lambda every, first: Late(every=every, first=first, seconds=LATE_SECONDS),
+    "late": _late,
     "split": lambda every, first: Split(every=every, first=first, seconds=PAUSE_SECONDS),
     "merged": lambda every, first: Merged(every=every, first=first, at_most_seconds=A_DAY),
     "noise": lambda every, first: ServoLeak(every=every, first=first, packets=("status",)),
@@ -67,14 +82,22 @@ def faulty_replies(delay: float, names: Sequence[str] = (), every: int = 3) -> S
     if every < 1:
         raise UsageError("every", every, "a whole number from 1")
     period = every * len(names)
-    faults = [FAULTS[name](period, every * turn) for turn, name in enumerate(names, 1)]
+    faults = [
+        fault for turn, name in enumerate(names, 1) for fault in _made(name, period, every * turn)
+    ]
     delays = [Late(seconds=delay)] if delay else []
     return Scenario(name="replies of the referee", faults=(*delays, *faults))
 
 
 def possible_faults(table: Table) -> list[str]:
     """Return the names of the faults that replies of an edition can have."""
-    return [name for name, make in FAULTS.items() if not _lacks(make(1, 1), table)]
+    return [name for name in FAULTS if not _lacks(_made(name, 1, 1)[0], table)]
+
+
+def _made(name: str, every: int, first: int) -> tuple[Fault, ...]:
+    """Return the faults of a name."""
+    made = FAULTS[name](every, first)
+    return (made,) if isinstance(made, Fault) else made
 
 
 def require_possible(scenario: Scenario, table: Table) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.report import Direction, Exchange
 from cobotwire.simulator.clock import Clock, RunningClock
 from cobotwire.transport.interface import Transport
@@ -44,10 +43,9 @@ class DeviceConnection:
         later = self._exchanges[mark:]
         return b"".join(each.data for each in later if each.direction == "received")
 
-    def last_sent(self, most: int = 3) -> str:
-        """Return the last requests that were sent, in words."""
-        sent = [each for each in self._exchanges if each.direction == "sent"][-most:]
-        return ", ".join(f"{each.note} ({shown(each.data)})" for each in sent)
+    def last_sent(self, most: int = 3) -> list[Exchange]:
+        """Return the last requests that were sent."""
+        return [each for each in self._exchanges if each.direction == "sent"][-most:]
 
     def send(self, data: bytes, note: str = "") -> None:
         """Send ``data``; ``note`` describes it in reports.

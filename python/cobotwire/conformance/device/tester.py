@@ -17,6 +17,7 @@ from cobotwire.conformance.device.excuses import cut_short, excused
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.plan import Plan, Step
 from cobotwire.conformance.device.probe import Probe, needed
+from cobotwire.conformance.device.read_as import sent_last
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.report import Report, Result
@@ -136,7 +137,7 @@ class Tester:
             self._halt()
             raise
         except LinkError as error:
-            self._ended = f"{error}; sent last: {self.connection.last_sent()}"
+            self._ended = f"{error}; {sent_last(self.table, self.connection.last_sent())}"
             raise
         finally:
             self._close(steps[done:])
