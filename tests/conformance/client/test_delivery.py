@@ -8,6 +8,7 @@ from cobotwire.conformance.client import FAULTS, Referee, faulty_replies
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.faults import Late, Scenario
 from cobotwire.simulator.faults.noise import COMMAND_ERROR, LEAKS
 
 REQUEST, REPLY = bytes.fromhex("FEFE0212FA"), bytes.fromhex("FEFE031201FA")
@@ -64,3 +65,30 @@ def test_every_fault_is_tested_here() -> None:
     # Events and addresses have tests of their own: test_other_messages.py.
     others = {"event", "address"}
     assert set(FAULTS) == {"lost", "late", "split", "merged", "noise", "text", "twice", *others}
+
+
+GET_ANGLES = bytes.fromhex("FEFE0220FA")
+
+
+@pytest.mark.parametrize(("next_at", "waits"), [(0.206, False), (0.210, True)])
+def test_late_reply_to_an_equal_request_ends_the_wait(next_at: float, *, waits: bool) -> None:
+    clock = SteppedClock()
+    late = Late(every=9, first=1, seconds=0.2)
+    scenario = Scenario(name="late", faults=(Late(seconds=0.008), late))
+    referee = Referee(TABLE, scenario=scenario, clock=clock)
+    # The first request has its reply after 208 ms, the third would have it after 213 ms.
+    for at, request in ((0.0, REQUEST), (0.1, REQUEST), (0.205, REQUEST), (next_at, GET_ANGLES)):
+        while (wait := referee.wait) is not None and clock() + wait <= at:
+            clock.sleep(wait)
+            referee.flush()
+        clock.sleep(at - clock())
+        referee.receive(request)
+    clock.sleep(1.0)
+    referee.flush()
+    failed = {result.case for result in referee.finish().failures}
+    assert failed == (set() if waits else {"reply-awaited"})
+
+
+def test_late_replies_come_after_three_and_four_in_turns() -> None:
+    late = [at for at, _ in _replies("late", every=3, requests=15) if at % 1 > 0.5]
+    assert [int(at) + 1 for at in late] == [3, 7, 10, 14]

@@ -109,6 +109,17 @@ class History:
         """Yield the requests since ``start`` that still await their reply, the newest first."""
         return (e for e in self.since(start) if e.awaits_reply and e.replied_at is None)
 
+    def unreplied(self, start: float, longest: float) -> Iterator[Received]:
+        """Yield the outstanding requests since ``start`` that no late reply seems to reply to.
+
+        The late reply to an earlier request with the same bytes, up to ``longest`` seconds before,
+        looks the same: a client must take it for the reply.
+        """
+        replied = [e for e in self.since(start - longest) if e.replied_at is not None]
+        for entry in self.outstanding(start):
+            if not any(e.data == entry.data and (e.replied_at or 0) >= entry.at for e in replied):
+                yield entry
+
     def missing_text(self) -> Received | None:
         """Return the newest request if its text has not come yet; else None."""
         for entry in reversed(self.entries):

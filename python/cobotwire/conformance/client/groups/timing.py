@@ -36,7 +36,7 @@ def _waiting(history: History, now: Received) -> Iterator[Observation]:
     if not now.awaits_reply:
         return
     awaited = given_time = ""
-    for other in history.outstanding(now.at - history.patience):
+    for other in history.unreplied(now.at - history.patience, LATEST):
         after = f"{(now.at - other.at) * 1000:.1f} ms"
         if other.data == now.data:
             given_time = given_time or f"sent again after {after}"
