@@ -65,9 +65,20 @@ impl Check {
 
     /// Append what must follow the frame so far.
     pub fn end(&self, frame: &mut Vec<u8>) {
+        frame.resize(frame.len() + self.size(), 0);
+        self.fill(frame);
+    }
+
+    /// Write the bytes that end a whole frame.
+    #[inline]
+    pub(crate) fn fill(&self, frame: &mut [u8]) {
         match self {
-            Self::Footer(footer) => frame.push(*footer),
-            Self::Computed(computed) => computed.end(frame),
+            Self::Footer(footer) => {
+                if let Some(last) = frame.last_mut() {
+                    *last = *footer;
+                }
+            }
+            Self::Computed(computed) => computed.fill(frame),
         }
     }
 }
@@ -94,17 +105,14 @@ impl Computed {
         self.number(body, |bytes| Some(bytes) == given)
     }
 
-    fn end(&self, frame: &mut Vec<u8>) {
-        let mut number = [0; 16];
-        let size = self.number(frame, |bytes| {
-            let start = number.get_mut(..bytes.len());
-            start.map_or(0, |start| {
-                start.copy_from_slice(bytes);
-                bytes.len()
-            })
+    fn fill(&self, frame: &mut [u8]) {
+        let size = frame.len().saturating_sub(self.size());
+        let (body, end) = frame.split_at_mut(size);
+        self.number(body, |bytes| {
+            for (place, byte) in end.iter_mut().zip(bytes.iter().chain(&self.footer)) {
+                *place = *byte;
+            }
         });
-        frame.extend_from_slice(number.get(..size).unwrap_or_default());
-        frame.extend_from_slice(&self.footer);
     }
 
     /// Call `with` with the bytes of the number that must follow `body`.

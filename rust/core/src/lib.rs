@@ -21,6 +21,7 @@ mod legal;
 mod message;
 mod noise;
 mod number;
+mod plain;
 mod read;
 mod reason;
 mod scan;
@@ -28,6 +29,7 @@ mod seam;
 mod survey;
 mod table;
 mod tally;
+mod template;
 mod write;
 
 pub use bulk::{
@@ -50,9 +52,11 @@ pub use judge::{Rules, Verdict};
 pub use message::{Command, Variant, VariantId};
 pub use noise::{Expected, Instruction, Kind, Operand, ServoBus};
 pub use number::{Bits, Encoding, Misfit, Number, Order, Value};
+pub use plain::{PlainMessage, encode_plain, read_plain};
 pub use read::BadRaw;
 pub use reason::Reason;
 pub use survey::{Described, Extent, Names, Sink, Survey, Texts};
 pub use table::{Table, TableError};
 pub use tally::Tally;
+pub use template::{Exact, LONGEST_PLAIN, MOST_PLAIN, Place};
 pub use write::{BadValue, EncodeError};

@@ -117,6 +117,7 @@ impl Number {
     }
 
     /// Return whether the number may hold a raw value.
+    #[inline]
     pub(crate) fn allows(&self, raw: i64) -> bool {
         if self.choices.is_empty() {
             (self.minimum..=self.maximum).contains(&raw)
@@ -166,16 +167,39 @@ impl Number {
 
     /// Append the lowest bytes of a raw value; a negative one is its two's complement.
     pub(crate) fn pack(&self, raw: i64, bytes: &mut Vec<u8>) {
+        bytes.extend(self.ordered_bytes(raw).iter().take(self.width));
+    }
+
+    /// Write the lowest bytes of a raw value over those that start there.
+    #[inline]
+    pub(crate) fn put(&self, raw: i64, bytes: &mut [u8], start: usize) {
+        let all = self.ordered_bytes(raw);
+        let [first, second, ..] = all;
+        match bytes.get_mut(start..start + self.width) {
+            // One or two bytes, as most numbers have, are written without a call.
+            Some([one]) => *one = first,
+            Some([one, two]) => (*one, *two) = (first, second),
+            Some(places) => {
+                for (place, byte) in places.iter_mut().zip(all) {
+                    *place = byte;
+                }
+            }
+            None => {}
+        }
+    }
+
+    /// Return the bytes of a raw value, of which the first ones count.
+    #[inline]
+    fn ordered_bytes(&self, raw: i64) -> [u8; 8] {
         let raw = match self.bits {
             Some(bits) => (raw & ((1 << bits.count) - 1)) << bits.shift,
             None if self.float && raw < 0 => raw ^ magnitude(self.width),
             None => raw,
         };
-        let ordered = match self.order {
+        match self.order {
             Order::Big => (raw << (64 - 8 * self.width)).to_be_bytes(),
             Order::Little => raw.to_le_bytes(),
-        };
-        bytes.extend(ordered.iter().take(self.width));
+        }
     }
 
     /// Return the physical value of a raw value. Only the division rounds: both casts are exact,
@@ -196,6 +220,7 @@ impl Number {
     ///
     /// The arithmetic is IEEE double, step by step as in the reference, so that the bytes are the
     /// same.
+    #[inline]
     pub(crate) fn raw(&self, physical: f64) -> Option<i64> {
         if self.float {
             return Some(raw_of_float(physical, self.width));

@@ -3,11 +3,14 @@
 //! Names, texts and units stay in Python. [`Table::new`] checks every property on which the codecs
 //! rely.
 
+use std::sync::OnceLock;
+
 use crate::direction::{Direction, Listening};
 use crate::frame::FrameFormat;
 use crate::judge::Rules;
 use crate::message::{Command, Variant, VariantId};
 use crate::number::Misfit;
+use crate::template::Templates;
 
 /// Why a table was rejected: a mistake in the table, not in any data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +29,8 @@ pub struct Table {
     request: Rules,
     reply: Rules,
     both: Rules,
+    /// Those of each command's request and reply; they are made on first use.
+    templates: Vec<[OnceLock<Templates>; 2]>,
 }
 
 impl Table {
@@ -50,6 +55,7 @@ impl Table {
             request: rules(&[Direction::Request]),
             reply: rules(&[Direction::Reply]),
             both: rules(&[Direction::Request, Direction::Reply]),
+            templates: commands.iter().map(|_| Default::default()).collect(),
             frame,
             commands,
         })
@@ -72,6 +78,21 @@ impl Table {
     pub fn variant(&self, variant: VariantId) -> Option<&Variant> {
         let command = self.commands.get(variant.command)?;
         command.variants(variant.direction).get(variant.variant)
+    }
+
+    /// Return the templates of a command in one direction.
+    #[inline]
+    pub(crate) fn templates(&self, command: usize, direction: Direction) -> Option<&Templates> {
+        let [request, reply] = self.templates.get(command)?;
+        let place = match direction {
+            Direction::Request => request,
+            Direction::Reply => reply,
+        };
+        if let Some(templates) = place.get() {
+            return Some(templates);
+        }
+        let record = self.commands.get(command)?;
+        Some(place.get_or_init(|| Templates::new(&self.frame, record, direction)))
     }
 
     /// Return the rules for these directions.

@@ -11,6 +11,7 @@ use crate::edition::Edition;
 use crate::frame::Origin;
 use crate::framer::NativeFramer;
 use crate::given::Object;
+use crate::plain;
 use crate::values::{objects, row};
 use crate::words::{one_way, word};
 use crate::{errors, words};
@@ -62,6 +63,11 @@ impl NativeCodec {
         let index = commands.find(table, command)?;
         let way = one_way(direction)?;
         let objects = commands.get(index)?;
+        if address.is_none()
+            && let Some(frame) = plain::encode(core, (index, way), values, variant)
+        {
+            return Ok(frame);
+        }
         let values = row(values)?;
         let format = core.frame();
         let address = address.map(|given| words::address(given, table, &format.addresses));

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use cobotwire_core::{Decoded, Direction, Frame, Listening, OwnedFrame, Rules};
+use cobotwire_core::{
+    DecodeError, Direction, Frame, Listening, MOST_PLAIN, OwnedFrame, Rules, Value, VariantId,
+};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::edition::Edition;
 use crate::names::Names;
+use crate::once::Once;
 use crate::values::objects;
 use crate::words::one_way;
 
@@ -29,7 +31,14 @@ pub struct NativeFrame {
     offset: u64,
     frame: OwnedFrame,
     /// Its values, after their first use.
-    values: PyOnceLock<Py<PyTuple>>,
+    values: Once,
+}
+
+/// What a frame says.
+struct Message<'py> {
+    variant: VariantId,
+    values: Bound<'py, PyTuple>,
+    address: Option<u8>,
 }
 
 impl NativeFrame {
@@ -38,7 +47,7 @@ impl NativeFrame {
             origin,
             offset,
             frame: frame.into(),
-            values: PyOnceLock::new(),
+            values: Once::new(),
         }
     }
 
@@ -48,25 +57,50 @@ impl NativeFrame {
 
     /// Decode it in one direction, or in those that the framer listens to. With `of`, only messages
     /// of the command with that index count.
-    fn read(
+    fn read<'py>(
         &self,
-        py: Python<'_>,
+        py: Python<'py>,
         direction: Option<Direction>,
         of: Option<usize>,
-    ) -> PyResult<Decoded> {
+    ) -> PyResult<Message<'py>> {
         let Origin { edition, rules, .. } = &*self.origin;
         let rules = direction.map_or(rules, |way| edition.core.rules(Listening::To(way)));
-        let frame = self.frame();
-        cobotwire_core::read(&edition.core, rules, frame, of).map_err(|error| {
+        self.decoded(py, rules, of)?.map_err(|error| {
             let direction = direction.unwrap_or(self.origin.direction);
             match Names::get(py) {
                 Ok(names) => {
                     let direction = names.direction(py, direction);
-                    edition.rejected(py, error, direction, frame.bytes())
+                    edition.rejected(py, error, direction, self.frame.bytes())
                 }
                 Err(error) => error,
             }
         })
+    }
+
+    fn decoded<'py>(
+        &self,
+        py: Python<'py>,
+        rules: &Rules,
+        of: Option<usize>,
+    ) -> PyResult<Result<Message<'py>, DecodeError>> {
+        let (core, frame) = (&self.origin.edition.core, self.frame());
+        let mut space = [Value::Integer(0); MOST_PLAIN];
+        if let Some(plain) = cobotwire_core::read_plain(core, rules, frame, of, &mut space) {
+            return Ok(Ok(Message {
+                variant: plain.variant,
+                values: objects(py, plain.values)?,
+                address: plain.address,
+            }));
+        }
+        let decoded = match cobotwire_core::read(core, rules, frame, of) {
+            Ok(decoded) => decoded,
+            Err(error) => return Ok(Err(error)),
+        };
+        Ok(Ok(Message {
+            variant: decoded.variant,
+            values: objects(py, &decoded.values)?,
+            address: decoded.address,
+        }))
     }
 
     /// Return the fields of the reply of a command that it is; None if it is not a legal one.
@@ -83,24 +117,24 @@ impl NativeFrame {
         } = &*self.origin.edition;
         let of = commands.find(table, of)?;
         let rules = core.rules(Listening::To(Direction::Reply));
-        match cobotwire_core::read(core, rules, self.frame(), Some(of)) {
-            Ok(decoded) => {
-                let values = objects(py, &decoded.values)?;
+        match self.decoded(py, rules, Some(of))? {
+            Ok(message) => {
                 let edition = &self.origin.edition;
-                edition.fields(decoded.variant, &values).map(Some)
+                edition.fields(message.variant, &message.values).map(Some)
             }
             Err(_) => Ok(None),
         }
     }
 
-    /// Return the message, as Python's named tuple; `values` are those of `decoded`.
-    fn message_of<'py>(
-        &self,
-        decoded: &Decoded,
-        values: &Bound<'py, PyTuple>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    /// Return the message, as Python's named tuple.
+    fn tuple_of<'py>(&self, message: &Message<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Message {
+            variant,
+            values,
+            address,
+        } = message;
         let edition = &self.origin.edition;
-        edition.message(values.py(), decoded.variant, values, decoded.address)
+        edition.message(values.py(), *variant, values, *address)
     }
 }
 
@@ -121,11 +155,9 @@ impl NativeFrame {
     /// Its message: the first one that allows its values.
     #[getter]
     fn message<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let decoded = self.read(py, None, None)?;
-        let values = self
-            .values
-            .get_or_try_init(py, || objects(py, &decoded.values).map(Bound::unbind))?;
-        self.message_of(&decoded, values.bind(py))
+        let read = self.read(py, None, None)?;
+        let values = self.values.set(read.values);
+        self.tuple_of(&Message { values, ..read })
     }
 
     /// Return what `codec.decode(direction, frame.data, of=of)` returns, without judging it again.
@@ -140,20 +172,16 @@ impl NativeFrame {
             table, commands, ..
         } = &*self.origin.edition;
         let of = of.map(|name| commands.find(table, name)).transpose()?;
-        let decoded = self.read(py, direction.map(one_way).transpose()?, of)?;
-        self.message_of(&decoded, &objects(py, &decoded.values)?)
+        self.tuple_of(&self.read(py, direction.map(one_way).transpose()?, of)?)
     }
 
     /// The values of its message, one for each field.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         if let Some(values) = self.values.get(py) {
-            return Ok(values.bind(py).clone());
+            return Ok(values);
         }
-        let values = objects(py, &self.read(py, None, None)?.values)?;
-        // Another thread may have stored its values first; they are the same.
-        let _ = self.values.set(py, values.clone().unbind());
-        Ok(values)
+        Ok(self.values.set(self.read(py, None, None)?.values))
     }
 
     fn __eq__(&self, other: &Self) -> bool {

@@ -1,4 +1,4 @@
-//! `Memory`: a column behind Python's buffer protocol. The one place with unsafe code.
+//! `Memory`: a column behind Python's buffer protocol.
 
 #![allow(unsafe_code)] // the buffer protocol, `madvise` and the collector are C's
 

@@ -1,10 +1,12 @@
 //! The Python objects of a table's commands, for messages and errors.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use cobotwire_core::Direction;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 use crate::words::word;
 
@@ -12,6 +14,30 @@ use crate::words::word;
 pub struct Commands {
     all: Vec<Command>,
     by_name: HashMap<String, usize>,
+    /// The same by the address of the name's interned string, which literals in programs are.
+    by_address: HashMap<usize, usize, BuildHasherDefault<AddressHasher>>,
+    /// Keeps these strings alive, so that no other object has such an address.
+    _names: Vec<Py<PyString>>,
+}
+
+/// Hashes an address: multiplies it by an odd number without a pattern.
+#[derive(Default)]
+struct AddressHasher(u64);
+
+impl Hasher for AddressHasher {
+    fn finish(&self) -> u64 {
+        self.0.rotate_left(32) // the high bits depend on the whole address
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_usize(usize::from(*byte));
+        }
+    }
+
+    fn write_usize(&mut self, number: usize) {
+        self.0 = (self.0 ^ number as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
 }
 
 /// The objects of one command: itself and its variants.
@@ -24,15 +50,24 @@ pub struct Command {
 impl Commands {
     /// Return the objects of a table; `names` are those of its commands.
     pub fn new(table: &Bound<'_, PyAny>, names: Vec<String>) -> PyResult<Self> {
-        let mut by_name = HashMap::new();
+        let (mut by_name, mut by_address) = (HashMap::new(), HashMap::default());
+        let mut interned = Vec::with_capacity(names.len());
         for (index, name) in names.into_iter().enumerate() {
+            let string = PyString::intern(table.py(), &name);
+            by_address.entry(string.as_ptr() as usize).or_insert(index);
+            interned.push(string.unbind());
             by_name.entry(name).or_insert(index);
         }
         let commands = table.getattr("commands")?.try_iter()?;
         let all = commands
             .map(|command| Command::new(command?))
             .collect::<PyResult<_>>()?;
-        Ok(Self { all, by_name })
+        Ok(Self {
+            all,
+            by_name,
+            by_address,
+            _names: interned,
+        })
     }
 
     /// Return the index of the command with that name. For an unknown name, the table raises the
@@ -51,7 +86,9 @@ impl Commands {
 
     /// The index of the command with that name, if there is one.
     pub fn known(&self, name: &Bound<'_, PyAny>) -> Option<usize> {
-        word(name).and_then(|name| self.by_name.get(name)).copied()
+        let known = self.by_address.get(&(name.as_ptr() as usize));
+        let known = known.or_else(|| self.by_name.get(word(name)?));
+        known.copied()
     }
 
     pub fn get(&self, index: usize) -> PyResult<&Command> {

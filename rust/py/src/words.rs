@@ -3,6 +3,7 @@
 //! Unusual types are compared as in the reference, so that `True` and `1.0` are both equal to 1.
 
 use cobotwire_core::Direction;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyInt, PyList, PyString};
 
@@ -13,6 +14,13 @@ pub fn word<'a>(given: &'a Bound<'_, PyAny>) -> Option<&'a str> {
 }
 
 pub fn one_way(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
+    // Literals in programs are interned, so most words need no comparison.
+    if given.is(intern!(given.py(), "request")) {
+        return Ok(Direction::Request);
+    }
+    if given.is(intern!(given.py(), "reply")) {
+        return Ok(Direction::Reply);
+    }
     match word(given) {
         Some("request") => Ok(Direction::Request),
         Some("reply") => Ok(Direction::Reply),

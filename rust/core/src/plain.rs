@@ -1,0 +1,67 @@
+//! Encodes and decodes plain messages by their templates.
+
+use crate::direction::Direction;
+use crate::frame::Frame;
+use crate::judge::Rules;
+use crate::message::VariantId;
+use crate::number::Value;
+use crate::table::Table;
+use crate::template::{Exact, LONGEST_PLAIN, MOST_PLAIN, Place};
+
+/// A message that a template read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlainMessage<'a> {
+    /// Which message it is.
+    pub variant: VariantId,
+    /// Its values: one for each field; the elements of a row follow the row.
+    pub values: &'a [Value],
+    /// Its address byte, if the format has one.
+    pub address: Option<u8>,
+}
+
+/// Build one frame, as [`crate::encode`] does, from exact numbers. Return `None` unless the first
+/// variant with that many fields, or the chosen one, is plain and allows them.
+pub fn encode_plain<'a>(
+    table: &Table,
+    command: usize,
+    direction: Direction,
+    (fields, variant): (usize, Option<usize>),
+    space: &'a mut [u8; LONGEST_PLAIN],
+    number: impl FnMut(Place) -> Option<Exact>,
+) -> Option<&'a [u8]> {
+    let templates = table.templates(command, direction)?;
+    let variants = table.commands().get(command)?.variants(direction);
+    let index = match variant {
+        Some(index) => index,
+        None => variants
+            .iter()
+            .position(|variant| variant.fields().len() == fields)?,
+    };
+    let template = templates.get(index)?;
+    (template.fields == fields).then_some(())?;
+    let frame = template.write(space, number)?;
+    table.frame().check.fill(frame);
+    Some(frame)
+}
+
+/// Decode a legal frame, as [`crate::read`] does. Return `None` unless the first message of these
+/// rules is plain and allows the values.
+#[inline]
+pub fn read_plain<'a>(
+    table: &Table,
+    rules: &Rules,
+    frame: Frame<'_>,
+    of: Option<usize>,
+    space: &'a mut [Value; MOST_PLAIN],
+) -> Option<PlainMessage<'a>> {
+    let variants = rules.variants(frame).iter();
+    let mut variants = variants.filter(|id| of.is_none_or(|of| of == id.command));
+    let variant = *variants.next()?;
+    let templates = table.templates(variant.command, variant.direction)?;
+    let template = templates.get(variant.variant)?;
+    Some(PlainMessage {
+        variant,
+        values: template.read(table.frame().data(frame, variant.direction), space)?,
+        address: table.frame().address(frame),
+    })
+}

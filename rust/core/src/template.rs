@@ -1,0 +1,200 @@
+//! Messages of plain numbers and rows of them, prepared for short calls.
+//!
+//! Nearly all messages are such: without selectors, texts, lists of rows, bits or floats. A template
+//! handles only values that are allowed. For everything else it returns `None`, and the general
+//! encoder and decoder do the work, and name the mistake.
+
+use crate::direction::Direction;
+use crate::field::{Field, Shape};
+use crate::frame::FrameFormat;
+use crate::message::{Command, Variant};
+use crate::number::{Number, Value};
+
+/// The size of the longest frame that a template builds.
+pub const LONGEST_PLAIN: usize = 64;
+/// The most values that a template reads, with rows and their elements.
+pub const MOST_PLAIN: usize = 24;
+
+/// A number of the caller that needed no conversion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exact {
+    /// An integer.
+    Integer(i64),
+    /// A real number.
+    Real(f64),
+}
+
+/// Which number of the values a template needs next. Rows are read in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The value of the field with that index.
+    Alone(usize),
+    /// The first number of the row of a field, which must have that many.
+    First(usize, usize),
+    /// The number with that index of the same row.
+    Next(usize),
+}
+
+/// The templates of one command in one direction, by variant.
+#[derive(Clone, Debug)]
+pub(crate) struct Templates(Vec<Option<Template>>);
+
+#[derive(Clone, Debug)]
+pub(crate) struct Template {
+    /// The number of fields.
+    pub(crate) fields: usize,
+    /// A whole frame with zeros as data and check.
+    frame: Vec<u8>,
+    data_at: usize,
+    slots: Vec<Slot>,
+    /// The number of values when decoded, with rows and their elements.
+    values: usize,
+}
+
+#[derive(Clone, Debug)]
+struct Slot {
+    place: Place,
+    /// The offset of its first byte in the data.
+    at: usize,
+    number: Number,
+    /// The legal raw values, if the field lists them.
+    choices: Vec<i64>,
+}
+
+impl Templates {
+    pub(crate) fn new(frame: &FrameFormat, command: &Command, direction: Direction) -> Self {
+        let variants = command.variants(direction).iter();
+        Self(
+            variants
+                .map(|variant| Template::new(frame, command, direction, variant))
+                .collect(),
+        )
+    }
+
+    /// Return the template of a variant; `None`: it needs the general encoder and decoder.
+    #[inline]
+    pub(crate) fn get(&self, variant: usize) -> Option<&Template> {
+        self.0.get(variant)?.as_ref()
+    }
+}
+
+impl Template {
+    /// Return the template of a variant; `None` if it has more than plain numbers, or many.
+    fn new(
+        format: &FrameFormat,
+        command: &Command,
+        direction: Direction,
+        variant: &Variant,
+    ) -> Option<Self> {
+        let mut slots = Vec::new();
+        for (index, field) in variant.fields().iter().enumerate() {
+            let numbers = plain_numbers(field)?;
+            let mut at = variant.start(index);
+            for (element, number) in numbers.iter().enumerate() {
+                slots.push(Slot {
+                    place: match (field.many, element) {
+                        (false, _) => Place::Alone(index),
+                        (true, 0) => Place::First(index, numbers.len()),
+                        (true, _) => Place::Next(element),
+                    },
+                    at,
+                    number: number.clone(),
+                    choices: field.choices.clone(),
+                });
+                at += number.step();
+            }
+        }
+        let mut frame = Vec::new();
+        let length = u16::try_from(format.length(variant.size(), direction)).ok()?;
+        let address = format.addresses.first().copied();
+        format.start(&mut frame, address, length, command.id, direction);
+        let data_at = frame.len();
+        frame.resize(data_at + variant.size() + format.check.size(), 0);
+        let rows = variant.fields().iter().filter(|field| field.many).count();
+        let values = rows + slots.len();
+        (frame.len() <= LONGEST_PLAIN && values <= MOST_PLAIN).then_some(Self {
+            fields: variant.fields().len(),
+            frame,
+            data_at,
+            slots,
+            values,
+        })
+    }
+
+    /// Write the frame, but for its check.
+    #[inline]
+    pub(crate) fn write<'a>(
+        &self,
+        space: &'a mut [u8; LONGEST_PLAIN],
+        mut number: impl FnMut(Place) -> Option<Exact>,
+    ) -> Option<&'a mut [u8]> {
+        let frame = space.get_mut(..self.frame.len())?;
+        frame.copy_from_slice(&self.frame);
+        let data = frame.get_mut(self.data_at..)?;
+        for slot in &self.slots {
+            let raw = slot.raw(number(slot.place)?)?;
+            slot.number.put(raw, data, slot.at);
+        }
+        Some(frame)
+    }
+
+    /// Read the values of the data.
+    #[inline]
+    pub(crate) fn read<'a>(
+        &self,
+        data: &[u8],
+        space: &'a mut [Value; MOST_PLAIN],
+    ) -> Option<&'a [Value]> {
+        let values = space.get_mut(..self.values)?;
+        let mut places = values.iter_mut();
+        for slot in &self.slots {
+            let raw = slot.number.unpack(data, slot.at);
+            if !slot.allows(raw) {
+                return None;
+            }
+            if let Place::First(_, count) = slot.place {
+                *places.next()? = Value::Row(count);
+            }
+            *places.next()? = slot.number.physical(raw);
+        }
+        Some(values)
+    }
+}
+
+impl Slot {
+    #[inline]
+    fn allows(&self, raw: i64) -> bool {
+        if self.choices.is_empty() {
+            self.number.allows(raw)
+        } else {
+            self.choices.contains(&raw)
+        }
+    }
+
+    /// Return the raw value of an allowed number.
+    #[inline]
+    fn raw(&self, given: Exact) -> Option<i64> {
+        let raw = match (given, self.number.scaled()) {
+            // Bounds contain no number that is not finite.
+            (Exact::Real(real), true) => self.number.raw(real)?,
+            // The conversion rounds to even, as Python's does.
+            (Exact::Integer(integer), true) => self.number.raw(integer as f64)?,
+            (Exact::Integer(integer), false) => integer,
+            (Exact::Real(_), false) => return None,
+        };
+        self.allows(raw).then_some(raw)
+    }
+}
+
+/// Return the numbers of a field, if they are all that it is.
+fn plain_numbers(field: &Field) -> Option<&[Number]> {
+    let numbers = field.numbers(0);
+    let plain = field.selector.is_none()
+        && field.shape == Shape::Numbers
+        && field.each == 0
+        && !numbers.is_empty()
+        && numbers
+            .iter()
+            .all(|number| !number.float && number.bits.is_none());
+    plain.then_some(numbers)
+}
