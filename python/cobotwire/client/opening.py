@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypedDict
 
 from cobotwire import codec as codecs
@@ -52,6 +51,8 @@ class Settings(NamedTuple):
         Raises:
             UsageError: the timeout is not allowed.
         """
+        from dataclasses import replace
+
         check_seconds("timeout", timeout)
         retry = replace(self.retry, attempts=1)
         return self._replace(retry=retry, timeout=self.timeout if timeout is None else timeout)

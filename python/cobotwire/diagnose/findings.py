@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
 from cobotwire.codec.interface import NoiseReason
+from cobotwire.protocol.records import record
 
 # The number of characters of a text that are shown.
 SHOWN = 60
@@ -22,7 +22,7 @@ class Span(NamedTuple):
     data: bytes
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record(frozen=True, slots=True, kw_only=True)
 class Finding:
     """Noise that belongs together. Each class of noise is a subclass, listed in ``registry``.
 
@@ -92,5 +92,7 @@ class Finding:
     @property
     def facts(self) -> dict[str, Any]:
         """Return the attributes that are specific to the kind, by name."""
+        from dataclasses import fields
+
         common = len(fields(Finding))
         return {field.name: getattr(self, field.name) for field in fields(self)[common:]}

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Literal, NamedTuple
+
+from cobotwire.protocol.records import record
 
 ByteOrder = Literal["big", "little"]
 Algorithm = Literal["sum", "inverted-sum", "negated-sum", "xor", "fletcher", "fletcher-16", "crc"]
@@ -64,7 +65,7 @@ def _reversed(value: int, width: int) -> int:
     return int(f"{value:0{width}b}"[::-1], 2)
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Check:
     """A number of ``width`` bytes that is computed from the frame.
 

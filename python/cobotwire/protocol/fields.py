@@ -7,19 +7,19 @@ number in units.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Literal
 
 from cobotwire.protocol.arguments import Row
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.numbers import Number
+from cobotwire.protocol.records import record
 
 FieldKind = Literal["number", "flag", "enum", "bytes", "text"]
 # The raw values of a message, by field and element.
 RawRows = Sequence[Sequence[int]]
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Case:
     """The numbers of a field if its selector is one of ``when``; ``()`` if it has no selector."""
 
@@ -27,7 +27,7 @@ class Case:
     numbers: tuple[Number, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Field:
     """One argument of a request or one part of a reply.
 
@@ -184,7 +184,7 @@ class _Named:
     names: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Variant(_Named):
     """The data bytes of one variant of a message; ``names`` are those of its fields."""
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from cobotwire.protocol.checks import ByteOrder, Check
+from cobotwire.protocol.records import field, record
 
 FixedPart = Literal["address", "length", "command"]
 CountedPart = Literal["header", "address", "length", "command", "data", "check", "footer"]
@@ -25,7 +25,7 @@ class Unsigned(NamedTuple):
 _BYTE = Unsigned()
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class FrameFormat:
     """``header``, the fixed parts in the order of ``layout``, data, ``check``, ``footer``.
 

@@ -6,7 +6,6 @@ import json
 import os
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import product
 from math import inf
 from typing import Any
@@ -36,6 +35,7 @@ VERSION = 2
 # The kinds of types that are more than one number or a row of numbers.
 SHAPED = ("bits", "bytes", "text", "list")
 BYTE = Number("", 1, "big", 255, 1, 1, 0, 255, "")
+ASCII = Number("", 1, "big", 255, 1, 1, 0, 127, "")
 
 
 def load_table(package: str) -> Table:
@@ -203,6 +203,8 @@ class _Reader:
             if counted:
                 field = self._field({**record, "const": counts[counted]}, names)
                 sizes = self._sizes(by_name[counted])
+                from dataclasses import replace
+
                 field = replace(field, sizes=sizes, counts=counted)
             elif self._type(record["type"])["kind"] in SHAPED if "type" in record else False:
                 field = self._shaped(record, counts.get(record["name"]))
@@ -350,7 +352,7 @@ def _bits(record: Record) -> Number:
 
 def _letters(type: Record) -> tuple[Number, ...]:
     """Return the number of a byte of text."""
-    return (replace(BYTE, maximum=127) if type["encoding"] == "ascii" else BYTE,)
+    return (ASCII if type["encoding"] == "ascii" else BYTE,)
 
 
 def _affixes(text: Record) -> tuple[tuple[str, ...], tuple[str, ...]]:

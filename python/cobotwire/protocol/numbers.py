@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Literal
 
+from cobotwire.protocol.records import record
 from cobotwire.protocol.units import PLURALS
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ Encoding = Literal["integer", "float"]
 _FORMATS = {4: ("f", "i"), 8: ("d", "q")}
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Number:
     """One number on the wire: ``width`` bytes, a sign rule, and a scale as an exact rational.
 

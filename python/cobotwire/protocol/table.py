@@ -9,7 +9,6 @@ a message and the rules for reading them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.checks import Check, Crc
@@ -25,6 +24,7 @@ from cobotwire.protocol.made_messages import (
 )
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.numbers import Number
+from cobotwire.protocol.records import field, record
 from cobotwire.protocol.robot import UNSTATED, Robot
 
 __all__ = [
@@ -72,7 +72,7 @@ Role = Literal[
 ]
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class TextReply:
     """A reply that is text outside any frame: ``prefixes[i]`` comes before ``fields[i]``.
 
@@ -85,7 +85,7 @@ class TextReply:
     suffix: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class TextRequest:
     """Text after the frame of a request, built as in ``TextReply``; it ends with ``suffix``."""
 
@@ -94,7 +94,7 @@ class TextRequest:
     suffix: str
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class ReadBack:
     """The query that reads back what a command has set.
 
@@ -108,7 +108,7 @@ class ReadBack:
     fields: tuple[tuple[str, str | int], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Command:
     """One command: its id, its request and its reply.
 
@@ -243,7 +243,7 @@ class Address(NamedTuple):
     joints: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Table:
     """One edition of the protocol.
 

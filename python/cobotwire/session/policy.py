@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.records import record
 from cobotwire.protocol.table import Command
 
 # The latest reply that was seen on a real line came 727 ms after its request.
@@ -16,7 +15,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class RetryPolicy:
     """Splits the deadline of a query into attempts. Only queries are ever sent again.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import replace
 
 from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.protocol.table import Command
@@ -76,6 +75,8 @@ def _diagnoses(
 ) -> Iterator[str]:
     """Yield for each span what begins in it, as a sentence; empty where nothing is recognised."""
     # Imported here: most programs never need it.
+    from dataclasses import replace
+
     from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Summary, Unrecognised
 
     diagnoser = Diagnoser(codec, "reply")
