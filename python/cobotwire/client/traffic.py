@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from cobotwire.codec.interface import Noise
 from cobotwire.protocol.errors import LinkError
@@ -20,6 +21,10 @@ from cobotwire.session import (
     UnexpectedFrame,
 )
 from cobotwire.session.events import as_traffic
+from cobotwire.transport.log import DEBUG, INFO, Log
+
+if TYPE_CHECKING:
+    from logging import Logger
 
 TrafficListener = Callable[[Traffic], None]
 
@@ -45,13 +50,9 @@ class TrafficListeners:
     def __init__(
         self, first: TrafficListener | None, url: str, now: Callable[[], float] = time.monotonic
     ) -> None:
-        # Imported here, so that importing the package does not wait for logging.
-        import logging
-
-        # Without a handler of its own a library's warnings go to stderr.
-        logging.getLogger("cobotwire").addHandler(logging.NullHandler())
-        self._logger = logging.getLogger("cobotwire.traffic")
-        self._debug, self._info = logging.DEBUG, logging.INFO
+        self._log = Log("cobotwire.traffic")
+        # None as long as the program does not import ``logging``.
+        self._logger = self._log.find()
         self._listeners: tuple[TrafficListener, ...] = () if first is None else (first,)
         self._url = url
         self._now = now
@@ -59,7 +60,10 @@ class TrafficListeners:
     @property
     def silent(self) -> bool:
         """Whether frames are reported to nobody: there is no listener, and no log of frames."""
-        return not self._listeners and not self._logger.isEnabledFor(self._debug)
+        if self._listeners:
+            return False
+        logger = self._logger or self._found()
+        return logger is None or not logger.isEnabledFor(DEBUG)
 
     def add(self, listener: TrafficListener) -> Callable[[], None]:
         """Call this listener too, until the function that is returned is called."""
@@ -80,16 +84,18 @@ class TrafficListeners:
         self._sent(request)
 
     def _sent(self, data: bytes) -> None:
-        if self._logger.isEnabledFor(self._debug):
-            self._logger.debug("%s > %s", self._url, _hex(data))
+        logger = self._logger or self._found()
+        if logger is not None and logger.isEnabledFor(DEBUG):
+            logger.debug("%s > %s", self._url, _hex(data))
         if self._listeners:
             self._report(Traffic(self._now(), "sent", data))
 
     def received(self, events: Sequence[SessionEvent], now: float) -> None:
         """Report what the session made of the bytes that were read at ``now``."""
-        if self._logger.isEnabledFor(self._info):
+        logger = self._logger or self._found()
+        if logger is not None and logger.isEnabledFor(INFO):
             for event in events:
-                self._log(event)
+                self._log_event(logger, event)
         if self._listeners:
             for event in events:
                 traffic = as_traffic(event, now)
@@ -98,14 +104,18 @@ class TrafficListeners:
 
     def lost(self, error: LinkError) -> None:
         """Report that the transport is gone."""
-        self._logger.warning("%s", error)
+        self._log.load().warning("%s", error)
 
     def _report(self, traffic: Traffic) -> None:
         for listener in self._listeners:
             listener(traffic)
 
-    def _log(self, event: SessionEvent) -> None:
-        log, url = self._logger, self._url
+    def _found(self) -> Logger | None:
+        self._logger = self._log.find()
+        return self._logger
+
+    def _log_event(self, log: Logger, event: SessionEvent) -> None:
+        url = self._url
         if isinstance(event, Noise):
             log.info("%s < noise (%s) %s", url, event.reason, _hex(event.data))
         elif isinstance(event, RequestExpired):
@@ -115,7 +125,7 @@ class TrafficListeners:
             log.info("%s < late reply to %s: %s", url, name, _hex(event.frame.data))
         elif isinstance(event, ReplyRejected):
             log.info("%s < illegal reply to %s: %s", url, event.command.name, event.error)
-        elif event.frame is not None and log.isEnabledFor(self._debug):
+        elif event.frame is not None and log.isEnabledFor(DEBUG):
             log.debug("%s < %s (%s)", url, _hex(event.frame.data), KINDS[type(event)])
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import logging
 import os
 import threading
 import time
@@ -13,6 +12,7 @@ from typing import NoReturn, TypeVar
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
+from cobotwire.transport.log import Log
 from cobotwire.transport.waiting import Waiter, native_calls
 
 READ_SIZE = 4096
@@ -23,7 +23,7 @@ BITS_A_BYTE = 10
 
 T = TypeVar("T")
 
-_log = logging.getLogger("cobotwire.transport")
+_log = Log("cobotwire.transport")
 
 
 def write_limit(size: int, baudrate: int) -> float:
