@@ -44,7 +44,8 @@ class Leading:
         """Let another thread lead, if this one does."""
         if self.leader == threading.get_ident():
             self.leader = None
-            self.wake_followers()
+            if self._followers:
+                self.wake_followers()
 
     def follow(self, pending: Pending) -> None:
         """Wait until the leader has something, or another thread must lead."""

@@ -46,6 +46,8 @@ class Message:
 
     command: ClassVar[str] = ""
     """The name of the command."""
+    fixed: ClassVar[bool] = False
+    """Whether there is nothing to choose: it has no fields, and no constants on the wire."""
 
     _names: ClassVar[tuple[str, ...]] = ()
     # Names and constants in wire order; empty if that is the order of declaration.
@@ -84,6 +86,10 @@ class Message:
         # Type checkers derive it from the annotations, and forbid setting it.
         type.__setattr__(cls, "__match_args__", names)
         cls._rows = tuple([name for name in names if annotations[name].startswith("Sequence")])
+        cls.fixed = not names and not wire
+        if not names:
+            # It takes no arguments either, and a client makes a request for each call.
+            type.__setattr__(cls, "__init__", object.__init__)
         if wire or radians or text or variants or (names and names[-1] in cls.__dict__):
             cls._direct = False
             cls._variants = variants
@@ -96,8 +102,6 @@ class Message:
 
         def __init__(self, *arguments: Any, **named: Any) -> None:
             names = self._names
-            if not names and not arguments and not named:
-                return
             if named or len(arguments) != len(names):
                 arguments = _arranged(type(self), arguments, named)
             fields = self.__dict__
@@ -221,8 +225,16 @@ class Request(Message, Generic[Result]):
 
     def result_of(self, fields: Mapping[str, Any]) -> Result:
         """Return what a client's method returns, given the decoded fields of the reply."""
-        assert self.reply_type is not None, "a request that is waited for has a reply"
-        return self.reply_type.result_from(fields)  # type: ignore[no-any-return]
+        reply = self.reply_type
+        assert reply is not None, "a request that is waited for has a reply"
+        single = reply._single
+        if single is None:
+            return reply.result_from(fields)  # type: ignore[no-any-return]
+        # As `result_from` does, without the call.
+        name, convert = single
+        value: Any = fields.get(name)
+        found: Result = value if value is None or convert is None else convert(value)
+        return found
 
     @property
     def variant_index(self) -> int | None:
@@ -250,6 +262,8 @@ class Reply(Message, Generic[Result]):
     """The class of the request."""
     _results: ClassVar[tuple[str, ...]] = ()
     _result_type: ClassVar[Callable[..., Any] | None] = None
+    # The field that is the only result, and what converts it; known after the first result.
+    _single: ClassVar[tuple[str, Callable[[Any], Any] | None] | None] = None
 
     def __init_subclass__(
         cls,
@@ -297,9 +311,11 @@ class Reply(Message, Generic[Result]):
         """
         if cls._result_type is not None or not cls._results:
             return cls.from_fields(fields).result
-        name = cls._results[0]
+        if cls._single is None:
+            name = cls._results[0]
+            cls._single = name, cls._make_converters().get(name)
+        name, convert = cls._single
         value = fields.get(name)
-        convert = (cls._converters or cls._make_converters()).get(name)
         return value if value is None or convert is None else convert(value)
 
     @property

@@ -74,14 +74,13 @@ class RequestEncoder:
         Raises:
             UsageError: there is no such command, or an argument is not allowed.
         """
-        values = request.values
         known = self._known.get(request.command)
-        if known is not None and not values:
+        if known is not None and (request.fixed or not request.values):
             return known
         command, _ = self._command(request.command)
         texts = None if command.request_text is None else request.text_values
         try:
-            return self.encode(request.command, values, texts, request.variant_index)
+            return self.encode(request.command, request.values, texts, request.variant_index)
         except UsageError as error:
             raise _in_units_of_caller(error, command, request) from None
 
