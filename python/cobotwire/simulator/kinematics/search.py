@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from operator import mul
 
 from cobotwire.simulator.kinematics.forward import frames
 from cobotwire.simulator.kinematics.geometry import Angles, Geometry
@@ -150,7 +151,7 @@ def _step(
         weights = _solve(_squares([columns[joint] for joint in free], damping), errors)
         blocked = []
         for joint in free:
-            turn = sum(a * b for a, b in zip(columns[joint], weights))
+            turn = sum(map(mul, columns[joint], weights))
             low, high = limits[joint]
             step[joint] = turn
             if (turn < 0 and angles[joint] <= low) or (turn > 0 and angles[joint] >= high):
@@ -167,13 +168,12 @@ def _step(
 def _squares(columns: Sequence[Sequence[float]], damping: float) -> list[list[float]]:
     """Return the columns times their transpose, with the damping on the diagonal."""
     rows = list(zip(*columns))
-    return [
-        [
-            sum(a * b for a, b in zip(one, other)) + (damping if i == j else 0.0)
-            for j, other in enumerate(rows)
-        ]
-        for i, one in enumerate(rows)
-    ]
+    squares = [[0.0] * len(rows) for _ in rows]
+    for i, one in enumerate(rows):
+        for j in range(i + 1):
+            squares[i][j] = squares[j][i] = sum(map(mul, one, rows[j]))
+        squares[i][i] += damping
+    return squares
 
 
 def _solve(matrix: list[list[float]], right: Sequence[float]) -> list[float]:
@@ -185,12 +185,11 @@ def _solve(matrix: list[list[float]], right: Sequence[float]) -> list[float]:
         for row in rows[pivot + 1 :]:
             share = row[pivot] / top[pivot]
             if share:
-                for column in range(pivot, size + 1):
-                    row[column] -= share * top[column]
+                row[pivot:] = [a - share * b for a, b in zip(row[pivot:], top[pivot:])]
     solved = [0.0] * size
     for index in reversed(range(size)):
         row = rows[index]
-        rest = row[size] - sum(row[k] * solved[k] for k in range(index + 1, size))
+        rest = row[size] - sum(map(mul, row[index + 1 : size], solved[index + 1 :]))
         solved[index] = rest / row[index]
     return solved
 
