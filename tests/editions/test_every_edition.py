@@ -1,7 +1,8 @@
-"""Each further edition works everywhere: clients, simulator, conformance, recordings, columns.
+"""Each further edition works everywhere: clients, simulator, recordings, columns.
 
 The two editions of the 280 have tests of their own for all of this. A further edition is stated as
-the difference from another one, so each of these tests takes it as a whole.
+the difference from another one, so each of these tests takes it as a whole. The conformance of
+simulated arms is in ``tests/conformance/device/test_every_edition.py``.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from cobotwire import codec as codecs
 from cobotwire.capture import read
 from cobotwire.codec.interface import Frame
 from cobotwire.conformance.client import Referee
-from cobotwire.conformance.device import ALL_PERMISSIONS
 from cobotwire.conformance.device.requests import harmless
 from cobotwire.diagnose import Diagnoser
 from cobotwire.editions import load
@@ -26,7 +26,6 @@ from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, TcpServer
 from cobotwire.simulator.clock import SteppedClock
-from conformance.device.testing import permissions, prepared
 
 EDITIONS = vectors.further()
 # Their replies need the lengths of the links, which no source may give.
@@ -49,12 +48,6 @@ UNKNOWN = {
     }
 }
 
-# The simulated gripper, servo 7, cannot be released. No source states limits of the Pro 400, so the
-# tester's poses are beyond half a turn, where the simulated arm does not go.
-NOT_SIMULATED = {"pro400": {"jog_angle", "jog_increment_angle"}}
-# The tester's power_on(0) leaves the motors of a Pro 450 without hold, which no query reports.
-NOT_SIMULATED |= {"pro450": {"jog_angle", "jog_increment_angle"}}
-NOT_SIMULATED |= {"mycobot280_rdkx5": {"release_servo", "focus_servo"}}
 POWERS = {"power_on", "set_robot_power_on", "focus_all_servos"}
 # With mode 0, no joint is held after power_on: then the motions that follow are a mistake.
 HOLDING = {"mode": 1}
@@ -124,15 +117,6 @@ def check_recording(edition: str, path: Path) -> None:
         columns = codec.decode_columns(replies, "reply")
         assert sum(len(rows) for rows in columns) == frames
         assert len(columns.rejected) == 0
-
-
-@editions
-def test_simulated_arm_conforms(edition: str) -> None:
-    table = load(edition).TABLE
-    report = prepared(table, permissions=permissions(*ALL_PERMISSIONS, joints=table.joints)).run()
-    known = unanswered(table) | NOT_SIMULATED.get(edition, set())
-    assert {result.command for result in report.failures} <= known
-    assert sum(result.verdict.name == "PASS" for result in report.results) > 3 * len(table.commands)
 
 
 @editions
