@@ -80,7 +80,8 @@ def check_changelog() -> str:
     if found is None:
         raise Failed(f"CHANGELOG.md: rename '## {UNRELEASED}' to '## {version()} ({date.today()})'")
     if not DATE_FORMAT.fullmatch(found[1]):
-        raise Failed(f"CHANGELOG.md: {found[1]} is not a date such as {date.today()}")
+        heading, dated = found[0], f"## {version()} ({date.today()})"
+        raise Failed(f"CHANGELOG.md: {heading!r} has no date; on the day write {dated!r}")
     return f"{version()} of {found[1]}"
 
 
@@ -95,15 +96,17 @@ def check_branch() -> str:
     """Check that the commit is on main, and that the version has no tag yet."""
     if _git("tag", "--list", f"v{version()}"):
         raise Failed(f"v{version()} exists: a version is released once; raise it in Cargo.toml")
-    if _git("rev-parse", "--abbrev-ref", "HEAD") != "main":
-        raise Failed("releases are made from main")
+    if (branch := _git("rev-parse", "--abbrev-ref", "HEAD")) != "main":
+        raise Failed(f"this is {branch}; releases are made from main: git switch main")
     return "main"
 
 
 def check_ci() -> str:
     """Check that each workflow of this commit succeeded, as far as the command gh can tell."""
     if shutil.which("gh") is None:
-        raise Failed("the command gh is not installed: look at the commit's checks on GitHub")
+        raise Failed(
+            "the command gh is not installed: install it, or look at the commit's checks on GitHub"
+        )
     command = ("gh", "run", "list", "--commit", _git("rev-parse", "HEAD"))
     states = _run(*command, "--json", "name,conclusion", "--jq", '.[] | .name + ": " + .conclusion')
     if not states or any(not line.endswith(": success") for line in states.splitlines()):
