@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import sys
 import tempfile
 import time
@@ -35,6 +36,8 @@ def pages() -> list[str]:
 
 def main() -> int:
     """Run the pages; return 1 if something is not as they say."""
+    # A shell that starts this in the background has disabled Ctrl-C, which ends some commands.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ["PATH"] = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     os.environ["COLUMNS"] = "100"
     os.environ.pop("PYTHONPATH", None)
