@@ -42,14 +42,12 @@ class Plan(NamedTuple):
         commands: By the command as the page shows it, without its comment.
         programs: By their first line. Others are run as they are.
         prepare: Shell commands that make the files which the page reads.
-        powered: Whether the arm behind the ports of the page has power.
         unlike: Commands of ``console`` blocks that are not run.
     """
 
     commands: Mapping[str, Expected | NotRun] = {}
     programs: Mapping[str, Program | NotRun] = {}
     prepare: str = ""
-    powered: bool = False
     unlike: Mapping[str, NotRun] = {}
 
 

@@ -40,8 +40,7 @@ class Result(NamedTuple):
 
 def run_page(path: Path, plan: Plan, folder: Path) -> Iterator[Result]:
     """Run the commands of a page, then its Python blocks, in a folder of the page."""
-    options = ["--powered"] if plan.powered else []
-    sim = ["cobotwire", "sim", "--quiet", *options]
+    sim = ["cobotwire", "sim", "--quiet"]
     with subprocess.Popen(sim, stdout=subprocess.PIPE, text=True) as arm:
         assert arm.stdout is not None
         try:

@@ -1,4 +1,4 @@
-"""The README and the quick start: an arm with power stands behind their ports."""
+"""The README, the landing page and the quick start."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ cp before.json after.json
 
 README = Plan(
     prepare=PREPARE,
-    powered=True,
     commands={
         "pip install cobotwire": INSTALLED,
         "make demo": NotRun("it is for a clone, with Rust; .ci/run runs it there"),
         "make test": NotRun("it is for a clone, with Rust; .ci/run runs it there"),
+        f"cobotwire call {PORT} power_on": Expected(r"\A\Z"),
         f"cobotwire call {PORT} send_angles 0,0,0,0,0,0 speed=30": Expected(r"\A\Z|sent"),
         "cobotwire decode FE FE 06 21 01 00 1D 14 FA": Expected(r"send_angle\(joint=1"),
         "cobotwire decode captures/ '*.bin' --summary": Expected(r"get_angles"),
