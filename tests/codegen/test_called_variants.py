@@ -239,7 +239,7 @@ def _checked(folder: Path, package: Any, lines: str, is_async: bool) -> str:
 
 @pytest.mark.parametrize("checker", ["mypy", "pyright"])
 def test_type_checkers_reject_exactly_the_wrong_combinations(
-    folder: Path, package: Any, checker: str
+    folder: Path, package: Any, checker: str, mypy_cache: str
 ) -> None:
     expected = set()
     for is_async in (False, True):
@@ -248,13 +248,14 @@ def test_type_checkers_reject_exactly_the_wrong_combinations(
             path.write_text(_checked(folder, package, lines, is_async))
             if kind == "wrong":
                 expected |= {(path.name, 4 + line) for line in range(1, len(lines.splitlines()))}
-    assert _errors(folder, checker) == {(name, line) for name, line in expected}
+    assert _errors(folder, checker, mypy_cache) == {(name, line) for name, line in expected}
 
 
-def _errors(folder: Path, checker: str) -> set[tuple[str, int]]:
+def _errors(folder: Path, checker: str, mypy_cache: str) -> set[tuple[str, int]]:
     names = sorted(path.name for path in folder.glob("[rw]*[01].py"))
     if checker == "mypy":
-        command = [sys.executable, "-m", "mypy", "--strict", "--output", "json", *names]
+        options = ["--strict", "--output", "json", mypy_cache]
+        command = [sys.executable, "-m", "mypy", *options, *names]
         done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
         found = map(json.loads, done.stdout.splitlines())
         return {(each["file"], each["line"]) for each in found if each["severity"] == "error"}

@@ -235,7 +235,7 @@ def _subsets(names: list[str]) -> list[set[str]]:
     return [set(found) for size in sizes for found in itertools.combinations(names, size)]
 
 
-def test_generated_code_passes_mypy_strict(tmp_path: Path) -> None:
+def test_generated_code_passes_mypy_strict(tmp_path: Path, mypy_cache: str) -> None:
     """Check several protocols at once, since starting mypy takes longer than checking them."""
 
     @settings(EXAMPLES, max_examples=15)
@@ -246,7 +246,7 @@ def test_generated_code_passes_mypy_strict(tmp_path: Path) -> None:
 
     generate()
     result = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "made"],
+        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", mypy_cache, "made"],
         capture_output=True,
         text=True,
         check=False,
