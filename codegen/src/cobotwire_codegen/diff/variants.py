@@ -146,10 +146,14 @@ def _removed_variant(
     after: tuple[Variant, ...],
     names: dict[str, str],
 ) -> Iterator[Finding]:
-    """Report a removed variant that nothing replaces."""
+    """Report a removed variant that nothing replaces.
+
+    A request cannot carry an argument any more that only it had. A reply with other fields is still
+    accepted: only devices that send this one are not.
+    """
     known = {field.name for other in after for field in other}
     lost = [field for field in variant if names.get(field.name, field.name) not in known]
-    lost = [field for field in lost if field.const is None]
+    lost = [field for field in lost if field.const is None and direction == "request"]
     for field in lost:
         yield _removed(where, direction, field)
     if not lost:
