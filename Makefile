@@ -161,7 +161,7 @@ archives: .venv/.tools .venv/.native ## export and query archives on a Dask clus
 	$(BIN)/python -m pytest tests/archive -o python_files='test_*.py on_*.py'
 
 .PHONY: wheels-check
-wheels-check: .venv/.base ## build both distributions; run README and website from the wheels in fresh environments: PYTHONS="python3.11 ..."
+wheels-check: .venv/.base ## build both distributions; run README, website and three other protocols from the wheels in fresh environments: PYTHONS="python3.11 ..."
 	$(BIN)/python -m pip install --quiet --group release
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/wheels_check.py $(PYTHONS)
 

@@ -44,6 +44,10 @@ PARTS = (
         "the call and its result at the top of each command's reference; the longer examples",
         (*_PYTEST, TESTS / "codegen/test_reference_examples.py", TESTS / "examples"),
     ),
+    Part(
+        "the protocols of other devices",
+        (ROOT / "tools" / "wheels_protocols.py", TESTS / "protocols"),
+    ),
 )
 
 

@@ -23,13 +23,17 @@ select:
 FRAME = "FE FE 06 10 0E 01 00 0F FA"
 
 
+@pytest.mark.parametrize("const", ["GRIPPER", "14"])
 @pytest.mark.parametrize("tool", ["GRIPPER", "14"])
 @pytest.mark.parametrize("lit", ["true", "1"])
-def test_vector_states_a_constant_by_name_or_number(tmp_path: Path, tool: str, lit: str) -> None:
+def test_constant_is_stated_by_name_or_number(
+    tmp_path: Path, tool: str, lit: str, const: str
+) -> None:
     values = f"{{tool: {tool}, lit: {lit}, heat: 1.5}}"
     vector = f"- {{name: v, command: select, direction: request, frame: {FRAME}, values: {values}}}"
-    assert small_specs.problems(tmp_path, SELECT, vector) == []
-    edition = small_specs.build(tmp_path, SELECT, vector)
+    select = SELECT.replace("const: 14", f"const: {const}")
+    assert small_specs.problems(tmp_path, select, vector) == []
+    edition = small_specs.build(tmp_path, select, vector)
     [built] = edition.vectors
     values_of_codecs = [plain(edition, built, name, value) for name, value in built.values]
     assert values_of_codecs == [14, 1, 1.5]

@@ -17,11 +17,12 @@ from cobotwire.conformance.device.read_back import settings_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
-from cobotwire.simulator.behaviour import BEHAVIOURS, external, registry
+from cobotwire.simulator.behaviour import BEHAVIOURS, external, own, registry
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.render import render_python
+from trial_specs import HEAD, package_of
 
 CLI = "from cobotwire.cli import main; main()"
 LAMP = Path(__file__).parent.parent / "codegen" / "lamp.yaml"
@@ -182,3 +183,12 @@ def test_sim_takes_the_behaviours_of_a_file(folder: Path) -> None:
     finally:
         process.terminate()
         process.communicate()
+
+
+@pytest.mark.parametrize("base", ["mercury_x1", "mybuddy", "mycobot280"])
+def test_delta_with_a_name_of_its_own_behaves_as_its_base(base: str, tmp_path: Path) -> None:
+    with package_of(f"{HEAD}base: cobotwire:{base}\n", tmp_path) as package:
+        table = editions.load(base).TABLE
+        assert package.TABLE.bases == (base, *table.bases)
+        for command in table.commands:
+            assert own(package.TABLE, package.TABLE.command(command.name)) is own(table, command)

@@ -101,6 +101,7 @@ def _document(edition: Edition) -> Record:
             document=edition.document,
             firmware=edition.firmware,
             base=edition.base,
+            bases=edition.bases,
             joints=edition.joints,
             **robot_parts(edition),
         ),

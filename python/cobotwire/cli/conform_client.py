@@ -12,6 +12,7 @@ import click
 
 from cobotwire import editions
 from cobotwire.capture.file_errors import unusable_file
+from cobotwire.cli.shared.arm_options import parse_address
 from cobotwire.cli.shared.conform_report import (
     ReportFiles,
     conclude,
@@ -25,6 +26,7 @@ from cobotwire.conformance.client import FAULTS, ClientOptions, Referee, ScriptL
 from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.inspect.call_arguments import parse, request_values, variant_of
+from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, Server, TcpServer
@@ -105,6 +107,8 @@ def client(
     \b
       send_angles 0,10,0,0,0,0 speed=30
       get_angles
+    \b
+    In an edition with addresses, a call may end with --address and a name or a number.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     with exit_if_not_testable():
         table = editions.load(edition).TABLE
@@ -220,6 +224,11 @@ def read_script(table: Table, text: str, name: str) -> Iterator[ScriptLine]:
 
 def _script_line(table: Table, words: list[str], place: str) -> ScriptLine:
     """Parse a call; the text that follows some requests is not compared."""
+    address = None
+    if words[1:][-2:-1] == ["--address"]:
+        *words, _, to = words
+        address = find_address(table, parse_address(to))
     command = table.command(words[0])
     given = parse(command, words[1:])
-    return ScriptLine(command, request_values(command, given), place, variant_of(command, given))
+    values, variant = request_values(command, given), variant_of(command, given)
+    return ScriptLine(command, values, place, variant, address and address.value)

@@ -60,6 +60,7 @@ def table_of(document: Record, package: str = "") -> Table:
         tuple([reader.command(record) for record in document["commands"]]),
         load_robot(edition),
         tuple([Address(*address) for address in frame.get("addresses", ())]),
+        tuple(edition.get("bases", ())),
     )
 
 

@@ -248,7 +248,8 @@ class Table:
     """One edition of the protocol.
 
     ``robot`` is what the edition states apart from its messages. ``addresses`` describes the
-    addresses of ``frame``, in the same order; it is empty if they have no names.
+    addresses of ``frame``, in the same order; it is empty if they have no names. ``bases`` are the
+    editions that it is a delta of, the nearest first.
     """
 
     edition: str
@@ -259,6 +260,7 @@ class Table:
     commands: tuple[Command, ...]
     robot: Robot = UNSTATED
     addresses: tuple[Address, ...] = ()
+    bases: tuple[str, ...] = ()
 
     def command(self, name: str) -> Command:
         """Return the command called ``name``.

@@ -117,6 +117,11 @@ class SimulatedArm:
     def state(self, state: ArmState) -> None:
         self._states[next(iter(self._states))] = state
 
+    @property
+    def states(self) -> Mapping[int | None, ArmState]:
+        """The state of each device by its address; of None where frames have no address."""
+        return self._states
+
     def state_at(self, address: int | str) -> ArmState:
         """Return the state of the device that has an address.
 
@@ -230,7 +235,7 @@ class SimulatedArm:
         """
         state, now = self._states[address], self.clock()
         state.record(now)
-        behaviour = self._behaviours.get(command.name) or own(command)
+        behaviour = self._behaviours.get(command.name) or own(self.table, command)
         elsewhere = self._is_elsewhere(fields)
         if elsewhere:
             # The state has no place for it: what is set is only remembered.

@@ -65,7 +65,7 @@ def set_start_values(table: Table, state: ArmState) -> None:
         for field, stated in values:
             value = stated if isinstance(stated, str) else _physical(query, field, stated)
             attribute = BEHAVIOURS.attributes.get((name, field))
-            if attribute is not None and own(query) is not None:
+            if attribute is not None and own(table, query) is not None:
                 setattr(state, attribute, value)
             else:
                 state.remembered.begin(name, field, value)

@@ -105,7 +105,7 @@ def test_session_fails_the_test_case_that_it_violates(case: str) -> None:
 
 def test_every_test_case_has_a_failing_session() -> None:
     # This edition's frames have no address byte.
-    expected = {*FAILING, *GIVEN, "frame-address"}
+    expected = {*FAILING, *GIVEN, "frame-address", "sent-address"}
     assert {case.id for case in SUITE.cases} == expected
 
 
@@ -141,7 +141,8 @@ GIVEN: dict[str, tuple[ScriptLine, bytes]] = {
 }
 
 
-@pytest.mark.parametrize("case", SCRIPT_CASES)
+# Frames of this edition have no address.
+@pytest.mark.parametrize("case", [case for case in SCRIPT_CASES if case != "sent-address"])
 def test_difference_from_the_script_is_named(case: str) -> None:
     scripted, sent = GIVEN[case]
     report = judged(spaced(POWERED, sent), [line("is_power_on"), scripted])

@@ -8,9 +8,12 @@ from typing import Any
 
 import pytest
 
+from cobotwire import MyBuddy
 from cobotwire import codec as codecs
+from cobotwire.cli.conform_client import read_script
 from cobotwire.conformance.client import FAULTS, Referee, faulty_replies, possible_faults
 from cobotwire.conformance.report import Report
+from cobotwire.editions import mybuddy
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import MemoryTransport, PtyServer, SteppedClock
@@ -44,6 +47,9 @@ commands:
   get_number:
     {{id: 2, title: Get, doc: Gets., safety: query, reply: [{{name: number, type: number}}]}}
   get_name: {{id: 3, title: Get, doc: Gets., safety: query, reply: [{{name: name, type: name}}]}}
+  get_register:
+    {{id: 5, title: Get, doc: Gets., safety: query, request: [{{name: register, type: number}}],
+     reply: [{{name: number, type: number}}]}}
   button_pressed:
     {{id: 4, title: Button, doc: A button was pressed., safety: query, event: true,
      reply: [{{name: number, type: number}}, {{name: name, type: name}}]}}
@@ -98,6 +104,42 @@ def test_client_that_takes_another_message_for_its_reply_fails(bus: Any, fault: 
     clock.sleep(1.0)
     referee.flush()
     assert failed(referee.finish()) == {"reply-awaited"}
+
+
+@pytest.mark.parametrize("meant", [1, 2])
+def test_request_must_reach_the_address_of_the_script(bus: Any, meant: int) -> None:
+    clock = SteppedClock()
+    script = list(read_script(bus.TABLE, f"get_number --address {meant}\n", "calls"))
+    referee = Referee(bus.TABLE, script=script, clock=clock)
+    with bus.Trial(MemoryTransport(referee, clock), address=2, on_error="leave") as arm:
+        arm.get_number()
+    report = referee.finish()
+    assert failed(report) == (set() if meant == 2 else {"sent-address"})
+    if meant == 1:
+        [failure] = report.failures
+        assert "calls:1: address: expected LEFT, got RIGHT" in failure.reason
+
+
+@pytest.mark.parametrize(("to", "failing"), [(1, {"late-reply-expected"}), (2, set())])
+def test_late_reply_of_another_address_is_no_risk(bus: Any, to: int, failing: set[str]) -> None:
+    clock, codec = SteppedClock(), codecs.load(bus.TABLE)
+    referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, ["lost"], 1), clock=clock)
+    # Both registers have the same id, and their replies differ in nothing but the address.
+    referee.receive(codec.encode("get_register", "request", (1,), address=1))
+    clock.sleep(0.4)
+    referee.flush()
+    referee.receive(codec.encode("get_register", "request", (2,), address=to))
+    assert failed(referee.finish()) == failing
+
+
+@pytest.mark.parametrize(("moved", "failing"), [("LEFT", {"motion-powered"}), ("RIGHT", set())])
+def test_each_device_has_power_of_its_own(moved: str, failing: set[str]) -> None:
+    clock = SteppedClock()
+    referee = Referee(mybuddy.TABLE, clock=clock)
+    with MyBuddy(MemoryTransport(referee, clock), address="LEFT", on_error="leave") as left:
+        left.power_off()
+        getattr(left, moved.lower()).send_angle(1, 10, 50)
+    assert failed(referee.finish()) == failing
 
 
 def test_faults_that_an_edition_cannot_have_are_refused(bus: Any) -> None:

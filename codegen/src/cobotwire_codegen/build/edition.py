@@ -105,6 +105,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         ),
         changes=tuple(parts.general_changes),
         gone=tuple(parts.gone.items()),
+        bases=(parts.base.name, *parts.base.bases) if parts.base else (),
     )
 
 

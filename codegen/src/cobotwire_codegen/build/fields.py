@@ -147,6 +147,13 @@ def _const(reader: Reader, type: Type) -> int | None:
     if reader.node(key) is None:
         return None
     value = reader.get(key)
+    if isinstance(value, str):
+        members = {each.name: each.value for each in type.members} if type.kind == "enum" else {}
+        if value not in members:
+            message = f"the const {value} of {reader.what} is not a member of its type"
+            hint = nearest(value, members)
+            reader.problem("bad-const", f"{message}{hint}", reader.place_of(key))
+        return members.get(value)
     if not type.can_hold(value):
         reader.problem("bad-const", f"the const {value} of {reader.what} does not fit its type")
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.json_schema import Schema, either
 from cobotwire_codegen.language.names import CASE, CLASS, LOWER, METHOD
-from cobotwire_codegen.language.number_shapes import Numbers, Range, Whole
+from cobotwire_codegen.language.number_shapes import Numbers, Range, Whole, WholeOrMember
 from cobotwire_codegen.language.records import (
     Choice,
     Key,
@@ -39,7 +39,10 @@ class _Field(Record):
     doc = optional(Text(), "What it is. Left out: the description of its type.")
     range = optional(Range(), "A range inside that of the type, in the type's unit.")
     optional_ = optional(YesNo(), "It may be left out. Only the last fields can be optional.")
-    const = optional(Whole(), "The only raw value of the field; callers do not pass it.")
+    const = optional(
+        WholeOrMember(),
+        "The only raw value of the field, or the member of its enum; callers do not pass it.",
+    )
     count = optional(
         Text(),
         "An earlier field that counts the elements of this one, whose size varies; callers do not "

@@ -48,6 +48,24 @@ class Whole(Shape[int]):
         return {"type": "integer", **{k: v for k, v in bounds.items() if v is not None}}
 
 
+class WholeOrMember(Shape[int | str]):
+    """A whole number, or the name of a member of an enum."""
+
+    blank = 0
+    words = "a whole number or the name of a member"
+
+    def read(self, node: Node, subject: str, note: Note) -> int | str:
+        """Return the number or the name."""
+        value = node.value if isinstance(node, Scalar) else None
+        if isinstance(value, str) or type(value) is int:
+            return value
+        return self._wrong(node, subject, note)
+
+    def schema(self) -> Schema:
+        """Return an integer or a string."""
+        return {"type": ["integer", "string"]}
+
+
 class Span(Shape[tuple[int, int]]):
     """A whole number, or a pair of them: the lowest and the highest."""
 

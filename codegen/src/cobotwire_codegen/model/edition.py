@@ -91,6 +91,8 @@ class Edition:
     changes: tuple[Change, ...]
     gone: tuple[tuple[str, str], ...] = ()
     """Commands of the base that this edition takes away, each with a hint that says where."""
+    bases: tuple[str, ...] = ()
+    """The names of the base, of its base, and so on."""
 
     def no_command(self, name: str) -> str:
         """Return the message that an unknown command has."""

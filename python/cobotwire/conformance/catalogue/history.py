@@ -33,5 +33,6 @@ HISTORY = (
         "`reply-repeats` also with and without power; `pauses` includes the report of a pause; "
         "noise comes last among crowded requests",
     ),
+    CatalogueVersion(4, "32ce52bee20a", "new: `sent-address`"),
 )
 VERSION = HISTORY[-1].number

@@ -64,6 +64,7 @@ class Referee:
         self._history = History(codec, patience)
         self._delivery = Delivery(scenario, codec, self._now)
         self._due = b""
+        self._power = self._powered_devices()
         self._script = None if script is None else Script(codec, script)
         self._tally = Tally(sources)
         # Noise that is not judged yet, because a frame in pieces may not be complete.
@@ -140,6 +141,7 @@ class Referee:
             self._judge(whole)
 
     def _judge(self, now: Received) -> None:
+        self._history.powered, self._history.released = self._power_of(now)
         for group in WITHOUT_SCRIPT:
             for observation in group.body(self._history, now):
                 self._observe(observation, now)
@@ -147,11 +149,22 @@ class Referee:
             for observation in self._script.judge(now):
                 self._observe(observation, now)
         self._history.entries.append(now)
-        state = self._arm.state
-        self._history.powered = state.powered
-        self._history.released = state.powered and not any(state.enabled)
+        self._power = self._powered_devices()
         if now.command is not None:
             self.requests += 1
+
+    def _powered_devices(self) -> dict[int | None, tuple[bool, bool]]:
+        """Return for each device whether it has power, and whether it has but holds no joint."""
+        return {
+            address: (state.powered, state.powered and not any(state.enabled))
+            for address, state in self._arm.states.items()
+        }
+
+    def _power_of(self, now: Received) -> tuple[bool, bool]:
+        """Return whether a device that receives a request had power, and whether all were loose."""
+        address = self._arm.table.frame.address(now.data) if now.is_frame else None
+        powered, released = zip(*(self._power[each] for each in self._arm.receivers(address)))
+        return any(powered), all(released)
 
     def _observe(self, observation: Observation, now: Received | None = None) -> None:
         case, complaint, command = observation

@@ -11,6 +11,7 @@ from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
+from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.table import Command
 
 SOURCE = "the script"
@@ -20,6 +21,7 @@ BYTE_ORDER = TestCase("sent-byte-order", "Numbers are sent in the field's byte o
 ORDER = TestCase("sent-order", "Values are sent in the order of the fields.", SOURCE)
 ROUNDED = TestCase("sent-rounded", "Values are sent as the nearest step.", SOURCE)
 VALUE = TestCase("sent-value", "Values are sent as the script states them.", SOURCE)
+ADDRESS = TestCase("sent-address", "Requests are sent to the address of the script.", SOURCE)
 VARIANT = TestCase("sent-variant", "Requests are sent in the variant of the script.", SOURCE)
 ONCE = TestCase("sent-once", "A change that is once in the script is sent once.", SOURCE)
 ALL = TestCase("sent-all", "Everything in the script is sent.", SOURCE)
@@ -28,7 +30,7 @@ NOTHING_ELSE = TestCase("sent-nothing-else", "Nothing is sent that is not in the
 # One state machine, the class Script, judges them all.
 SCRIPT = Group(
     "script",
-    (SCALE, SIGN, BYTE_ORDER, ORDER, ROUNDED, VALUE, VARIANT, ONCE, ALL, NOTHING_ELSE),
+    (SCALE, SIGN, BYTE_ORDER, ORDER, ROUNDED, VALUE, ADDRESS, VARIANT, ONCE, ALL, NOTHING_ELSE),
     None,
     subject="the calls of the script (`--expect`)",
 )
@@ -39,13 +41,15 @@ _SCALES = (10, 100, 1000, 57.29577951308232)
 class ScriptLine(NamedTuple):
     """A request that the client must send; ``place`` is its place in the script.
 
-    ``variant`` is the index of its variant; None: the first that allows the values.
+    ``variant`` is the index of its variant; None: the first that allows the values. ``address`` is
+    that of the device; None: the edition's first one, if it has addresses.
     """
 
     command: Command
     values: tuple[Any, ...]
     place: str
     variant: int | None = None
+    address: int | None = None
 
 
 class Script:
@@ -60,7 +64,13 @@ class Script:
         self._codec = codec
         self._lines = list(lines)
         self._frames = [
-            codec.encode(line.command.name, "request", line.values, variant=line.variant)
+            codec.encode(
+                line.command.name,
+                "request",
+                line.values,
+                variant=line.variant,
+                address=line.address,
+            )
             for line in lines
         ]
         self._at = 0
@@ -144,6 +154,11 @@ def differences(
 ) -> list[tuple[TestCase, str]]:
     """Return the test cases that a frame of the right command fails, each with all its values."""
     frames = f"expected {shown(right)}, got {shown(given)}"
+    table = codec.table
+    meant, reached = table.frame.address(right), table.frame.address(given)
+    if meant is not None and reached is not None and meant != reached:
+        names = f"expected {address_name(table, meant)}, got {address_name(table, reached)}"
+        return [(ADDRESS, f"address: {names}: {frames}")]
     if len(right) != len(given):
         return [(VARIANT, frames)]
     data, sent = codec.table.frame.data(right), codec.table.frame.data(given)

@@ -18,7 +18,7 @@ from cobotwire.simulator.targets import go_to_angles, go_to_encoders
 USUAL_SPEED = 50
 USUAL_PLAN = 50
 
-LIMBS = family(["mybuddy"], Behaviours())
+LIMBS = family("mybuddy", Behaviours())
 
 
 @LIMBS.behaviour(m.GetAngle)

@@ -19,13 +19,12 @@ from cobotwire.simulator.behaviour.registry import (
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_angle, go_to_angles, go_to_coords, may_move
 
-EDITIONS = ("mercury_a1", "mercury_b1", "mercury_x1", "pro400", "pro450", "pro630")
 # The group of errors of motions, as get_error_information reports it, and the status of a start.
 MOTION_ERRORS, STARTED = 0xD0, 1
 # Turns per minute of one degree per second.
 RPM = 60 / 360
 
-MERCURY = family(EDITIONS, Behaviours())
+MERCURY = family("mercury_a1", Behaviours())
 
 
 @MERCURY.behaviour(m.PowerOn)

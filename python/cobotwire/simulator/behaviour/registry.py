@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Reply, Request
-from cobotwire.protocol.table import Command, Direction
+from cobotwire.protocol.table import Command, Direction, Table
 from cobotwire.simulator.state import ArmState
 
 
@@ -145,20 +145,20 @@ reported = BEHAVIOURS.reported
 _FAMILIES: dict[str, Behaviours] = {}
 
 
-def family(editions: Iterable[str], behaviours: Behaviours) -> Behaviours:
-    """Let some editions have behaviours of their own before those of the 280; return these."""
-    _FAMILIES.update(dict.fromkeys(editions, behaviours))
+def family(edition: str, behaviours: Behaviours) -> Behaviours:
+    """Let an edition and its deltas have behaviours before those of the 280; return these."""
+    _FAMILIES[edition] = behaviours
     return behaviours
 
 
-def own(command: Command) -> Behaviour | None:
+def own(table: Table, command: Command) -> Behaviour | None:
     """Return the behaviour of cobotwire for a command; None if there is none.
 
     A command that only shares the name has other arguments; this behaviour would not understand
     them.
     """
-    edition = command.package.rpartition(".")[2]
-    for behaviours in (_FAMILIES.get(edition, Behaviours()), BEHAVIOURS):
+    families = (_FAMILIES[each] for each in (table.edition, *table.bases) if each in _FAMILIES)
+    for behaviours in (*families, BEHAVIOURS):
         found = behaviours.get(command.name)
         if found is not None and found.fits(command):
             return found

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from cobotwire.conformance.client.history import History, Received
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
+from cobotwire.session.matching import replies_differ
+from cobotwire.session.request import request_of
 
 NOTES = "field notes: a reply comes within about 30 ms or never"
 # The longest observed delay of a reply, in seconds.
@@ -53,7 +55,7 @@ def _late_replies(history: History, now: Received) -> Iterator[Observation]:
     complaint = ""
     for other in history.outstanding(now.at - LATEST):
         after = now.at - other.at
-        if after >= history.patience and other.data != now.data and _alike(other, now):
+        if after >= history.patience and other.data != now.data and _alike(history, other, now):
             sent = other.data.hex(" ").upper()
             complaint = (
                 f"sent {1000 * after:.0f} ms after {sent}; a late reply to that would look the same"
@@ -62,15 +64,14 @@ def _late_replies(history: History, now: Received) -> Iterator[Observation]:
     yield Observation(LATE_EXPECTED, complaint)
 
 
-def _alike(other: Received, now: Received) -> bool:
-    """Return whether no echo distinguishes the replies to two requests.
+def _alike(history: History, other: Received, now: Received) -> bool:
+    """Return whether nothing distinguishes the replies to two requests.
 
-    An echo counts only if every variant of the reply has it: older firmware omits it.
+    Ids, addresses, constants and repeated arguments do. A repeated argument counts only if every
+    variant of the reply has it: older firmware omits it.
     """
-    if other.command is None or now.command is None or other.command.id != now.command.id:
-        return False
-    echoes = [any(field.echo for field in v.fields) for v in now.command.reply]
-    return not echoes or not all(echoes)
+    earlier, later = (request_of(each.data, history.codec) for each in (other, now))
+    return earlier is not None and later is not None and not replies_differ(earlier, later)
 
 
 WAITING = Group("waiting", (AWAITED, GIVEN_TIME), _waiting, subject="each request that has a reply")
