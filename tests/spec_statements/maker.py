@@ -1,4 +1,4 @@
-"""States facts of the transport as the maker's library has them."""
+"""States facts of the transport, and defaults of arguments, as the maker's library has them."""
 
 from __future__ import annotations
 
@@ -36,4 +36,26 @@ def transport(edition: Edition) -> Iterator[str]:
             yield f"{command.name} has a deadline of its own"
 
 
-RULES = (transport,)
+def defaults(edition: Edition) -> Iterator[str]:
+    """Report arguments with another default than those of the library's method, or without one.
+
+    A command of the library's name has its arguments in the library's order.
+    """
+    for command in edition.commands:
+        theirs = _defaults(command.name)
+        fields = [f for variant in command.requests[:1] for f in variant if f.const is None]
+        for field, default in zip(fields, theirs):
+            ours = None if field.default is None else field.default[0]
+            if ours != default:
+                yield f"{command.name}: {field.name} has the default {ours}; the library {default}"
+
+
+@lru_cache(maxsize=1024)
+def _defaults(name: str) -> tuple[int | None, ...]:
+    """Return the defaults of a method of the library; None where an argument has none."""
+    method = getattr(MyCobot280, name, None)
+    given = [] if method is None else list(inspect.signature(method).parameters.values())[1:]
+    return tuple(None if p.default in (p.empty, None) else int(p.default) for p in given)
+
+
+RULES = (transport, defaults)
