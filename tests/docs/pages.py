@@ -19,7 +19,8 @@ BLOCK = re.compile(
     r"(?:^<!-- (?P<how>file|append): (?P<name>\S+) -->\n)?^```(?P<kind>\w+)\n(?P<text>.*?)^```$",
     re.DOTALL | re.MULTILINE,
 )
-SECONDS = 60
+# Only a command that hangs takes as long, also on a busy machine.
+SECONDS = 900
 PORT = "/dev/ttyACM0"
 
 
@@ -75,13 +76,16 @@ def _commands(text: str) -> Iterator[tuple[str, str]]:
 
 def _printed(command: str, folder: Path) -> str:
     programs = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
-    done = subprocess.run(
-        ["bash", "-c", command],
-        cwd=folder,
-        env=os.environ | {"PATH": programs, "COLUMNS": "100"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        timeout=SECONDS,
-    )
+    try:
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=folder,
+            env=os.environ | {"PATH": programs, "COLUMNS": "100"},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=SECONDS,
+        )
+    except subprocess.TimeoutExpired:
+        return f"(did not end within {SECONDS} s)\n"
     return done.stdout

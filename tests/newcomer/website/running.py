@@ -93,7 +93,7 @@ def _problem(command: str, expected: Expected, folder: Path) -> str:
             printed += line
         time.sleep(1)  # a recording gets some more messages
         process.send_signal(signal.SIGINT)
-    printed += process.communicate(timeout=SECONDS * 5)[0]
+    printed += process.communicate(timeout=SECONDS)[0]
     codes = {expected.code} | ({0, 130, -signal.SIGINT} if expected.served else set())
     ended = expected.code == ANY or process.returncode in codes
     if ended and re.search(expected.output, printed):
@@ -116,7 +116,7 @@ def _programs(page: str, plan: Plan, folder: Path, port: str) -> Iterator[Result
         return
     (folder / "steps.json").write_text(json.dumps(steps), encoding="utf-8")
     child = [sys.executable, "-c", CHILD, "steps.json"]
-    done = subprocess.run(child, cwd=folder, capture_output=True, text=True, timeout=SECONDS * 2)
+    done = subprocess.run(child, cwd=folder, capture_output=True, text=True, timeout=SECONDS)
     printed = done.stdout.split("\0")
     for (place, block, program), output in zip(planned, printed):
         pattern = output_pattern((block.shown or "").strip())

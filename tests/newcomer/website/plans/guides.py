@@ -80,9 +80,9 @@ PYMYCOBOT = Plan(
     },
 )
 
-CLONE = "it is for a clone: it measures two clients, and writes the tables of the page"
+CLONE = "it is for a clone, and takes minutes"
 ATTACK = Plan(commands={"make attack": NotRun(CLONE)})
-BAD_LINES = Plan(commands={"make table": NotRun(CLONE)})
+BAD_LINES = Plan(commands={"make table": NotRun(f"{CLONE}; it writes the table of the page")})
 C = Plan(
     commands={
         "arm-none-eabi-gcc -std=c99 -Os -mcpu=cortex-m0plus -mthumb -ffreestanding -fstack-usage"
