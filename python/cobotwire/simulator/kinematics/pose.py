@@ -65,6 +65,12 @@ class Pose(NamedTuple):
         return math.dist(self.origin, other.origin), math.degrees(turn)
 
 
+def cross(one: Vector, other: Vector) -> Vector:
+    """Return the cross product of two vectors."""
+    (ax, ay, az), (bx, by, bz) = one, other
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
 def turned_about(axis: int, degrees: float) -> Pose:
     """Return a turn about an axis of the outer frame: 0 x, 1 y, 2 z."""
     coords = [0.0] * 6

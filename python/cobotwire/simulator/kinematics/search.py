@@ -21,7 +21,7 @@ from cobotwire.simulator.kinematics.nearness import (
     misses,
     way_between,
 )
-from cobotwire.simulator.kinematics.pose import Pose, Vector
+from cobotwire.simulator.kinematics.pose import Pose, Vector, cross
 
 # One radian weighs as much as this many millimetres: the ratio of the two tolerances.
 MILLIMETRES_PER_RADIAN = math.degrees(1) * 5
@@ -105,7 +105,7 @@ def _errors(here: Pose, target: Pose) -> list[float]:
     """Return how far the flange has to move and to turn, in millimetres along each axis."""
     turn = [0.0, 0.0, 0.0]
     for one, other in zip(here[:3], target[:3]):
-        turn = [a + b for a, b in zip(turn, _cross(one, other))]
+        turn = [a + b for a, b in zip(turn, cross(one, other))]
     way = [b - a for a, b in zip(here.origin, target.origin)]
     sine = math.hypot(*turn) / 2
     cosine = (sum(_dot(one, other) for one, other in zip(here[:3], target[:3])) - 1) / 2
@@ -127,7 +127,7 @@ def _columns(geometry: Geometry, here: Sequence[Pose]) -> list[list[float]]:
     for turns, frame in zip(geometry.turns, here):
         if turns:
             lever = (end[X] - origin[X], end[Y] - origin[Y], end[Z] - origin[Z])
-            moved = _cross(axis, lever)
+            moved = cross(axis, lever)
             for joint, share in turns:
                 column, weight = columns[joint], share * radian
                 for row in range(3):
@@ -196,11 +196,6 @@ def _solve(matrix: list[list[float]], right: Sequence[float]) -> list[float]:
 
 def _clamped(angles: Sequence[float], limits: Limits) -> list[float]:
     return [min(max(angle, low), high) for angle, (low, high) in zip(angles, limits)]
-
-
-def _cross(one: Vector, other: Vector) -> Vector:
-    (ax, ay, az), (bx, by, bz) = one, other
-    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
 def _dot(one: Vector, other: Vector) -> float:
