@@ -8,6 +8,7 @@ import threading
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import small_tables
@@ -64,6 +65,38 @@ def test_view_made_during_a_native_call_leaves_all_columns_unchanged(viewed: int
         view.release()
     codec.decode_columns(ANGLES, "reply", out=out)
     assert len(out) == 0
+
+
+@pytest.mark.parametrize("call", ["scan", "decode_columns"])
+def test_noise_of_out_is_reused_unless_it_is_viewed(call: str) -> None:
+    codec = codecs.load(TABLE, "native")
+    read: Any = getattr(codec, call)
+    stream = (b"\x07" + ANGLES) * 50_000
+    out = read(stream, "reply")
+    first = out.noise
+    starts, address = first.offset.tolist(), _address(first.offset)
+    with pytest.raises(BufferError, match="out is still used"):
+        read(stream, "reply", out=out)
+    assert out.noise.offset.tolist() == starts, "a refused call leaves the noise"
+    assert len(out.offset if call == "scan" else out[0].offset) == 50_000
+    first.offset.release()
+    first.size.release()
+    again = read(stream, "reply", out=out)
+    assert again.noise.offset.tolist() == starts
+    assert _address(again.noise.offset) == address
+    assert len(out.noise.offset) == 0
+
+
+def _address(view: memoryview) -> int:
+    return int(np.asarray(view).__array_interface__["data"][0])
+
+
+def test_noise_of_longer_out_is_not_in_the_result(codec: Codec) -> None:
+    out = codec.scan((b"\x07" + ANGLES) * 9, "reply")
+    columns = codec.decode_columns((b"\x07" + ANGLES) * 9, "reply")
+    assert codec.scan(ANGLES + b"\x08\x09", "reply", out=out).noise.size.tolist() == [2]
+    found = codec.decode_columns(ANGLES + b"\x08\x09", "reply", out=columns)
+    assert [list(each) for each in found.noise] == [[17], [2]]
 
 
 def test_out_with_commands_that_the_edition_lacks_is_accepted(codec: Codec) -> None:

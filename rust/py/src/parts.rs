@@ -17,10 +17,22 @@ pub fn spans<'py>(py: Python<'py>, noise: Spans) -> PyResult<Bound<'py, PyTuple>
 /// Take the memory of an earlier `Scan`, which is empty afterwards.
 pub fn old_offsets(out: &Bound<'_, PyAny>) -> PyResult<Offsets> {
     let memory: Bound<'_, Memory> = out.getattr("_offset")?.extract()?;
+    let [starts, sizes] = noise_of(out)?;
+    let mut taken = Memory::take_all(&[memory.get(), starts.get(), sizes.get()])?.into_iter();
+    let mut next = || taken.next().map_or(Vec::new(), offsets);
     Ok(Offsets {
-        frames: offsets(memory.get().take()?),
-        noise: Spans::default(),
+        frames: next(),
+        noise: Spans {
+            offsets: next(),
+            sizes: next(),
+        },
     })
+}
+
+/// Return the memories of the noise of earlier results: the positions of its spans, their sizes.
+fn noise_of<'py>(out: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, Memory>; 2]> {
+    let (offsets, sizes) = out.getattr("_noise")?.extract()?;
+    Ok([offsets, sizes])
 }
 
 /// Take the memory of an earlier `Columns`, which is empty afterwards.
@@ -33,10 +45,19 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
         .iter()
         .map(Memories::of)
         .collect::<PyResult<Vec<_>>>()?;
-    let all: Vec<&Memory> = memories.iter().flat_map(Memories::all).collect();
+    let noise = noise_of(out)?;
+    let rows = memories.iter().flat_map(Memories::all);
+    let all: Vec<&Memory> = noise.iter().map(Bound::get).chain(rows).collect();
     // Check all of them first, so that the old columns stay complete after an error.
     let mut taken = Memory::take_all(&all)?.into_iter();
-    let mut old = Columns::default();
+    let mut next = || taken.next().map_or(Vec::new(), offsets);
+    let mut old = Columns {
+        noise: Spans {
+            offsets: next(),
+            sizes: next(),
+        },
+        ..Columns::default()
+    };
     for (variant, memories) in variants.into_iter().zip(&memories) {
         let mut columns = taken.by_ref().take(memories.all().count());
         let offsets = columns.next().map_or(Vec::new(), offsets);

@@ -38,7 +38,8 @@ impl Six {
         None
     }
 
-    /// Do the same with the raw values. Those within their bounds fit the type.
+    /// Do the same with the raw values. Those within their bounds fit the type. `None` also if a
+    /// bound is no raw value.
     #[inline]
     pub fn append_raw(
         &self,
@@ -48,19 +49,50 @@ impl Six {
     ) -> Option<bool> {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2") {
+            let bounds = self.narrow()?;
             // SAFETY: the processor has the instructions, as was just checked.
-            return Some(unsafe { avx2::append_raw(self, out, block, starts) });
+            return Some(unsafe { avx2::append_raw(&bounds, out, block, starts) });
         }
         let _ = (out, block, starts);
         None
     }
+
+    /// Return the bounds in 16 bits: a raw value that fits the type has the same bits as the number
+    /// on the wire. Distances from the least raw value are unique modulo 2^16 if both bounds are
+    /// raw values.
+    fn narrow(&self) -> Option<Narrow> {
+        let mut bounds = Narrow {
+            least: [0; 8],
+            span: [u16::MAX; 8],
+        };
+        let rules = self.bias.iter().zip(&self.least).zip(&self.span);
+        let places = bounds.least.iter_mut().zip(&mut bounds.span);
+        for (((bias, least), span), (narrow_least, narrow_span)) in rules.zip(places) {
+            if *span >= u32::from(u16::MAX) {
+                continue; // every raw value is allowed
+            }
+            let most = i64::from(*least) + i64::from(*span);
+            if *least < -bias || most > i64::from(0xFFFF - bias) {
+                return None;
+            }
+            *narrow_least = *least as u16;
+            *narrow_span = *span as u16;
+        }
+        Some(bounds)
+    }
+}
+
+/// The least raw value of each number, modulo 2^16, and how far the largest one is from it.
+struct Narrow {
+    least: [u16; 8],
+    span: [u16; 8],
 }
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
     use std::arch::x86_64::*;
 
-    use super::{NUMBERS, Six};
+    use super::{NUMBERS, Narrow, Six};
 
     /// The rules in registers.
     struct Rules {
@@ -112,48 +144,83 @@ mod avx2 {
         }
     }
 
-    /// Define a function that reserves memory for all rows, stores each row there, and sets the
-    /// length of the vector at the end.
-    macro_rules! append {
-        ($name:ident, $type:ty, $six:ident => $prepare:expr, $store:expr) => {
-            #[target_feature(enable = "avx2")]
-            pub(super) fn $name(
-                $six: &Six,
-                out: &mut Vec<$type>,
-                block: &[u8],
-                starts: impl Iterator<Item = usize>,
-            ) -> bool {
-                let rules = Rules::new($six);
-                let prepared = $prepare;
-                let mut outside = _mm256_setzero_si256();
-                out.reserve(starts.size_hint().0 * NUMBERS);
-                let room = (out.capacity() - out.len()) / NUMBERS;
-                let mut done = 0;
-                // SAFETY: the vector has at least this length.
-                let first = unsafe { out.as_mut_ptr().add(out.len()) };
-                for start in starts {
-                    let bytes = block.get(start..).and_then(<[u8]>::first_chunk);
-                    let (Some(bytes), true) = (bytes, done < room) else {
-                        return false;
-                    };
-                    let raws = rules.raws(bytes);
-                    outside = _mm256_or_si256(outside, rules.outside(raws));
-                    // SAFETY: there is room for more than `done` rows after the vector's end.
-                    unsafe { $store(raws, &prepared, first.add(done * NUMBERS)) };
-                    done += 1;
-                }
-                if _mm256_testz_si256(outside, outside) == 0 {
-                    return false;
-                }
-                // SAFETY: there was room for `done` rows, and all of them were stored.
-                unsafe { out.set_len(out.len() + done * NUMBERS) };
-                true
-            }
-        };
+    /// Append the physical values of rows; see [`Six::append_physical`].
+    #[target_feature(enable = "avx2")]
+    pub(super) fn append_physical(
+        six: &Six,
+        out: &mut Vec<f64>,
+        block: &[u8],
+        starts: impl Iterator<Item = usize>,
+    ) -> bool {
+        let (rules, factors) = (Rules::new(six), Factors::new(six));
+        let mut outside = _mm256_setzero_si256();
+        out.reserve(starts.size_hint().0 * NUMBERS);
+        let room = (out.capacity() - out.len()) / NUMBERS;
+        let mut done = 0;
+        // SAFETY: the vector has at least this length.
+        let first = unsafe { out.as_mut_ptr().add(out.len()) };
+        for start in starts {
+            let bytes = block.get(start..).and_then(<[u8]>::first_chunk);
+            let (Some(bytes), true) = (bytes, done < room) else {
+                return false;
+            };
+            let raws = rules.raws(bytes);
+            outside = _mm256_or_si256(outside, rules.outside(raws));
+            // SAFETY: there is room for more than `done` rows after the vector's end.
+            unsafe { store_physical(raws, &factors, first.add(done * NUMBERS)) };
+            done += 1;
+        }
+        if _mm256_testz_si256(outside, outside) == 0 {
+            return false;
+        }
+        // SAFETY: there was room for `done` rows, and all of them were stored.
+        unsafe { out.set_len(out.len() + done * NUMBERS) };
+        true
     }
 
-    append!(append_physical, f64, six => Factors::new(six), store_physical);
-    append!(append_raw, i16, six => (), store_raw);
+    /// Append the raw values of rows; see [`Six::append_raw`].
+    #[target_feature(enable = "avx2")]
+    pub(super) fn append_raw(
+        bounds: &Narrow,
+        out: &mut Vec<i16>,
+        block: &[u8],
+        starts: impl Iterator<Item = usize>,
+    ) -> bool {
+        // A row is stored with the two numbers after it, which the next row replaces.
+        const AFTER: usize = 2;
+        let swap = _mm_set_epi8(14, 15, 12, 13, 10, 11, 8, 9, 6, 7, 4, 5, 2, 3, 0, 1);
+        // SAFETY: each array has the 16 bytes that are loaded.
+        let [least, span] = [&bounds.least, &bounds.span]
+            .map(|all| unsafe { _mm_loadu_si128(all.as_ptr().cast()) });
+        let mut outside = _mm_setzero_si128();
+        out.reserve(starts.size_hint().0 * NUMBERS + AFTER);
+        let room = (out.capacity() - out.len()).saturating_sub(AFTER) / NUMBERS;
+        let mut done = 0;
+        // SAFETY: the vector has at least this length.
+        let first = unsafe { out.as_mut_ptr().add(out.len()) };
+        for start in starts {
+            let bytes = block.get(start..).and_then(<[u8]>::first_chunk::<16>);
+            let (Some(bytes), true) = (bytes, done < room) else {
+                return false;
+            };
+            // SAFETY: the array has the 16 bytes that are loaded.
+            let bytes = unsafe { _mm_loadu_si128(bytes.as_ptr().cast()) };
+            let raws = _mm_shuffle_epi8(bytes, swap);
+            let above = _mm_sub_epi16(raws, least);
+            let beyond = _mm_xor_si128(_mm_max_epu16(above, span), span);
+            outside = _mm_or_si128(outside, beyond);
+            // SAFETY: there is room for more than `done` rows after the vector's end, and for two
+            // numbers after them.
+            unsafe { _mm_storeu_si128(first.add(done * NUMBERS).cast(), raws) };
+            done += 1;
+        }
+        if _mm_testz_si128(outside, outside) == 0 {
+            return false;
+        }
+        // SAFETY: there was room for `done` rows, and all of them were stored.
+        unsafe { out.set_len(out.len() + done * NUMBERS) };
+        true
+    }
 
     /// The factors of the first four numbers, and of the last two.
     struct Factors {
@@ -203,27 +270,6 @@ mod avx2 {
         unsafe {
             _mm256_storeu_pd(to, four);
             _mm_storeu_pd(to.add(4), two);
-        }
-    }
-
-    /// Store six raw values.
-    ///
-    /// # Safety
-    /// `to` must be writable for six values.
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn store_raw(raws: __m256i, (): &(), to: *mut i16) {
-        // A value that does not fit is out of bounds, so it does not matter that it is changed.
-        let all = _mm_packs_epi32(
-            _mm256_castsi256_si128(raws),
-            _mm256_extracti128_si256::<1>(raws),
-        );
-        // SAFETY: as the caller promises; the first store has four values, the second one two.
-        unsafe {
-            _mm_storel_epi64(to.cast(), all);
-            to.add(4)
-                .cast::<i32>()
-                .write_unaligned(_mm_extract_epi32::<2>(all));
         }
     }
 }

@@ -79,6 +79,43 @@ fn every_raw_value_is_kept() {
 }
 
 #[test]
+fn every_raw_value_is_judged_by_its_bounds() {
+    let limits = [
+        (0x8000, -0x8000, 0x7FFF),
+        (0x8000, -17_500, 17_500),
+        (0x8000, -0x8000, -1),
+        (0x8000, 5, 5),
+        (0, 0, 0x7FFF),
+        (0, 1000, 30_000),
+    ];
+    for (bias, least, most) in limits {
+        let rules = six(bias, (least, most), [1.0; 8]);
+        for word in 0..=u16::MAX {
+            let block = word.to_be_bytes().repeat(8);
+            let raw = ((i32::from(word) + bias) & 0xFFFF) - bias;
+            let fits = (least..=most).contains(&raw);
+            let (mut raws, mut reals) = (vec![], vec![]);
+            let all = rules.append_raw(&mut raws, &block, [0].into_iter());
+            if let Some(all) = all {
+                assert_eq!((all, raws.len()), (fits, 6 * usize::from(fits)));
+                assert!(raws.iter().all(|each| i32::from(*each) == raw));
+                let all = rules.append_physical(&mut reals, &block, [0].into_iter());
+                assert_eq!((all, reals.len()), (Some(fits), raws.len()));
+            }
+        }
+    }
+}
+
+#[test]
+fn bounds_that_are_no_raw_values_are_left_to_plain_code() {
+    for (bias, bounds) in [(0, (-1, 5)), (0x8000, (0, 0x8000)), (0, (5, 0x1_0000))] {
+        let rules = six(bias, bounds, [1.0; 8]);
+        let rows = std::iter::once(0);
+        assert_eq!(rules.append_raw(&mut vec![], &[0; 32], rows), None);
+    }
+}
+
+#[test]
 fn one_value_out_of_bounds_appends_nothing() {
     let mut block = [0, 50].repeat(40);
     block.extend([0; 16]);

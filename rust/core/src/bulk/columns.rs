@@ -70,24 +70,21 @@ impl ColumnReader {
         let mut rows: Vec<Rows> = variants
             .map(|variant| Rows::new(&table, *variant, numbers))
             .collect();
-        let mut rejected = Vec::new();
-        if let Some(mut old) = old {
-            for old in old.rows {
-                if let Some(new) = rows.iter_mut().find(|new| new.variant == old.variant) {
-                    new.reuse(old);
-                }
+        let mut old = old.unwrap_or_default();
+        for old in old.rows {
+            if let Some(new) = rows.iter_mut().find(|new| new.variant == old.variant) {
+                new.reuse(old);
             }
-            old.rejected.clear();
-            rejected = old.rejected;
         }
+        old.rejected.clear();
         Self {
-            stream: Stream::new(table.rules(plans.listening).clone()),
+            stream: Stream::new(table.rules(plans.listening).clone()).reusing(old.noise),
             sorter: Sorter {
                 table,
                 buckets: Buckets::default(),
                 plans,
                 rows,
-                rejected,
+                rejected: old.rejected,
             },
         }
     }

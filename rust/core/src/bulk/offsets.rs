@@ -33,10 +33,10 @@ impl OffsetReader {
     /// Return a reader for a new stream; it reuses the memory of `old` offsets.
     #[must_use]
     pub fn new(rules: Rules, old: Option<Offsets>) -> Self {
-        let mut frames = old.map(|old| old.frames).unwrap_or_default();
+        let Offsets { mut frames, noise } = old.unwrap_or_default();
         frames.clear();
         Self {
-            stream: Stream::new(rules),
+            stream: Stream::new(rules).reusing(noise),
             collected: Collected { frames },
         }
     }

@@ -25,6 +25,7 @@ pub(crate) struct Noise {
 /// The noise of one lane or scan, before it is known whether the lane counts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Runs {
+    /// The start and the end of each span; a frame lies between any two.
     pub(crate) spans: Vec<(u32, u32)>,
     pub(crate) reasons: [u64; Reason::ALL.len()],
 }
@@ -54,20 +55,43 @@ impl Runs {
 }
 
 impl Noise {
+    /// Return no noise; it reuses the memory of `old` spans.
+    pub(crate) fn new(mut old: Spans) -> Self {
+        old.offsets.clear();
+        old.sizes.clear();
+        Self {
+            closed: old,
+            ..Self::default()
+        }
+    }
+
     /// Add the noise found from stream offset `base` on.
     pub(crate) fn add(&mut self, base: u64, runs: &Runs, tally: &mut Tally) {
         for (total, count) in tally.noise.iter_mut().zip(runs.reasons) {
             *total += count;
         }
-        for (from, to) in &runs.spans {
-            let (from, to) = (base + u64::from(*from), base + u64::from(*to));
-            match &mut self.open {
-                Some((_, end)) if *end == from => *end = to,
-                _ => {
-                    self.close(from, tally);
-                    self.open = Some((from, to));
-                }
+        let Some(((from, to), rest)) = runs.spans.split_first() else {
+            return;
+        };
+        let (from, to) = (base + u64::from(*from), base + u64::from(*to));
+        match &mut self.open {
+            Some((_, end)) if *end == from => *end = to,
+            _ => {
+                self.close(from, tally);
+                self.open = Some((from, to));
             }
+        }
+        // A frame lies between each of the others and the one before it.
+        if let [next, ..] = rest
+            && let [others @ .., last] = rest
+        {
+            self.close(base + u64::from(next.0), tally);
+            let offsets = others.iter().map(|(from, _)| base + u64::from(*from));
+            let sizes = others.iter().map(|(from, to)| u64::from(to - from));
+            self.closed.offsets.extend(offsets);
+            self.closed.sizes.extend(sizes);
+            tally.resyncs += others.len() as u64;
+            self.open = Some((base + u64::from(last.0), base + u64::from(last.1)));
         }
     }
 

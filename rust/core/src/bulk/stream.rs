@@ -68,6 +68,12 @@ impl Stream {
         }
     }
 
+    /// Reuse the memory of `old` noise. Nothing has been fed yet.
+    pub(crate) fn reusing(mut self, old: Spans) -> Self {
+        self.noise = Noise::new(old);
+        self
+    }
+
     /// Count offsets from `offset` on. Nothing has been fed yet.
     pub(crate) fn start_at(&mut self, offset: u64) {
         self.seam = Seam::at(offset);
