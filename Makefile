@@ -108,6 +108,7 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/lock.py
 	$(BIN)/python bench/captures_decode.py
 	$(BIN)/python bench/speed.py
+	$(BIN)/python bench/bulk_floor.py
 	$(BIN)/python bench/captures.py
 	$(BIN)/python bench/imports.py
 	$(BIN)/python bench/streaming.py

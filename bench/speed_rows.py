@@ -6,7 +6,7 @@ A row makes its work only when it is asked for, so that its memory can be freed 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
 from pathlib import Path
 
@@ -118,16 +118,23 @@ class _Captures:
         out = self.out[place]
         self.out[place] = self.codec.decode_columns(self.data, "reply", out=out)
 
-    def in_turn(self) -> None:
-        for place in (0, 1):
-            self.read(place)
+    def both(self) -> list[Callable[[], object]]:
+        return [partial(self.read, place) for place in (0, 1)]
 
-    def together(self) -> None:
-        both = [threading.Thread(target=self.read, args=(place,)) for place in (0, 1)]
-        for thread in both:
-            thread.start()
-        for thread in both:
-            thread.join()
+
+def in_turn(works: Sequence[Callable[[], object]]) -> None:
+    """Do one work after the other."""
+    for work in works:
+        work()
+
+
+def together(works: Sequence[Callable[[], object]]) -> None:
+    """Do each work in a thread of its own."""
+    threads = [threading.Thread(target=work) for work in works]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
 
 
 Row = Callable[[Codec, Streams], Timed]
@@ -154,9 +161,13 @@ SINGLE: dict[str, Row] = {
     "encode": _encode,
 }
 THREADS: dict[str, Row] = {
-    "one thread": lambda codec, streams: Timed(_Captures(codec, streams.clean).in_turn),
-    "two": lambda codec, streams: Timed(_Captures(codec, streams.clean).together),
+    "one thread": lambda codec, streams: _threads(in_turn, codec, streams),
+    "two": lambda codec, streams: _threads(together, codec, streams),
 }
+
+
+def _threads(run: Callable[..., None], codec: Codec, streams: Streams) -> Timed:
+    return Timed(partial(run, _Captures(codec, streams.clean).both()))
 
 
 def _lazy(codec: Codec, data: bytes) -> object:
