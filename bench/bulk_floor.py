@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -67,7 +68,7 @@ def floors(data: bytes, rounds: int) -> list[Ratio]:
 def threads(data: bytes, rounds: int) -> list[Ratio]:
     """Return how many times faster two threads are than the same work in turn."""
     codec = codecs.load(TABLE, "native")
-    works = {
+    works: dict[str, list[Callable[[], object]]] = {
         "memcpy": [peers.memcpy(data), peers.memcpy(data)],
         "SHA-256": [partial(hashlib.sha256, data)] * 2,
         "float64 columns": [
