@@ -1,9 +1,10 @@
 """Poll a thousand arms at 20 Hz in one process: lateness, CPU time and memory.
 
 The arms are TCP connections to another process (`fleet_responder.py`). A sample is late by the time
-from the moment of its slot until the consumer has it. With two cores, one is the client's and one
-the arms'. The CPU time is that of the client's process. Its memory is what the process grows by for
-each open arm with a stream, and what Python allocates for it (tracemalloc, measured with few arms).
+from the moment of its slot until the consumer has it. On Linux, one core is the client's and
+another the arms'. The CPU time is that of the client's process. Its memory is what the process
+grows by for each open arm with a stream, and what Python allocates for it (tracemalloc, measured
+with few arms).
 
 The floor sends and receives the same bytes with callbacks of the same event loop, and does nothing
 else. It shows what the machine and asyncio need by themselves.
@@ -34,8 +35,11 @@ REQUEST = "FE FE 02 20 FA"
 REPLY = "FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA"
 # How many arms connect at the same time.
 TOGETHER = 50
-# The first second is warm-up.
-WARM_UP = 1.0
+# Seconds before the first measured sample.
+WARM_UP = 2.0
+# The streams start during so many periods, so that a stall does not make many of them start
+# together: they would stay together, and each be late by the time that the others take.
+START_PERIODS = 20
 TRACED_ARMS = 50
 LATE_SECONDS = 0.020
 ARM_BYTES = 100 << 10
@@ -99,10 +103,21 @@ def _arms() -> Iterator[str]:
     command = [sys.executable, script, REQUEST, REPLY]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
+        _keep_apart(process.pid)
         try:
             yield f"socket://127.0.0.1:{int(process.stdout.readline())}"
         finally:
             process.kill()
+
+
+def _keep_apart(arms: int) -> None:
+    """Give the process of the arms a core, and this one another, where the system allows it."""
+    if not hasattr(os, "sched_setaffinity"):
+        return
+    cores = sorted(os.sched_getaffinity(0))
+    if len(cores) > 1:
+        os.sched_setaffinity(arms, cores[:1])
+        os.sched_setaffinity(0, cores[-1:])
 
 
 async def _run(url: str, count: int, rate: float, seconds: float) -> Result:
@@ -116,8 +131,8 @@ async def _run(url: str, count: int, rate: float, seconds: float) -> Result:
     begin = time.monotonic() + WARM_UP + 1 / rate
     polls = [
         # The arms take turns within a period, so that their replies do not come all at once.
-        asyncio.create_task(_poll(stream, rate, index / count / rate, begin, seconds, lateness))
-        for index, stream in enumerate(streams)
+        asyncio.create_task(_poll(stream, rate, delay, begin, seconds, lateness))
+        for stream, delay in zip(streams, _delays(count, rate))
     ]
     await asyncio.sleep(begin - time.monotonic())
     started, cpu = time.monotonic(), time.process_time()
@@ -128,6 +143,10 @@ async def _run(url: str, count: int, rate: float, seconds: float) -> Result:
     resident = (_resident() - before) / count
     await _closed(arms)
     return Result(lateness, missed, cpu / max(1, len(lateness)), cpu / spent, resident)
+
+
+def _delays(count: int, rate: float) -> list[float]:
+    return [(index / count + index % START_PERIODS) / rate for index in range(count)]
 
 
 async def _poll(

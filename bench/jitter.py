@@ -1,12 +1,12 @@
-"""Measure how far from their moments the requests of a 100 Hz stream are sent: alone, and not.
+"""Measure how late the samples of a 100 Hz stream are: alone, and beside a busy thread.
 
-The arm is a trivial responder in another process, on a pty. A slot without a sample counts as late
-by a whole period. The first row is a bare `time.sleep` until each moment: it shows how late the
-machine is by itself.
+The arm is a trivial responder in another process, on a pty. For each sample there are two figures:
+how far from its moment the request was written, and how late the consumer had the result. A slot
+without a sample counts as late by a whole period.
 
-Python lets a busy thread run for 5 ms (its switch interval) before another one gets its turn. A
-sample needs two turns: to send the request, and to take the reply. So beside a busy thread a stream
-of 100 Hz has a sample in every second slot, unless the interval is shorter: the rows with 1 ms.
+A bare `time.sleep` until each moment takes turns with the streams. It shows how late the machine
+and the interpreter are by themselves: no stream can be more punctual. Python lets a busy thread run
+for 5 ms (its switch interval) before another one gets its turn.
 """
 
 from __future__ import annotations
@@ -17,61 +17,68 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import NamedTuple
 
 from client import RESPONDER
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, GetAngles, MyCobot280
-from cobotwire.session.sample import Sample, StreamReport
+from cobotwire.session.sample import Sample
 from responder import responder, within
 
 RATE = 100.0
 QUIET_LIMIT, BUSY_LIMIT = 0.001, 0.006
-SHORT_INTERVAL = 0.001
+ROUND_SECONDS = 2.0
 
 
-class Run(NamedTuple):
-    """How far from its moment each request was sent, in seconds; and the report."""
+class Punctuality(NamedTuple):
+    """For each slot, in seconds, how far off the request was sent, and how late the result was."""
 
     off: list[float]
-    report: StreamReport
+    late: list[float]
+
+
+Measured = Callable[[str, int], Punctuality]
 
 
 def main() -> None:
     """Measure and print; with --strict, exit with 1 if a limit is missed."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=8.0, help="the length of each run")
+    parser.add_argument("--seconds", type=float, default=8.0, help="the length of each row")
     parser.add_argument("--strict", action="store_true", help="exit with 1 if a limit is missed")
     options = parser.parse_args()
-    count = int(options.seconds * RATE)
-    clients: dict[str, Callable[[str, int], Run]] = {
+    rounds = max(1, round(options.seconds / ROUND_SECONDS))
+    measured: dict[str, Measured] = {
+        "bare sleep": _sleeps,
         "blocking": _blocking,
         "asyncio": lambda url, count: asyncio.run(_asyncio(url, count)),
     }
-    _show_times("sleep, alone", _sleeps(count))
     met = True
     with responder(RESPONDER) as url:
-        for name, run in clients.items():
-            met &= _show(f"{name}, alone", run(url, count), QUIET_LIMIT)
-            with _busy_thread():
-                met &= _show(f"{name}, busy", run(url, count), BUSY_LIMIT)
-            with _busy_thread(), _switch_interval(SHORT_INTERVAL):
-                met &= _show(f"{name}, busy, 1 ms", run(url, count), BUSY_LIMIT)
+        for what, limit in (("alone", QUIET_LIMIT), ("busy", BUSY_LIMIT)):
+            found = {name: Punctuality([], []) for name in measured}
+            for _ in range(rounds):
+                for name, measure in measured.items():
+                    with _busy_thread() if what == "busy" else nullcontext():
+                        run = measure(url, int(ROUND_SECONDS * RATE))
+                    found[name].off.extend(run.off)
+                    found[name].late.extend(run.late)
+            for name, run in found.items():
+                met &= _show(f"{name}, {what}", run, limit) or name == "bare sleep"
     sys.exit(1 if options.strict and not met else 0)
 
 
-def _show(name: str, run: Run, limit: float) -> bool:
-    missed = run.report.slots - run.report.samples
-    off = run.off + [1 / RATE] * missed
-    met = _percentile(off) <= limit
-    verdict = f"{within(met)} {limit * 1e3:.0f} ms"
-    _show_times(name, off, f"{verdict}   {missed} of {run.report.slots} slots missed")
+def _show(name: str, run: Punctuality, limit: float) -> bool:
+    met = _percentile(run.late) <= limit
+    missed = run.late.count(1 / RATE)
+    print(
+        f"{RATE:.0f} Hz, {name:17} sent {_both(run.off)} off, had {_both(run.late)} late "
+        f"(median, 99 %)   {within(met)} {limit * 1e3:.0f} ms   {missed} of {len(run.late)} missed"
+    )
     return met
 
 
-def _show_times(name: str, late: list[float], more: str = "") -> None:
-    half, p99 = _percentile(late, 50) * 1e3, _percentile(late) * 1e3
-    print(f"{RATE:.0f} Hz, {name:20} off by {half:5.2f} ms (median), {p99:5.2f} ms (99 %)   {more}")
+def _both(values: list[float]) -> str:
+    return f"{_percentile(values, 50) * 1e3:5.2f}, {_percentile(values) * 1e3:5.2f} ms"
 
 
 def _percentile(values: list[float], percent: int = 99) -> float:
@@ -96,51 +103,46 @@ def _busy_thread() -> Iterator[None]:
         thread.join()
 
 
-@contextmanager
-def _switch_interval(seconds: float) -> Iterator[None]:
-    usual = sys.getswitchinterval()
-    sys.setswitchinterval(seconds)
-    try:
-        yield
-    finally:
-        sys.setswitchinterval(usual)
-
-
-def _sleeps(count: int) -> list[float]:
+def _sleeps(_: str, count: int) -> Punctuality:
     started = time.monotonic()
     late = []
     for slot in range(1, count):
         moment = started + slot / RATE
         time.sleep(max(0.0, moment - time.monotonic()))
         late.append(time.monotonic() - moment)
-    return late
+    return Punctuality(late, late)
 
 
-def _blocking(url: str, count: int) -> Run:
+def _blocking(url: str, count: int) -> Punctuality:
     with MyCobot280(url) as arm, arm.stream(GetAngles(), rate=RATE) as stream:
-        started = time.monotonic()
-        off = []
+        started, found = time.monotonic(), Punctuality([], [])
         for sample in stream:
-            off.append(_off(started, sample))
-            if sample.slot >= count:
+            if _note(found, started, sample) >= count:
                 break
-        return Run(off, stream.report)
+        return _with_missed(found, stream.report.missed)
 
 
-async def _asyncio(url: str, count: int) -> Run:
+async def _asyncio(url: str, count: int) -> Punctuality:
     async with AsyncMyCobot280(url) as arm, arm.stream(GetAngles(), rate=RATE) as stream:
-        started = time.monotonic()
-        off = []
+        started, found = time.monotonic(), Punctuality([], [])
         async for sample in stream:
-            off.append(_off(started, sample))
-            if sample.slot >= count:
+            if _note(found, started, sample) >= count:
                 break
-        return Run(off, stream.report)
+        return _with_missed(found, stream.report.missed)
 
 
-def _off(started: float, sample: Sample) -> float:
-    """Return how far from its moment a sample was requested; slot 0 is when the stream started."""
-    return abs(sample.readings[0].requested_at - started - sample.slot / RATE)
+def _note(found: Punctuality, started: float, sample: Sample) -> int:
+    """Note a sample, and return its slot; slot 0 is when the stream started."""
+    moment = started + sample.slot / RATE
+    found.off.append(abs(sample.requested_at - moment))
+    found.late.append(time.monotonic() - moment)
+    return sample.slot
+
+
+def _with_missed(found: Punctuality, missed: int) -> Punctuality:
+    found.off.extend([1 / RATE] * missed)
+    found.late.extend([1 / RATE] * missed)
+    return found
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@ It reads a table's objects once, when a codec is made. ``rust/core`` decides wha
 ``cobotwire.protocol.rejection`` makes the sentences of the errors.
 """
 
-import threading
 from collections.abc import Callable, Sequence
+from types import TracebackType
 from typing import Any, Literal, final
 
 from typing_extensions import Buffer
@@ -25,6 +25,8 @@ from cobotwire.diagnose.survey import Rest
 from cobotwire.protocol.table import Command, Direction, Table
 
 __all__ = [
+    "AlarmClock",
+    "LineLock",
     "Memory",
     "NativeCaptureReader",
     "NativeCodec",
@@ -150,18 +152,22 @@ class NativeFramer:
         self,
         descriptor: int,
         alarm: int,
+        at: float,
         timeout: float,
         request: bytes,
         of: str,
-        writing: threading.Lock,
+        writing: LineLock,
         finish: Callable[[bytes, int], object],
         /,
-    ) -> tuple[Frame, dict[str, Any]] | list[Event] | None:
+    ) -> tuple[Frame, dict[str, Any], float, float] | list[Event] | None:
         """Send a request, and feed what comes first: the exchange of a request that is alone.
+
+        Other threads run meanwhile, from the beginning to the end.
 
         Args:
             descriptor: the line, which never blocks.
             alarm: becomes readable to end the wait.
+            at: when to send it, in seconds of ``time.monotonic()``; at once if that has passed.
             timeout: seconds to wait for the first bytes.
             request: the frame to send.
             of: the name of its command.
@@ -170,19 +176,32 @@ class NativeFramer:
                 not all; the lock is held meanwhile.
 
         Returns:
-            The reply and its fields by name, if all that came is one frame that the command allows
-            as its reply, and no copy of the request. Otherwise the events, perhaps none. None if
-            nothing was sent, because the line is not free: bytes have come, a thread writes, or the
-            system takes no bytes.
+            The reply, its fields by name, and when the request was written and the reply read, if
+            all that came is one frame that the command allows as its reply, and no copy of the
+            request. Otherwise the events, perhaps none. None if nothing was sent, because the line
+            is not free: bytes have come, a thread writes or has written since the call, or the
+            system takes no bytes; or because the alarm came first.
+        """
+
+    def send(
+        self, descriptor: int, alarm: int, request: bytes, of: str, /
+    ) -> tuple[Frame, dict[str, Any]] | list[Event] | int | None:
+        """Send a request if nothing has come, and read what has come then; wait for nothing.
+
+        Returns:
+            As :meth:`read_reply`, but no events if nothing has come. How many bytes of the request
+            were taken, if these are not all. None if nothing was sent: the line is not free, takes
+            no bytes, or is gone, which its next use reports. ``alarm`` is not used.
         """
 
     def read_reply(
         self, descriptor: int, alarm: int, request: bytes, of: str, /
     ) -> tuple[Frame, dict[str, Any]] | list[Event] | None:
-        """Read what has come, without waiting, and feed it; return what :meth:`swap` returns.
+        """Read what has come, without waiting, and feed it; return what :meth:`swap` does.
 
-        ``request`` and its command ``of`` were sent earlier. None means that nothing has come, or
-        that the data has ended or cannot be read, which the next read reports.
+        The moments are left out. ``request`` and its command ``of`` were sent earlier. None means
+        that nothing has come, or that the data has ended or cannot be read, which the next read
+        reports.
         """
 
     @property
@@ -196,6 +215,60 @@ class NativeFramer:
     @property
     def counters(self) -> Counters:
         """The counts since the framer was made."""
+
+@final
+class AlarmClock:
+    """A descriptor that becomes readable at a moment, for event loops. Only on Linux."""
+
+    def __new__(cls) -> AlarmClock:
+        """Make one that is not set.
+
+        Raises:
+            OSError: the process has too many descriptors.
+        """
+
+    def fileno(self) -> int:
+        """Return the descriptor, which is open as long as this object exists."""
+
+    def set(self, moment: float | None, /) -> None:
+        """Make it readable from a moment of ``time.monotonic()`` on, and not before; None: never.
+
+        Raises:
+            OSError: the moment is beyond what the system can count.
+        """
+
+@final
+class LineLock:
+    """The lock that is held while a thread writes to a line; used like a ``threading.Lock``.
+
+    A native call can take it while other threads run, and notices whether it was taken meanwhile.
+    """
+
+    def __new__(cls) -> LineLock: ...
+    def acquire(self, blocking: bool = True) -> bool:
+        """Take it, as soon as it is free; return False if it is not, and ``blocking`` is False."""
+
+    def release(self) -> None:
+        """Free it.
+
+        Raises:
+            RuntimeError: it is free.
+        """
+
+    def locked(self) -> bool:
+        """Whether it is held."""
+
+    def __enter__(self) -> bool: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+        /,
+    ) -> None: ...
+    @property
+    def taken(self) -> int:
+        """How often it was taken."""
 
 @final
 class NativeFrame:

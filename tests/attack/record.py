@@ -16,9 +16,6 @@ from cobotwire.transport.descriptor import DescriptorTransport
 
 Ending = Literal["value", "error", "interrupted", "exception", "lost"]
 SMALL_BUFFER = 1024
-# Of a native call that sends a request: timeout, request, command, lock, function for the rest. One
-# that only reads has fewer.
-SWAP_ARGUMENTS = 5
 
 
 class Call(NamedTuple):
@@ -123,7 +120,7 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
     own = vars(transport)
     own["_write_now"] = observed
     own["lend"] = partial(_swap_observed, record, not small, transport.lend)
-    own["lend_now"] = partial(_swap_observed, record, not small, transport.lend_now)
+    own["lend_now"] = partial(_send_observed, record, not small, transport.lend_now)
     if small:
         own["_connect"] = connected
         _shrink(transport, transport.fileno() or -1)
@@ -138,11 +135,9 @@ def _swap_observed(
     *arguments: Any,
 ) -> Any:
     """Lend the descriptor; record the request if the native call sends one."""
-    if len(arguments) < SWAP_ARGUMENTS:
-        return lend(call, *arguments)
     if not may_send:
         return None  # not sent: the client sends it in steps
-    timeout, request, of, writing, finish = arguments
+    at, timeout, request, of, writing, finish = arguments
     parts = []
 
     def finish_observed(data: bytes, written: int) -> object:
@@ -155,7 +150,7 @@ def _swap_observed(
     record.handed.append(handed)
     sent = True
     try:
-        found = lend(call, timeout, request, of, writing, finish_observed)
+        found = lend(call, at, timeout, request, of, writing, finish_observed)
         sent = found is not None
         return found
     finally:
@@ -165,6 +160,32 @@ def _swap_observed(
             record.bytes_taken += len(request)
             # Other threads may have written while this one waited.
             insort(record.taken, handed)
+
+
+def _send_observed(
+    record: Record,
+    may_send: bool,
+    lend_now: Callable[..., Any],
+    call: Callable[..., Any],
+    *arguments: Any,
+) -> Any:
+    """Lend the descriptor; record the request if the native call sends one."""
+    if call.__name__ != "send":
+        return lend_now(call, *arguments)
+    if not may_send:
+        return None  # not sent: the client sends it in steps
+    request, _ = arguments
+    handed = (time.monotonic(), request)
+    found = lend_now(call, *arguments)
+    if found is not None:
+        record.handed.append(handed)
+        if isinstance(found, int):
+            # The rest is sent as any other bytes are.
+            record.bytes_taken += found
+        else:
+            record.bytes_taken += len(request)
+            record.taken.append(handed)
+    return found
 
 
 def _shrink(transport: OpenedTransport, descriptor: int) -> None:

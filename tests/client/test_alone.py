@@ -118,18 +118,23 @@ def test_ctrl_c_ends_the_wait_and_the_late_reply_holds_the_next_call() -> None:
         assert arm.get_angles()[0] == 3.96
 
 
-def test_interrupted_request_is_noted_for_the_next_session() -> None:
+@pytest.mark.parametrize("written", [True, False])
+def test_interrupted_request_is_noted_for_the_next_session_if_it_was_written(written: bool) -> None:
     with ScriptedPeer() as peer, MyCobot(peer.url) as arm:
         connection, exchange = arm._connection, arm._connection._exchange
 
         def interrupted(*arguments: object) -> None:
+            if written:
+                with connection._steps.writer.lock:
+                    raise KeyboardInterrupt
             raise KeyboardInterrupt
 
         assert connection._native is not None
         connection._native.swap = interrupted
         with pytest.raises(KeyboardInterrupt):
             arm.get_angles()
-        assert [late.request for late in exchange.leave(connection.now()).late] == [REQUEST]
+        late = [reply.request for reply in exchange.leave(connection.now()).late]
+        assert late == [REQUEST] * written
 
 
 @pytest.mark.parametrize("reader", ["nobody", "listener", "log", "recording"])

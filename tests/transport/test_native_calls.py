@@ -17,6 +17,7 @@ from cobotwire.codec.interface import Noise
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport.descriptor import DescriptorTransport
+from cobotwire.transport.waiting import line_lock
 from transport.ends import Line
 
 pytestmark = pytest.mark.skipif(not codecs.native_available(), reason="there is no native module")
@@ -80,14 +81,15 @@ class Swapping:
         self.ours.setblocking(False)
         self.alarm = os.eventfd(0)
         self.framer: Any = codecs.load(TABLE, "native").framer("reply")
-        self.writing = threading.Lock()
+        self.writing: Any = line_lock()
         self.finished: list[tuple[bytes, int, bool]] = []
         self.error: Exception | None = None
 
-    def swap(self, request: bytes = REQUEST, timeout: float = 5.0) -> Any:
+    def swap(self, request: bytes = REQUEST, timeout: float = 5.0, at: float = 0.0) -> Any:
         return self.framer.swap(
             self.ours.fileno(),
             self.alarm,
+            at,
             timeout,
             request,
             "get_angles",
@@ -116,8 +118,10 @@ def swapping() -> Iterator[Swapping]:
 def test_swap_returns_the_only_frame_and_its_fields(swapping: Swapping) -> None:
     answering = threading.Timer(0.02, swapping.peer.send, [ANGLES])
     answering.start()
-    frame, fields = swapping.swap()
+    started = time.monotonic()
+    frame, fields, requested_at, replied_at = swapping.swap()
     answering.join()
+    assert started <= requested_at < replied_at <= time.monotonic()
     assert swapping.peer.recv(99) == REQUEST
     assert frame.data == ANGLES
     assert fields == frame.decode("reply", of="get_angles").fields
@@ -186,3 +190,87 @@ def test_noise_before_a_reply_is_an_event(swapping: Swapping) -> None:
     noise, frame = swapping.swap()
     assert isinstance(noise, Noise)
     assert frame.data == ANGLES
+
+
+def test_swap_writes_at_its_moment_while_other_threads_run(swapping: Swapping) -> None:
+    def answer() -> None:
+        assert swapping.peer.recv(99) == REQUEST
+        swapping.peer.send(ANGLES)
+
+    others = threading.Thread(target=answer)
+    others.start()
+    at = time.monotonic() + 0.05
+    _, _, requested_at, replied_at = swapping.swap(at=at)
+    others.join()
+    assert at <= requested_at < replied_at
+
+
+def test_swap_sends_nothing_if_bytes_come_before_its_moment(swapping: Swapping) -> None:
+    early = threading.Timer(0.02, swapping.peer.send, [ANGLES])
+    early.start()
+    assert swapping.swap(at=time.monotonic() + 0.2) is None
+    early.join()
+    assert swapping.ours.recv(99) == ANGLES
+
+
+@pytest.mark.parametrize("event", ["a thread writes", "a thread wrote", "the alarm"])
+def test_swap_sends_nothing_if_something_happens_before_its_moment(
+    swapping: Swapping, event: str
+) -> None:
+    def happen() -> None:
+        if event == "the alarm":
+            os.eventfd_write(swapping.alarm, 1)
+            return
+        swapping.writing.acquire()
+        if event == "a thread wrote":
+            swapping.writing.release()
+
+    happening = threading.Timer(0.02, happen)
+    happening.start()
+    assert swapping.swap(at=time.monotonic() + (60 if event == "the alarm" else 0.1)) is None
+    happening.join()
+    swapping.peer.setblocking(False)
+    with pytest.raises(BlockingIOError):
+        swapping.peer.recv(99)
+    assert swapping.writing.locked() == (event == "a thread writes")
+
+
+def test_signal_handler_ends_the_wait_for_the_moment(swapping: Swapping) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            swapping.swap(at=time.monotonic() + 60)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert swapping.writing.taken == 0
+
+
+def test_line_lock_is_held_by_one_thread_at_a_time() -> None:
+    lock: Any = line_lock()
+    inside: list[int] = []
+    most: list[int] = []
+
+    def work(number: int) -> None:
+        for _ in range(200):
+            with lock:
+                inside.append(number)
+                time.sleep(0)
+                most.append(len(inside))
+                inside.remove(number)
+
+    threads = [threading.Thread(target=work, args=[number]) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert most == [1] * 800
+    assert lock.taken == 800
+    assert lock.acquire()
+    assert not lock.acquire(blocking=False)
+    lock.release()
+    with pytest.raises(RuntimeError):
+        lock.release()

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 
+from cobotwire.client.aio_slots import AsyncSlots
 from cobotwire.client.aio_steps import AsyncSteps
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
@@ -16,6 +17,9 @@ from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
+
+# The longest wait, after which a listening task checks whether the transport is gone.
+LISTEN_SECONDS = 0.05
 
 
 class AsyncConnection:
@@ -98,16 +102,15 @@ class AsyncConnection:
         pending = PendingRequest(request, wait, policy, self.now())
         try:
             steps.start(pending)
-            if not pending.done:
-                over: asyncio.Future[None] = self._loop.create_future()
-                pending.when_done(partial(_wake, over))
-                await over
+            await self._wait(pending)
         finally:
             # A call that was cancelled leaves everything ready for the next one.
-            if not pending.done:
-                self._exchange.give_up(pending)
-                steps.turn()
+            steps.give_up(pending)
         return pending
+
+    def slots(self, closed: Callable[[], bool]) -> AsyncSlots:
+        """Return what sends the requests of a stream until ``closed`` returns True."""
+        return AsyncSlots(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Wait while the loop reads what comes without a request, and reports it to listeners.
@@ -121,9 +124,7 @@ class AsyncConnection:
         until = self.now() + seconds
         while (left := until - self.now()) > 0 and not (done and done()):
             steps.check()
-            steps.news.clear()
-            with suppress(TimeoutError):
-                await asyncio.wait_for(steps.news.wait(), min(left, 0.05))
+            await steps.wait(min(left, LISTEN_SECONDS))
 
     def close(self) -> None:
         """Close the transport; calls that wait get a LinkError. Closing twice is harmless.

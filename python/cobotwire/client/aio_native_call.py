@@ -9,9 +9,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from cobotwire.client.aio_writing import AsyncWriter
-from cobotwire.codec.interface import Event, Frame
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import Exchange, PendingRequest, SessionEvent
 from cobotwire.transport.aio import NativePolled, PolledTransport
@@ -45,28 +45,26 @@ class AsyncNativeCall:
         self._written = written
 
     def send(self, pending: PendingRequest) -> list[SessionEvent] | None:
-        """Send a plain request; return what has come by then.
-
-        If anything but the reply has come, the request goes on as any other does.
+        """Send a plain request; return what has come then, except for its reply.
 
         Returns:
-            None if the request was not sent, because it is not alone on the line.
+            None if it was not sent, because it is not alone on the line.
         """
-        alone, polled, request = self._exchange.alone, self._polled, pending.request
-        now = pending.queued_at
-        begun = alone.begin(request, now, pending.policy.grace) if polled.idle else None
-        if begun is None:
+        polled, exchange, request = self._polled, self._exchange, pending.request
+        if polled.unwritten:
             return None
-        self._starting = pending
-        try:
-            found = polled.swap(request.frame, request.command.name, self._finish_write)
-        except BaseException:
-            alone.settle(begun)
-            raise
+        now = time.monotonic()
+        fed = exchange.alone.wait_on(pending, now)
+        if fed is None:
+            return None
+        found = polled.send(request.frame, request.command.name)
         if found is None:
-            alone.end_unsent()
+            exchange.alone.take_back(pending)
             return None
-        return alone.resume(begun, pending, _events(found), now)
+        if isinstance(found, int):
+            self._write_rest(pending, found)
+            return []
+        return self._take(found, fed, now) if found else []
 
     def receive(self) -> list[SessionEvent] | None:
         """Read what has come for the plain request that waits; return what it is.
@@ -81,19 +79,17 @@ class AsyncNativeCall:
             return None
         fed = exchange.framer.fed
         found = self._polled.read_reply(waiting.frame, waiting.command.name)
-        if found is None:
-            return None
-        now = time.monotonic()
-        if isinstance(found, tuple) and exchange.take_reply(found[0], found[1], now):
-            return []
-        return exchange.sort(_events(found), fed, now)
+        return None if found is None else self._take(found, fed, time.monotonic())
 
-    def _finish_write(self, request: bytes, written: int) -> None:
-        """Write the rest of a request of which ``written`` bytes were taken."""
-        done = partial(self._written, self._starting)
-        self._polled.write_rest(request, written, partial(self._writer.end, b"", request, done))
+    def _take(self, found: Any, fed: int, now: float) -> list[SessionEvent]:
+        if isinstance(found, tuple):
+            frame, fields = found
+            if self._exchange.take_reply(frame, fields, now):
+                return []
+            found = [frame]
+        return self._exchange.sort(found, fed, now)
 
-
-def _events(found: tuple[Frame, object] | list[Event]) -> list[Event]:
-    """Return the events of a native call, which may have decoded the only frame."""
-    return [found[0]] if isinstance(found, tuple) else found
+    def _write_rest(self, pending: PendingRequest, taken: int) -> None:
+        """Write what follows the first ``taken`` bytes of a request."""
+        request, done = pending.request.frame, partial(self._written, pending)
+        self._polled.write_rest(request, taken, partial(self._writer.end, b"", request, done))

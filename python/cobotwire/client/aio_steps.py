@@ -7,10 +7,11 @@ import time
 from functools import partial
 
 from cobotwire.client.aio_native_call import native_call
+from cobotwire.client.aio_timers import Timed, timers_of
 from cobotwire.client.aio_writing import AsyncWriter
 from cobotwire.client.traffic import TrafficListeners
 from cobotwire.protocol.errors import LinkError
-from cobotwire.session import Exchange, PendingRequest
+from cobotwire.session import Exchange, Pending, PendingRequest
 from cobotwire.transport.aio import attach
 from cobotwire.transport.interface import Transport
 
@@ -23,10 +24,10 @@ class AsyncSteps:
 
     Attributes:
         transport: the transport on the loop.
+        loop, timers: the loop, and the timers that its connections share.
         writer: writes requests.
         native: makes native calls, if there are any.
         lost: why the transport is gone; None: it is there.
-        news: set when something was received.
     """
 
     def __init__(
@@ -35,11 +36,11 @@ class AsyncSteps:
         """Attach an open transport to the running loop."""
         self._exchange = exchange
         self._listeners = listeners
-        self._loop = asyncio.get_running_loop()
-        self._timer: asyncio.TimerHandle | None = None
-        self._timer_at = 0.0
+        self.loop = asyncio.get_running_loop()
+        self.timers = timers_of(self.loop)
+        self._timed = Timed(self._time_passed)
         self.lost: LinkError | None = None
-        self.news = asyncio.Event()
+        self._news: asyncio.Future[None] | None = None
         self.transport = attach(transport, self.turn)
         self.writer = AsyncWriter(self.transport, exchange.alignment, listeners)
         self.native = native_call(self.transport, exchange, self.writer, self._written)
@@ -58,11 +59,12 @@ class AsyncSteps:
         if native and pending.request.plain and not self.lost and self._listeners.silent:
             events = native.send(pending)
             if events is not None:
-                now = pending.queued_at
-                self._set_timer(now)
+                now = pending.requested_at
+                if not pending.done and self._timed.moment > now + pending.shortest_attempt:
+                    self._set_timer(now)
                 if events:
                     self._listeners.received(events, now)
-                    self.news.set()
+                    self._end_wait()
                 return
         exchange, data = self._exchange, self._read()
         if not data and self.lost is None:
@@ -76,6 +78,12 @@ class AsyncSteps:
             exchange.enqueue(pending)
         self._advance(data)
 
+    def give_up(self, pending: Pending) -> None:
+        """End a request whose caller waits no longer, and leave everything ready for the next."""
+        if not pending.done:
+            self._exchange.give_up(pending)
+            self.turn()
+
     def turn(self) -> None:
         """Take what has come, let time pass, send the request that is next, and set the timer."""
         native = self.native
@@ -85,20 +93,30 @@ class AsyncSteps:
         if events is None:
             self._advance(self._read())
             return
-        self.news.set()
+        if self._news is not None:
+            self._end_wait()
         if events:
             self._listeners.received(events, time.monotonic())
         if events or self._exchange.busy:
             self._advance(b"", drained=False)
+
+    async def wait(self, longest: float) -> None:
+        """Wait until something is received, ``longest`` seconds at most."""
+        if self._news is None:
+            self._news = self.loop.create_future()
+        await asyncio.wait([self._news], timeout=longest)
+
+    def _end_wait(self) -> None:
+        if self._news is not None:
+            self._news.set_result(None)
+            self._news = None
 
     def lose(self, error: LinkError) -> None:
         """End every request: the transport is gone."""
         if self.lost is None:
             self.lost = error
             self.transport.close()
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._timed.cancel()
         now = time.monotonic()
         self._listeners.received(self._exchange.fail(self.lost, now), now)
 
@@ -121,7 +139,7 @@ class AsyncSteps:
         self._set_timer(now)
         if events:
             self._listeners.received(events, now)
-            self.news.set()
+            self._end_wait()
 
     def _send_request(self, now: float, drained: bool) -> None:
         data = self._exchange.outgoing(now, drained)
@@ -148,14 +166,10 @@ class AsyncSteps:
             self._wake_at(now + idle)
 
     def _wake_at(self, moment: float) -> None:
-        if self._timer is not None:
-            if self._timer_at <= moment + TIMER_SLACK:
-                # It goes off early enough, and is set again then.
-                return
-            self._timer.cancel()
-        self._timer_at = moment
-        self._timer = self._loop.call_later(moment - time.monotonic(), self._time_passed)
+        # If it goes off earlier, it is set again then.
+        if self._timed.moment > moment + TIMER_SLACK:
+            self.timers.set(self._timed, moment)
 
     def _time_passed(self) -> None:
-        self._timer = None
-        self.turn()
+        if self._exchange.busy:
+            self.turn()

@@ -9,12 +9,9 @@ from cobotwire.client.aio_connection import AsyncConnection
 from cobotwire.client.opening import Settings
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.protocol.messages import Request
-from cobotwire.session.request import RequestEncoder, result_of
+from cobotwire.session.request import RequestEncoder
 from cobotwire.session.sample import Reading, Sample, StreamReport
-from cobotwire.session.sampling import Sampler, check_requests
-
-# The longest sleep, after which the stream checks whether it was closed.
-CHECK_SECONDS = 0.05
+from cobotwire.session.sampling import Poll, Sampler, check_requests
 
 
 class AsyncStream:
@@ -40,10 +37,12 @@ class AsyncStream:
         """
         table = settings.codec.table
         check_requests(requests, table)
-        self._requests = requests
-        self._encoded = [encoder.encode_request(request) for request in requests]
+        _, wait, retry = settings
+        self._polls = [
+            Poll(request, encoder.encode_request(request), retry, wait) for request in requests
+        ]
         self._connection = connection
-        self._settings = settings
+        self._slots = connection.slots(lambda: self._closed_at is not None)
         self._sampler = Sampler(requests, rate)
         self._closed_at: float | None = None
 
@@ -73,38 +72,34 @@ class AsyncStream:
         while self._closed_at is None:
             at = self._sampler.plan(now())
             try:
-                if not await self._sleep(at):
-                    break
-                readings = await self._readings()
+                readings = await self._readings(at)
             except BaseException as error:
                 self._sampler.interrupted(now())
                 if isinstance(error, LinkError):
                     self.close()
                 raise
-            if readings is not None:
+            if readings:
                 return self._sampler.answered(readings, now())
+            if readings is None:
+                break
             self._sampler.unanswered(now())
         raise StopAsyncIteration
 
-    async def _sleep(self, until: float) -> bool:
-        """Wait; return False if the stream was closed meanwhile."""
-        now = self._connection.now
-        while (left := until - now()) > 0 and self._closed_at is None:
-            await self._connection.sleep(min(left, CHECK_SECONDS))
-        return self._closed_at is None
+    async def _readings(self, at: float) -> list[Reading[Any]] | None:
+        """Send each request in turn, the first one at a moment.
 
-    async def _readings(self) -> list[Reading[Any]] | None:
-        """Send each request in turn; return None as soon as one has no legal reply."""
-        _, timeout, retry = self._settings
+        Returns:
+            No readings if a request had no legal reply; None if the stream was closed by then.
+        """
         readings = []
-        for request, encoded in zip(self._requests, self._encoded):
+        for poll in self._polls:
             try:
-                done = await self._connection.request(encoded, retry, timeout)
-                value = result_of(request, done.result())
+                reading = await self._slots.reading(poll, at)
             except (ReplyTimeout, ProtocolError):
+                return []
+            if reading is None:
                 return None
-            assert done.replied_at is not None, "a request without a reply has raised"
-            readings.append(Reading(value, done.requested_at, done.replied_at))
+            readings.append(reading)
         return readings
 
     async def __aenter__(self) -> Self:

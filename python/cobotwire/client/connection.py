@@ -10,9 +10,10 @@ from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.native_call import native_call
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
+from cobotwire.client.slots import Slots
 from cobotwire.client.steps import SLICE_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
-from cobotwire.session import EncodedRequest, Exchange, PendingRequest, RetryPolicy
+from cobotwire.session import Answer, EncodedRequest, Exchange, PendingRequest, RetryPolicy
 from cobotwire.session.turns import DRAIN_SECONDS
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
@@ -77,9 +78,9 @@ class Connection:
         """
         native = self._native
         if native is not None and request.plain and self.listeners.silent:
-            fields = native.call(request, policy, wait)
-            if fields is not None:
-                return fields
+            answer = native.call(request, policy, wait)
+            if answer is not None:
+                return answer[0]
         return self.request(request, policy, wait).result()
 
     def request(
@@ -98,6 +99,27 @@ class Connection:
         finally:
             steps.leave(pending)
         return pending
+
+    def answer(
+        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None, at: float
+    ) -> Answer:
+        """Send a request at a moment of :attr:`now`; return the reply, and when both passed.
+
+        Raises:
+            CobotwireError: the reason why there is no reply.
+        """
+        native = self._native
+        if native is not None and request.plain and self.listeners.silent:
+            answer = native.call(request, policy, wait, at)
+            if answer is not None:
+                return answer
+        while (left := at - self.now()) > 0:
+            self.sleep(left)
+        return self.request(request, policy, wait).answer()
+
+    def slots(self, closed: Callable[[], bool]) -> Slots:
+        """Return what sends the requests of a stream until ``closed`` returns True."""
+        return Slots(self.now, self.sleep, self.answer, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Read what comes without a request, and report it to the traffic listeners.

@@ -13,14 +13,14 @@ from typing import Any
 
 from cobotwire.client.steps import SLICE_SECONDS, Steps
 from cobotwire.codec.interface import Event, Frame
-from cobotwire.session import EncodedRequest, PendingRequest, RetryPolicy
+from cobotwire.session import Answer, EncodedRequest, PendingRequest, RetryPolicy
 from cobotwire.session.alone import Begun
 from cobotwire.transport.interface import LendingTransport, Transport
 
 # Sends a request that is alone: its arguments are those of ``NativeFramer.swap`` after the alarm.
 Swap = Callable[
-    [float, bytes, str, threading.Lock, Callable[[bytes, int], object]],
-    tuple[Frame, dict[str, Any]] | list[Event] | None,
+    [float, float, bytes, str, Any, Callable[[bytes, int], object]],
+    tuple[Frame, dict[str, Any], float, float] | list[Event] | None,
 ]
 
 
@@ -45,9 +45,9 @@ class NativeCall:
         self.swap = swap
 
     def call(
-        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
-    ) -> dict[str, Any] | None:
-        """Send a plain request, and return the fields of its reply.
+        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None, at: float = 0.0
+    ) -> Answer | None:
+        """Send a plain request at a moment, or at once if it has passed; return its reply.
 
         If anything but the reply comes, the request goes on as any other does.
 
@@ -56,6 +56,8 @@ class NativeCall:
         """
         steps, alone = self._steps, self._alone
         leading = steps.leading
+        # Native calls come with a native lock.
+        lock: Any = steps.writer.lock
         begun: Begun | None = None
         pending: PendingRequest | None = None
         seconds = request.command.deadline_ms / 1000 if wait is None else wait
@@ -64,26 +66,29 @@ class NativeCall:
         try:
             with steps.state:
                 if leading.leader is None:
-                    begun = alone.begin(request, steps.now(), policy.grace)
+                    now = steps.now()
+                    begun = alone.begin(request, now if now > at else at, policy.grace)
                 if begun is None:
                     return None
                 leading.leader = threading.get_ident()
+                taken = lock.taken
             with steps.reading:
                 leading.turns += 1
                 found = self.swap(
+                    at,
                     attempt if attempt < SLICE_SECONDS else SLICE_SECONDS,
                     request.frame,
                     request.command.name,
-                    steps.writer.lock,
+                    lock,
                     steps.writer.finish_write,
                 )
                 if found is None:
                     alone.end_unsent()
                     return None
                 if isinstance(found, tuple):
-                    frame, fields = found
+                    frame, fields, requested_at, replied_at = found
                     if alone.end(frame):
-                        return fields
+                        return fields, requested_at, replied_at
                     found = [frame]
                 with steps.state:
                     now = steps.now()
@@ -91,12 +96,16 @@ class NativeCall:
                     events = alone.resume(begun, pending, found, now)
                 steps.listeners.received(events, now)
             steps.wait(pending)
-            return pending.result()
+            return pending.answer()
         finally:
             if pending is not None:
                 steps.leave(pending)
             elif begun is not None:
                 if alone.under_way:
                     with steps.state:
-                        alone.settle(begun)
+                        if lock.taken == taken:
+                            # It was not sent: a signal ended the wait for its moment.
+                            alone.end_unsent()
+                        else:
+                            alone.settle(begun)
                 leading.resign()

@@ -20,6 +20,7 @@ from cobotwire.client.writing import Writer
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import Exchange, Pending, PendingRequest
 from cobotwire.transport.interface import Transport
+from cobotwire.transport.waiting import line_lock
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
 SLICE_SECONDS = 0.02
@@ -59,7 +60,7 @@ class Steps:
 
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held when it forked."""
-        self.writer.lock = threading.Lock()
+        self.writer.lock = line_lock()
         self.state, self.reading = threading.Lock(), threading.RLock()
         self.leading = Leading(self.state)
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session.alignment import Alignment
 from cobotwire.transport.interface import LendingTransport, PollableTransport, Transport
+from cobotwire.transport.waiting import line_lock
 
 
 class Writer:
@@ -19,7 +18,7 @@ class Writer:
     def __init__(self, transport: Transport, alignment: Alignment) -> None:
         self._transport = transport
         self._alignment = alignment
-        self.lock = threading.Lock()
+        self.lock = line_lock()
 
     def write(self, request: bytes) -> bytes:
         """Write a request.

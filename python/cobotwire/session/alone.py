@@ -61,22 +61,45 @@ class Alone:
 
     def begin(self, request: EncodedRequest, now: float, grace: float) -> Begun | None:
         """Begin a request; return None if anything is under way, or a reply outstanding."""
-        turns = self._turns
-        last = turns.last
-        if (
-            (last is not None and not last.done)
-            or turns.queue
-            or self._outstanding.replies
-            or self._acks.waiting
-            or self._begun is not None
-            or self._alignment.align
-        ):
+        if not self._is_free():
             return None
         fed = self._framer.fed
         self._echo.sent(request, fed)
         self._alignment.last_request = request.frame
         self._begun = begun = request, now, fed, grace
         return begun
+
+    def wait_on(self, pending: PendingRequest, now: float) -> int | None:
+        """Have a request wait for its reply that the caller is about to send; it is not resumed.
+
+        Returns:
+            How many bytes have been fed by then. None if anything is under way, or a reply
+            outstanding.
+        """
+        if not self._is_free():
+            return None
+        fed = self._framer.fed
+        self._echo.sent(pending.request, fed)
+        pending.begin(now, fed)
+        self._turns.last, self._alignment.last_request = pending, pending.request.frame
+        return fed
+
+    def take_back(self, pending: PendingRequest) -> None:
+        """Note that the request of :meth:`wait_on` was not sent; it may be queued now."""
+        self._turns.last = None
+        pending.attempt_times = ()
+
+    def _is_free(self) -> bool:
+        turns = self._turns
+        last = turns.last
+        return not (
+            (last is not None and not last.done)
+            or turns.queue
+            or self._outstanding.replies
+            or self._acks.waiting
+            or self._begun is not None
+            or self._alignment.align
+        )
 
     def end(self, frame: Frame) -> bool:
         """Return whether the only frame that came is the reply; the codec has decoded it as such.

@@ -231,7 +231,8 @@ class Exchange:
     def busy(self) -> bool:
         """Whether a request waits for its turn or its reply, or for its acknowledgement."""
         turns = self._turns
-        return bool(turns.queue or self._acks.waiting) or turns.waiting() is not None
+        last = turns.last
+        return bool(turns.queue or self._acks.waiting or not (last is None or last.done))
 
     # What a client does that reads and decodes in one native call.
 

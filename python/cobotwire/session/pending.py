@@ -13,6 +13,9 @@ from cobotwire.session.received import ReceivedMeanwhile
 from cobotwire.session.request import EncodedRequest, as_call
 from cobotwire.session.text import TextCollector
 
+# The fields of a reply by name, when its request was written, and when it was read.
+Answer = tuple[dict[str, Any], float, float]
+
 
 class Pending:
     """A request whose caller waits.
@@ -91,6 +94,7 @@ class PendingRequest(Pending):
         policy: how often it is sent.
         queued_at: when it was submitted.
         attempt_times: when it was sent; empty while it waits for its turn.
+        requested_at: when it was first sent.
         offset: where in the received stream its reply can begin at the earliest.
         candidate: a copy of the request that is also a legal reply.
         text: collects a reply that is text outside any frame.
@@ -100,7 +104,6 @@ class PendingRequest(Pending):
     __slots__ = (
         "_attempts",
         "_deadline",
-        "_requested_at",
         "_undrained_since",
         "_wait",
         "attempt_times",
@@ -109,6 +112,7 @@ class PendingRequest(Pending):
         "policy",
         "queued_at",
         "replied_at",
+        "requested_at",
         "text",
     )
 
@@ -132,16 +136,16 @@ class PendingRequest(Pending):
         self.policy = policy
         self.queued_at = now
         self.attempt_times: tuple[float, ...] = ()
-        self._requested_at = 0.0
+        self.requested_at = 0.0
         self.offset = 0
         self.candidate: DecodedMessage | None = None
         self.text = None if command.text is None else TextCollector(command.text)
         self.replied_at: float | None = None
 
     @property
-    def requested_at(self) -> float:
-        """When it was first sent."""
-        return self._requested_at
+    def shortest_attempt(self) -> float:
+        """The least number of seconds after which it is sent again, or its wait ends."""
+        return self._wait / self.policy.attempts
 
     @property
     def ends_at(self) -> float:
@@ -175,7 +179,7 @@ class PendingRequest(Pending):
         """Note that it is sent for the first time; its reply can begin at ``offset``."""
         self.offset = offset
         self._deadline = now + self._wait
-        self._requested_at = now
+        self.requested_at = now
         self.attempt_times = (now,)
 
     def written(self, now: float) -> None:
@@ -194,6 +198,16 @@ class PendingRequest(Pending):
         """Note that it is sent again."""
         self.attempt_times = (*self.attempt_times, now)
 
+    def answer(self) -> Answer:
+        """Return the reply and its times.
+
+        Raises:
+            CobotwireError: the reason why there is no reply.
+        """
+        fields, replied_at = self.result(), self.replied_at
+        assert replied_at is not None, "a request without a reply has raised"
+        return fields, self.requested_at, replied_at
+
     def accepts(self, frame: Frame) -> bool:
         """Return whether a frame has its command id and began after it was sent."""
         request = self.request
@@ -207,4 +221,8 @@ class PendingRequest(Pending):
     def reply(self, fields: dict[str, Any], now: float) -> None:
         """End it with the reply that was received at ``now``."""
         self.replied_at = now
-        self.succeed(fields)
+        # As succeed() does, in one call.
+        self._fields = fields
+        self.done = True
+        if self._on_done is not None:
+            self._on_done()

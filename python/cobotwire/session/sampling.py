@@ -14,14 +14,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Table
+from cobotwire.session.policy import RetryPolicy
+from cobotwire.session.request import EncodedRequest
 from cobotwire.session.sample import Reading, Sample, StreamReport
 
 HIGHEST_RATE = 1000.0
+
+
+class Poll(NamedTuple):
+    """A request of a stream, ready to be sent; ``wait`` is its deadline in seconds, or None."""
+
+    request: Request[Any]
+    encoded: EncodedRequest
+    policy: RetryPolicy
+    wait: float | None
 
 
 class Sampler:
@@ -61,19 +72,24 @@ class Sampler:
             raise UsageError("stream", message=message)
         if self._started is None:
             self._started = self._free = now
-        overrun, unread = self._passed(now)
-        self._overrun += overrun
-        self._unread += unread
-        self._slot += overrun + unread
+        elif self._nearest(now) > self._slot:
+            overrun, unread = self._passed(now)
+            self._overrun += overrun
+            self._unread += unread
+            self._slot += overrun + unread
         self._free = None
-        return max(now, self._started + self._slot / self._rate)
+        at = self._started + self._slot / self._rate
+        return at if at > now else now
 
     def answered(self, readings: Sequence[Reading[Any]], now: float) -> Sample:
         """Return the sample of a slot in which every request has its reply."""
-        slot = max(self._slot, self._nearest(readings[0].requested_at))
+        slot = self._nearest(readings[0].requested_at)
+        if slot > self._slot:
+            # The slots before it were not used, and the consumer is not the reason.
+            self._overrun += slot - self._slot
+        else:
+            slot = self._slot
         sample = Sample(self._samples, slot, self._requests, tuple(readings))
-        # The slots before it were not used, and the consumer is not the reason.
-        self._overrun += slot - self._slot
         self._samples += 1
         self._slot = slot + 1
         self._free = now

@@ -8,6 +8,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 from cobotwire.protocol.errors import LinkError
@@ -51,7 +52,7 @@ class PolledTransport:
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(descriptor, ready)
         # Writes that were not taken yet, oldest first, and how much of the first one was taken.
-        self._waiting: deque[tuple[bytes, Done]] = deque()
+        self.unwritten: deque[tuple[bytes, Done]] = deque()
         self._taken = 0
         self._progress_at = 0.0
         self._timer: asyncio.TimerHandle | None = None
@@ -64,13 +65,13 @@ class PolledTransport:
 
     def write(self, data: bytes, done: Done) -> bool:
         """Send ``data`` after what was sent before."""
-        if not self._waiting:
+        if not self.unwritten:
             taken = self._transport.write_some(data)
             if taken == len(data):
                 return True
             self.write_rest(data, taken, done)
             return False
-        self._waiting.append((data, done))
+        self.unwritten.append((data, done))
         return False
 
     def write_rest(self, data: bytes, taken: int, done: Done) -> None:
@@ -79,12 +80,7 @@ class PolledTransport:
         self._progress_at = self._loop.time()
         self._loop.add_writer(self._descriptor, self._write_on)
         self._try_later()
-        self._waiting.append((data, done))
-
-    @property
-    def idle(self) -> bool:
-        """Whether everything that was written was taken."""
-        return not self._waiting
+        self.unwritten.append((data, done))
 
     def native(self, framer: Any) -> NativePolled | None:
         """Return native calls for this transport and a native framer; None: there are none."""
@@ -94,7 +90,7 @@ class PolledTransport:
         return None
 
     def _write_on(self) -> None:
-        data, done = self._waiting[0]
+        data, done = self.unwritten[0]
         try:
             taken = self._transport.write_some(data[self._taken :])
         except LinkError as error:
@@ -105,10 +101,10 @@ class PolledTransport:
         self._taken += taken
         if self._taken < len(data):
             return
-        self._waiting.popleft()
+        self.unwritten.popleft()
         self._taken = 0
         done(None)
-        if not self._waiting:
+        if not self.unwritten:
             self._end_writing(None)
 
     def _try_later(self) -> None:
@@ -118,9 +114,9 @@ class PolledTransport:
         self._timer = self._loop.call_later(TRY_SECONDS, self._try)
 
     def _try(self) -> None:
-        if self._waiting:
+        if self.unwritten:
             self._write_on()
-        if self._waiting:
+        if self.unwritten:
             if self._loop.time() - self._progress_at < WRITE_TIMEOUT:
                 self._try_later()
             else:
@@ -132,7 +128,8 @@ class PolledTransport:
         self._loop.remove_writer(self._descriptor)
         if self._timer is not None:
             self._timer.cancel()
-        waiting, self._waiting = self._waiting, deque()
+        waiting = list(self.unwritten)
+        self.unwritten.clear()
         taken, self._taken = self._taken, 0
         for _, done in waiting:
             # Each caller raises an error of its own.
@@ -153,31 +150,25 @@ class PolledTransport:
 
 
 class NativePolled:
-    """Native calls that write, read and decode at once what one request needs; none of them waits.
+    """Native calls that send a request, or read and decode a reply; none of them waits.
 
-    ``framer`` is a native one; what its methods return says :mod:`cobotwire._native`.
+    :mod:`cobotwire._native` says what they return.
+
+    Attributes:
+        unwritten: what was written and not taken yet.
+        write_rest: writes the rest of a request.
+        send: called with a request and its command; sends it, and reads what has come then.
+        read_reply: called with a request that was sent, and its command; reads what has come since.
     """
 
-    def __init__(self, transport: PolledTransport, lend_now: Callable[..., Any], framer: Any):
-        self._transport = transport
-        self._lend_now = lend_now
-        self._swap, self._read_reply = framer.swap, framer.read_reply
+    def __init__(
+        self, transport: PolledTransport, lend_now: Callable[..., Any], framer: Any
+    ) -> None:
+        """Take a native framer, and what lends it the descriptor of the transport."""
+        self.unwritten = transport.unwritten
         self.write_rest = transport.write_rest
-        # One thread writes.
-        self._writing = threading.Lock()
-
-    @property
-    def idle(self) -> bool:
-        """Whether everything that was written was taken."""
-        return self._transport.idle
-
-    def swap(self, request: bytes, of: str, finish: Callable[[bytes, int], None]) -> Any:
-        """Send a request if nothing has come, and read what has come by then."""
-        return self._lend_now(self._swap, 0.0, request, of, self._writing, finish)
-
-    def read_reply(self, request: bytes, of: str) -> Any:
-        """Read what has come since a request was sent."""
-        return self._lend_now(self._read_reply, request, of)
+        self.send: Callable[[bytes, str], Any] = partial(lend_now, framer.send)
+        self.read_reply: Callable[[bytes, str], Any] = partial(lend_now, framer.read_reply)
 
 
 class ThreadedTransport:

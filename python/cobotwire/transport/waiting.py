@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import select
 import sys
+import threading
 from collections.abc import Callable
-from typing import NamedTuple
+from types import TracebackType
+from typing import NamedTuple, Protocol
 
 from cobotwire import codec as codecs
 from cobotwire.transport.alarm import Alarm, new_alarm
@@ -15,6 +17,23 @@ from cobotwire.transport.alarm import Alarm, new_alarm
 SELECTABLE = 1024
 POLLS = hasattr(select, "poll")
 POLLS_TERMINALS = POLLS and sys.platform != "darwin"
+
+
+class LineLock(Protocol):
+    """The part of ``threading.Lock`` that its users need."""
+
+    def locked(self) -> bool:
+        """Whether it is held."""
+        ...
+
+    def __enter__(self) -> bool: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+        /,
+    ) -> None: ...
 
 
 class NativeCalls(NamedTuple):
@@ -34,10 +53,19 @@ def native_calls() -> NativeCalls | None:
         return None
     from cobotwire import _native
 
-    if not hasattr(_native, "read_within"):
+    if not hasattr(_native, "LineLock"):
         # The binary is older than this file; build it again for speed.
         return None
     return NativeCalls(_native.read_within, _native.write_now)
+
+
+def line_lock() -> LineLock:
+    """Return a lock for writing to a line: one that native functions can take, if there are any."""
+    if native_calls() is None:
+        return threading.Lock()
+    from cobotwire import _native
+
+    return _native.LineLock()
 
 
 class Waiter:

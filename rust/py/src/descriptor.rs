@@ -11,7 +11,6 @@ use std::os::fd::{BorrowedFd, RawFd};
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyOSError;
-use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -64,62 +63,14 @@ pub fn read_within<'py>(
     Ok(data)
 }
 
-/// A line to write a request to and to read its reply from.
-pub struct Line<'a, 'py> {
-    pub descriptor: RawFd,
-    /// Becomes readable to end the wait.
-    pub alarm: RawFd,
-    /// The lock that Python holds while it writes to the line.
-    pub writing: &'a Bound<'py, PyAny>,
-    /// Called with a request of which a part was taken, and the size of this part, to write the rest.
-    pub finish: &'a Bound<'py, PyAny>,
-}
-
-impl Line<'_, '_> {
-    /// Write a request, and return what `take` makes of the bytes that come within `timeout`
-    /// seconds.
-    pub fn swap<T>(
-        &self,
-        py: Python<'_>,
-        request: &[u8],
-        timeout: f64,
-        take: impl FnOnce(&[u8]) -> T,
-    ) -> PyResult<Swapped<T>> {
-        let (descriptor, wait) = (borrow(self.descriptor)?, Wait::new(timeout, self.alarm)?);
-        // The lock of the interpreter is held from here until the request is written, so no other
-        // thread of Python begins to write meanwhile.
-        let busy = self.writing.call_method0(intern!(py, "locked"))?;
-        if busy.is_truthy()? || !matches!(is_ready(py, descriptor, None), Ok(false)) {
-            return Ok(Swapped::NotSent);
-        }
-        match write(descriptor, request) {
-            Ok(0) | Err(_) => return Ok(Swapped::NotSent),
-            Ok(written) if written < request.len() => self.write_rest(py, request, written)?,
-            Ok(_) => (),
-        }
-        match receive(py, descriptor, wait.as_ref(), take) {
-            Ok(taken) => Ok(Swapped::Sent(taken)),
-            // The next read fails in the same way, and reports it.
-            Err(Fault::System(_)) => Ok(Swapped::Sent(None)),
-            Err(Fault::Handler(error)) => Err(error),
-        }
-    }
-
-    fn write_rest(&self, py: Python<'_>, request: &[u8], written: usize) -> PyResult<()> {
-        self.writing
-            .call_method1(intern!(py, "acquire"), (false,))?;
-        let done = self.finish.call1((PyBytes::new(py, request), written));
-        self.writing.call_method0(intern!(py, "release"))?;
-        done.map(|_| ())
-    }
-}
-
-/// What became of a request.
-pub enum Swapped<T> {
-    /// The line was not free: bytes had come, or a thread wrote, or the system took no bytes.
-    NotSent,
-    /// It was written; what was made of the bytes that came then, if any came.
-    Sent(Option<T>),
+/// Write a request if nothing has come to be read; return how many bytes the system took. 0 means that
+/// the request was not sent, perhaps because the descriptor is gone, which the next use reports.
+pub fn write_if_free(descriptor: RawFd, request: &[u8]) -> PyResult<usize> {
+    let descriptor = borrow(descriptor)?;
+    Ok(match can_be_read(descriptor) {
+        Ok(false) => write(descriptor, request).unwrap_or(0),
+        _ => 0,
+    })
 }
 
 /// Return what `take` makes of what has come by now; None if nothing has, or the read failed.
@@ -186,11 +137,7 @@ fn is_ready(
     wait: Option<&Wait<'_>>,
 ) -> Result<bool, Fault> {
     let Some(Wait { until, alarm }) = wait else {
-        let mut polled = [PollFd::new(&descriptor, PollFlags::IN)];
-        return match poll(&mut polled, Some(&AT_ONCE)) {
-            Ok(count) => Ok(count > 0),
-            Err(error) => Err(Fault::System(error)),
-        };
+        return can_be_read(descriptor).map_err(Fault::System);
     };
     let mut polled = [descriptor, *alarm].map(|each| PollFd::from_borrowed_fd(each, PollFlags::IN));
     loop {
@@ -209,8 +156,14 @@ fn is_ready(
     }
 }
 
+/// Return whether a descriptor can be read now, or is gone.
+pub fn can_be_read(descriptor: BorrowedFd<'_>) -> Result<bool, Errno> {
+    let mut polled = [PollFd::from_borrowed_fd(descriptor, PollFlags::IN)];
+    poll(&mut polled, Some(&AT_ONCE)).map(|count| count > 0)
+}
+
 /// Return the descriptor with that number.
-fn borrow<'fd>(number: RawFd) -> PyResult<BorrowedFd<'fd>> {
+pub fn borrow<'fd>(number: RawFd) -> PyResult<BorrowedFd<'fd>> {
     if number < 0 {
         return Err(failed(Errno::BADF));
     }
@@ -237,7 +190,7 @@ impl From<Fault> for PyErr {
 }
 
 /// Return an error of the system as Python's `OSError`, of the class that fits its number.
-fn failed(error: Errno) -> PyErr {
+pub fn failed(error: Errno) -> PyErr {
     let text = std::io::Error::from(error).to_string();
     PyOSError::new_err((error.raw_os_error(), text))
 }

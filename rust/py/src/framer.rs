@@ -7,10 +7,12 @@ use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 
 #[cfg(unix)]
-use crate::descriptor::{Line, Swapped, read_now};
+use crate::descriptor::{read_now, write_if_free};
 use crate::events::Events;
 use crate::frame::{NativeFrame, Origin};
 use crate::names::Names;
+#[cfg(unix)]
+use crate::swap::{Line, LineLock, Swapped};
 
 /// Cuts frames out of a byte stream.
 #[pyclass(module = "cobotwire._native")]
@@ -47,19 +49,21 @@ impl NativeFramer {
         events.finish()
     }
 
-    /// Send a request, and read what comes first, in one call: the exchange of a request that is
-    /// alone on its line. Bytes that are one frame, and a reply of the command `of`, are decoded.
+    /// Send a request at the moment `at`, and read what comes first, in one call: the exchange of a
+    /// request that is alone on its line. Bytes that are one frame, and a reply of the command `of`,
+    /// are decoded, and returned with the moments of writing and reading.
     #[cfg(unix)]
-    #[pyo3(signature = (descriptor, alarm, timeout, request, of, writing, finish, /))]
+    #[pyo3(signature = (descriptor, alarm, at, timeout, request, of, writing, finish, /))]
     #[allow(clippy::too_many_arguments)] // an object for them would cost more than the call
     fn swap<'py>(
         slf: &Bound<'py, Self>,
         descriptor: i32,
         alarm: i32,
+        at: f64,
         timeout: f64,
         request: &[u8],
         of: &Bound<'py, PyAny>,
-        writing: &Bound<'py, PyAny>,
+        writing: &Bound<'py, LineLock>,
         finish: &Bound<'py, PyAny>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (py, line) = (
@@ -67,16 +71,44 @@ impl NativeFramer {
             Line {
                 descriptor,
                 alarm,
-                writing,
+                writing: writing.get(),
                 finish,
             },
         );
         let take = |data: &[u8]| slf.try_borrow_mut()?.take_reply(py, data, request, of);
-        match line.swap(py, request, timeout, take)? {
-            Swapped::NotSent => Ok(None),
-            Swapped::Sent(Some(taken)) => taken.map(Some),
-            Swapped::Sent(None) => Ok(Some(PyList::empty(py).into_any())),
+        Ok(match line.swap(py, at, timeout, request, take)? {
+            Swapped::NotSent => None,
+            Swapped::Silent => Some(PyList::empty(py).into_any()),
+            Swapped::Received(taken, requested_at, replied_at) => Some(match taken? {
+                Taken::Reply(frame, fields) => (frame, fields, requested_at, replied_at)
+                    .into_pyobject(py)?
+                    .into_any(),
+                Taken::Events(events) => events.into_any(),
+            }),
+        })
+    }
+
+    /// Send a request if nothing has come, and read what has come then, without waiting. Return
+    /// None if nothing was sent, or how many bytes were taken if these are not all.
+    #[cfg(unix)]
+    #[pyo3(signature = (descriptor, alarm, request, of, /))]
+    fn send<'py>(
+        slf: &Bound<'py, Self>,
+        descriptor: i32,
+        alarm: i32,
+        request: &[u8],
+        of: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let py = slf.py();
+        let written = write_if_free(descriptor, request)?;
+        if written == 0 {
+            return Ok(None);
         }
+        if written < request.len() {
+            return Ok(Some(written.into_pyobject(py)?.into_any()));
+        }
+        let found = Self::read_reply(slf, descriptor, alarm, request, of)?;
+        Ok(Some(found.unwrap_or_else(|| PyList::empty(py).into_any())))
     }
 
     /// Read what has come to a line, and feed it, in one call: `swap` without a request to send.
@@ -96,7 +128,8 @@ impl NativeFramer {
             [] => Ok(None),
             _ => slf
                 .try_borrow_mut()?
-                .take_reply(py, data, request, of)
+                .take_reply(py, data, request, of)?
+                .into_pyobject(py)
                 .map(Some),
         };
         read_now(py, descriptor, take)?.unwrap_or(Ok(None))
@@ -130,7 +163,7 @@ impl NativeFramer {
         data: &[u8],
         request: &[u8],
         of: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Taken<'py>> {
         let mut events = Events::new(py, &self.origin)?;
         let whole = self.core.pending() == 0 && data != request;
         self.core.feed(data, |event| events.add(event));
@@ -140,10 +173,26 @@ impl NativeFramer {
             if let Ok(frame) = event.cast::<NativeFrame>()
                 && let Some(fields) = frame.get().fields_of(py, of)?
             {
-                return Ok((event, fields).into_pyobject(py)?.into_any());
+                return Ok(Taken::Reply(event, fields.into_any()));
             }
         }
-        Ok(events.into_any())
+        Ok(Taken::Events(events))
+    }
+}
+
+/// What came after a request.
+enum Taken<'py> {
+    /// The reply alone, and its fields.
+    Reply(Bound<'py, PyAny>, Bound<'py, PyAny>),
+    Events(Bound<'py, PyList>),
+}
+
+impl<'py> Taken<'py> {
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(match self {
+            Self::Reply(frame, fields) => (frame, fields).into_pyobject(py)?.into_any(),
+            Self::Events(events) => events.into_any(),
+        })
     }
 }
 

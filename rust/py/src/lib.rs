@@ -5,6 +5,8 @@
 
 use pyo3::prelude::*;
 
+#[cfg(target_os = "linux")]
+mod alarm_clock;
 mod bulk;
 mod capture;
 mod codec;
@@ -27,6 +29,8 @@ mod once;
 mod parts;
 mod plain;
 mod survey;
+#[cfg(unix)]
+mod swap;
 mod values;
 mod words;
 
@@ -46,6 +50,11 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<survey::NativeSurvey>()?;
     module.add_class::<framer::NativeFramer>()?;
     #[cfg(unix)]
-    descriptor::add_to(module)?;
+    {
+        descriptor::add_to(module)?;
+        module.add_class::<swap::LineLock>()?;
+    }
+    #[cfg(target_os = "linux")]
+    module.add_class::<alarm_clock::AlarmClock>()?;
     Ok(())
 }

@@ -1,0 +1,32 @@
+"""A descriptor that becomes readable at a moment, for event loops that wait for descriptors."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Protocol
+
+from cobotwire.transport.waiting import native_calls
+
+
+class AlarmClock(Protocol):
+    """A descriptor that becomes readable at a moment."""
+
+    def fileno(self) -> int:
+        """Return the descriptor, which is open as long as this object exists."""
+        ...
+
+    def set(self, moment: float | None, /) -> None:
+        """Make it readable from a moment on, and not before; None: never."""
+        ...
+
+
+def new_alarm_clock() -> AlarmClock | None:
+    """Return a clock that is not set; None: the system has none, or no descriptor for it."""
+    if native_calls() is None:
+        return None
+    from cobotwire import _native
+
+    # Only Linux has it.
+    with suppress(AttributeError, OSError):
+        return _native.AlarmClock()
+    return None
