@@ -90,6 +90,8 @@ def test_blocking_client_needs_at_most_one_descriptor_besides_its_port() -> None
 @pytest.mark.skipif(not OPEN_FILES.is_dir(), reason="counts descriptors as Linux lists them")
 def test_asyncio_client_needs_no_descriptor_besides_its_port() -> None:
     async def count(urls: list[str]) -> None:
+        # One descriptor is for all arms of the loop.
+        timers = timers_of(asyncio.get_running_loop())
         before = _open_files()
         arms = [AsyncMyCobot(url) for url in urls]
         for arm in arms:
@@ -99,6 +101,7 @@ def test_asyncio_client_needs_no_descriptor_besides_its_port() -> None:
         for arm in arms:
             await arm.close()
         assert _open_files() == before
+        del timers
 
     with _peers() as urls:
         asyncio.run(count(urls))

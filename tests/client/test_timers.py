@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import time
+import weakref
 from functools import partial
 
 from cobotwire.client.aio_timers import LoopTimers, Timed, timers_of
@@ -81,8 +82,7 @@ def test_each_loop_has_timers_of_its_own_while_they_are_in_use() -> None:
 
     one, other = made(), made()
     assert one is not other
-    del one, other
+    kept = weakref.ref(one)
+    del one
     gc.collect()
-    from cobotwire.client import aio_timers
-
-    assert not aio_timers._known
+    assert kept() is None
