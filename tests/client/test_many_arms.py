@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from cobotwire.client.aio_timers import timers_of
 from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
 from scripted_peer import ScriptedPeer
 
