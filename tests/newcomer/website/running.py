@@ -69,10 +69,7 @@ def _checked(command: str, plan: Expected | NotRun | None, folder: Path, port: s
         return Result(command, reason=plan.reason)
     if shutil.which(plan.shell) is None:
         return Result(command, reason=f"{plan.shell} is not installed here")
-    try:
-        return Result(command, _problem(PORT.sub(port, command), plan, folder))
-    except subprocess.TimeoutExpired:
-        return Result(command, "it did not end")
+    return Result(command, _problem(PORT.sub(port, command), plan, folder))
 
 
 def _problem(command: str, expected: Expected, folder: Path) -> str:
@@ -93,7 +90,11 @@ def _problem(command: str, expected: Expected, folder: Path) -> str:
             printed += line
         time.sleep(1)  # a recording gets some more messages
         process.send_signal(signal.SIGINT)
-    printed += process.communicate(timeout=SECONDS)[0]
+    try:
+        printed += process.communicate(timeout=SECONDS)[0]
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return f"it did not end within {SECONDS} s"
     codes = {expected.code} | ({0, 130, -signal.SIGINT} if expected.served else set())
     ended = expected.code == ANY or process.returncode in codes
     if ended and re.search(expected.output, printed):
