@@ -175,6 +175,7 @@ def single(_: int) -> Part:
         **SINGLE,
         "find": textbook,
         "pymycobot": theirs,
+        "floats": lambda *_: Timed(peers.six_floats(ANGLES), MANY),
         "struct": lambda *_: Timed(lambda: peers.struct_send_angles(ANGLES, 30), MANY),
         "pymycobot's building": lambda *_: Timed(peers.pymycobot_send_angles(ANGLES, 30), 1000),
     }
@@ -182,6 +183,7 @@ def single(_: int) -> Part:
         Target("feed() of one frame, eager", "feed", "find", 7, faster=True),
         Target("feed() of one frame, eager", "feed", "pymycobot", 90, faster=True),
         Target("feed() of one frame, eager", "feed", "a no-op call", 9),
+        untargeted("  its list, tuple and floats alone", "floats", "a no-op call", faster=False),
         Target("encode send_angles", "encode", "struct", 6, faster=True),
         Target("encode send_angles", "encode", "pymycobot's building", 50, faster=True),
     ]

@@ -159,6 +159,12 @@ def _pymycobot_values(peer: Any, frame: Any) -> Any:
     return words
 
 
+def six_floats(angles: list[float]) -> Callable[[], object]:
+    """Return a function that creates the objects of one frame: a list, two tuples, six floats."""
+    data, unpack = struct.pack("=6d", *angles), struct.Struct("=6d").unpack
+    return lambda: [(unpack(data),)]
+
+
 def struct_send_angles(angles: list[float], speed: int) -> bytes:
     """Build a frame with ``struct`` and ``round``, without checks."""
     words = [round(angle * 100) for angle in angles]
