@@ -1,6 +1,6 @@
 //! `Once`: a tuple that an object makes on first use.
 
-#![allow(unsafe_code)] // `PyOnceLock` does the same in safe code, and costs 18 ns more a frame
+#![allow(unsafe_code)] // safe code needs a lock, which takes 4 % of reading a frame once
 
 use std::ptr;
 use std::sync::atomic::{AtomicPtr, Ordering};
