@@ -2,13 +2,15 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
-# The Python tests run in four lanes at once. One computes; the others also wait for ports, so that
+# The Python tests run in five lanes at once. One computes; the others also wait for ports, so that
 # two processors are seldom idle. That one lets the others go first (nice), because a test that
-# waits for a reply has a deadline. The lane that waits has all tests that no other lane names.
+# waits for a reply has a deadline. The last lane has all tests that no other lane names.
 COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec)
 SIMULATING := $(addprefix tests/,conformance defects docs inspect simulator)
 CALLING := $(addprefix tests/,cli newcomer peers)
-LANES := waiting-tests calling-tests simulating-tests computing-tests
+WAITING := $(addprefix tests/,attack client session transport)
+NAMED := $(COMPUTING) $(SIMULATING) $(CALLING) $(WAITING)
+LANES := computing-tests simulating-tests calling-tests waiting-tests other-tests
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.
 IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 # Tests start many programs. Without compiled files, each of them compiles the package anew.
@@ -18,7 +20,7 @@ ATTACK_SECONDS ?= 180
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures
+.PHONY: spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -28,7 +30,7 @@ demo: .venv/.native ## drive a simulated arm over a pty and check every reply
 	$(BIN)/cobotwire demo --codec native
 
 test: .venv/.tools .venv/.native front-end-if-reachable ## run everything: linters, types, generated files, Rust, Python
-	$(MAKE) --no-print-directory --jobs 5 $(IN_TURN) $(LANES) lint-and-rust
+	$(MAKE) --no-print-directory --jobs 6 $(IN_TURN) $(LANES) lint-and-rust
 
 lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the binary, generated files
 	$(BIN)/cobotwire-gen --check
@@ -54,8 +56,8 @@ rust-asan: ## run the tests of the unsafe code with AddressSanitizer; needs a ni
 	RUSTFLAGS=-Zsanitizer=address cargo +nightly test --package cobotwire-simd --quiet \
 		--target $$(rustc -vV | sed -n 's/host: //p') --target-dir target/asan
 
-python-test: .venv/.tools .venv/.native front-end-if-reachable ## run the Python tests on both codecs, in four lanes
-	$(MAKE) --no-print-directory --jobs 4 $(IN_TURN) $(LANES)
+python-test: .venv/.tools .venv/.native front-end-if-reachable ## run the Python tests on both codecs, in five lanes
+	$(MAKE) --no-print-directory --jobs 5 $(IN_TURN) $(LANES)
 
 computing-tests:
 	nice -n 5 $(BIN)/python -m pytest $(COMPUTING)
@@ -67,7 +69,10 @@ calling-tests:
 	$(BIN)/python -m pytest $(CALLING)
 
 waiting-tests:
-	$(BIN)/python -m pytest $(addprefix --ignore=,$(COMPUTING) $(SIMULATING) $(CALLING))
+	$(BIN)/python -m pytest $(WAITING)
+
+other-tests:
+	$(BIN)/python -m pytest $(addprefix --ignore=,$(NAMED))
 
 front-end: ## fetch the JavaScript that the page of `cobotwire studio` and its test need
 	$(PYTHON) tools/front_end.py

@@ -23,7 +23,9 @@ Checker = Callable[[Path], tuple[str, set[int]]]
 def mypy(path: Path) -> tuple[str, set[int]]:
     """Return what mypy prints about a file, and the lines with errors."""
     config = str(vectors.ROOT / "pyproject.toml")
-    out, err, _ = api.run(["--strict", "--config-file", config, str(path)])
+    # Not the cache of the linter, which may run at the same time.
+    cache = str(vectors.ROOT / "target" / "mypy-of-tests")
+    out, err, _ = api.run(["--strict", "--config-file", config, "--cache-dir", cache, str(path)])
     assert not err
     return out, {int(line) for line in re.findall(rf"{path.name}:(\d+): error", out)}
 
