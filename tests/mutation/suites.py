@@ -12,9 +12,6 @@ from mutation.codec.suite import CodecSuite
 from mutation.device.suite import DeviceSuite
 from mutation.suite import Suite
 
-# These have survivors without a reason, or no run yet; docs/conformance.md says which.
-WITHOUT_CODEC = ("mercury_a1", "mercury_b1", "mercury_x1", "pro400", "pro450", "pro630")
-WITHOUT_DEVICE = (*WITHOUT_CODEC,)
 # Without a script, the referee judges only whether requests are legal: one edition shows that.
 WITHOUT_SCRIPT = "mycobot280"
 
@@ -26,14 +23,12 @@ def _make(kind: Callable[[Table], Suite], edition: str) -> Suite:
 def _suites() -> Iterator[tuple[str, Callable[[], Suite]]]:
     with_script = partial(ClientSuite, with_script=True)
     for edition in editions.names():
-        if edition not in WITHOUT_DEVICE:
-            yield f"device, {edition}", partial(_make, DeviceSuite, edition)
+        yield f"device, {edition}", partial(_make, DeviceSuite, edition)
         yield f"client with a script, {edition}", partial(_make, with_script, edition)
         if edition == WITHOUT_SCRIPT:
             without = partial(ClientSuite, with_script=False)
             yield f"client without a script, {edition}", partial(_make, without, edition)
-        if edition not in WITHOUT_CODEC:
-            yield f"codec, {edition}", partial(_make, CodecSuite, edition)
+        yield f"codec, {edition}", partial(_make, CodecSuite, edition)
 
 
 # What makes each suite, and its name, in the order of a run.

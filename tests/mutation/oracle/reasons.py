@@ -10,7 +10,7 @@ from mutation.device.testing import is_judged, lacking
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, only_legal, replies_of, values_of
 from mutation.oracle.conversation import Conversation
-from mutation.oracle.undefined import LEFT_OPEN, OF_MEANING
+from mutation.oracle.undefined import INPUTS, LEFT_OPEN, OF_MEANING, UNWIRED
 
 
 def reason(table: Table, mutant: Mutant) -> str:
@@ -77,6 +77,8 @@ def _undefined(table: Table, mutant: Mutant) -> str:
             return unsafe
     if mutant.kind in OF_MEANING and mutant.command in LEFT_OPEN:
         return LEFT_OPEN[mutant.command]
+    if mutant.kind in (*OF_MEANING, "stale reply") and _is_unwired(table, mutant.command):
+        return UNWIRED
     if not mutant.command or mutant.field in ("", *_replied(table, mutant.command)):
         return ""
     fields = {field.name: field for field in request_fields(table.command(mutant.command))}
@@ -88,6 +90,12 @@ def _undefined(table: Table, mutant: Mutant) -> str:
     if TURNS in field.labels:
         return "the edition does not define whether the angle grows when a joint turns clockwise"
     return ""
+
+
+def _is_unwired(table: Table, name: str) -> bool:
+    """Return whether a command reads inputs, and the edition does not say that outputs set them."""
+    backs = (command.read_by for command in table.commands)
+    return name in INPUTS and not any(back is not None and back.query == name for back in backs)
 
 
 def _unsafe(command: Command) -> str:

@@ -37,3 +37,7 @@ LEFT_OPEN = {
     "which is unknown on the line",
     "drag_clear_record_data": "the maker's library marks the recording's calls as not yet tested",
 }
+# Queries of pins. The simulated arm wires each output to the input of the same number; an edition
+# that does not say so has no command that reads the output back.
+INPUTS = frozenset({"get_digital_input", "get_base_io_input"})
+UNWIRED = "no command sets an input of this arm, and no source says that one is wired to an output"

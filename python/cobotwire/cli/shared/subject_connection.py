@@ -43,8 +43,15 @@ class Subject:
             parse_command(self.command, self.attach)
 
 
+# How a simulated arm begins the note that it cannot reply.
+NO_REPLY = "no reply: "
+
+
 class Lacking:
-    """What a simulated arm states that it does not support: coordinates of an unknown geometry."""
+    """What a simulated arm states that it does not support, as coordinates of an unknown geometry.
+
+    ``reasons`` holds the commands with what the arm states.
+    """
 
     def __init__(self, table: Table) -> None:
         self.reasons: dict[str, str] = {}
@@ -53,10 +60,11 @@ class Lacking:
 
     def note(self, note: Note) -> None:
         """Keep a note of the arm if it says so."""
-        if note.text.endswith(self._why):
+        if note.text.startswith(NO_REPLY) or note.text.endswith(self._why):
             id = self._table.command(note.command).id
             same = [command.name for command in self._table.commands if command.id == id]
-            self.reasons |= dict.fromkeys(same, self._why)
+            why = self._why if note.text.endswith(self._why) else note.text.removeprefix(NO_REPLY)
+            self.reasons |= dict.fromkeys(same, why)
 
 
 # How long a program may take until it replies, in seconds.

@@ -34,5 +34,11 @@ HISTORY = (
         "noise comes last among crowded requests",
     ),
     CatalogueVersion(4, "32ce52bee20a", "new: `sent-address`"),
+    CatalogueVersion(
+        5,
+        "bf34366dd252",
+        "new: `points-in-order`, and streams with frames around frames; queries that take a "
+        "position need one that the device reports",
+    ),
 )
 VERSION = HISTORY[-1].number

@@ -191,7 +191,7 @@ class Device:
     def known(self, command: Command | None = None) -> Known:
         """Return the arm's position as rows of numbers, by their units, for its calculations.
 
-        For a ``command`` that takes no row, nothing is needed.
+        A row that no reply holds is empty. For a ``command`` that takes no row, nothing is needed.
         """
         if command is not None and not any(f.many for v in command.request for f in v.fields):
             return {}
@@ -202,8 +202,8 @@ class Device:
                 continue
             reply = self.read(command.request_type())
             field = command.reply[0].fields[0]
-            if reply is not None:
-                found[units(field.cases[0].numbers)] = getattr(reply, field.name)
+            row = () if reply is None else getattr(reply, field.name)
+            found[units(field.cases[0].numbers)] = row
         return found
 
     def setter(self, query: Command, value: int) -> Command | None:

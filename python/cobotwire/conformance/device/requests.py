@@ -12,7 +12,8 @@ from cobotwire.conformance.samples import RawValues, physical_values, plainest, 
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Field, Number, Variant
 
-# A row of numbers that the arm itself reported, by the units of its parts.
+# A row of numbers that the arm itself reported, by the units of its parts; empty if its query has
+# no reply, so that the arm cannot calculate with such a row.
 Known = Mapping[tuple[str, ...], tuple[float, ...]]
 # The raw values by argument that a run may send, where not all legal ones are harmless.
 Limits = Mapping[str, tuple[int, ...]]
@@ -60,10 +61,15 @@ def arguments_of(request: Request[Any]) -> str:
 def requests(
     command: Command, variant: Variant, known: Known | None = None, limits: Limits | None = None
 ) -> list[Request[Any]]:
-    """Return requests of a variant: each field in turn takes its samples; the rest stay."""
+    """Return requests of a variant: each field in turn takes its samples; the rest stay.
+
+    None of them has a row that the arm would report, but does not.
+    """
     found: dict[RawValues, None] = {}
     for picked in picks(variant):
         if not all(_is_within(limits or {}, variant.fields[at], raw) for at, raw in picked.items()):
+            continue
+        if not all(_has_row(known or {}, field, picked) for field in variant.fields):
             continue
         lists = [
             [(picked[index],)]
@@ -78,6 +84,10 @@ def requests(
             dict.fromkeys(with_row(base, at, row) for at, rows in enumerate(lists) for row in rows)
         )
     return [_typed(command, _arguments(variant, raw_values)) for raw_values in found]
+
+
+def _has_row(known: Known, field: Field, picked: Mapping[int, int]) -> bool:
+    return not field.many or known.get(units(numbers_of(field, picked))) != ()
 
 
 def _is_within(limits: Limits, field: Field, raw: int) -> bool:

@@ -10,6 +10,7 @@ from cobotwire.codec.interface import Codec, Listening
 from cobotwire.conformance.codec.adapter.ours import OurCodec
 from cobotwire.conformance.codec.questions.frames import (
     CommandVariant,
+    frame_of,
     ordinary_frame,
     variants_of,
 )
@@ -66,6 +67,7 @@ def _streams(codec: Codec) -> Iterator[Question]:
     for listening in LISTENING:
         matching = [variant for variant in variants if listening in (variant.direction, "both")]
         yield from _inside_each_other(codec, listening, matching)
+        yield from _whole_inside(codec, listening, matching)
         for seed in range(RANDOM_STREAMS):
             yield _random(codec, listening, matching, seed)
 
@@ -128,6 +130,27 @@ def _inside_each_other(
             yield stream(codec, listening, "", f"{place}-chunked", cut(head + following, 3))
 
 
+def _whole_inside(
+    codec: Codec, listening: Listening, variants: Sequence[CommandVariant]
+) -> Iterator[Question]:
+    """Yield frames around a frame, which is found only if the check of the outer one is wrong."""
+    table = codec.table
+    short = min((ordinary_frame(table, variant) for variant in variants), key=len)
+    # A framer does not look at values, so one frame of each size will do.
+    sizes = {(variant.direction, variant.variant.size): variant for variant in variants}
+    for variant in sizes.values():
+        ordinary = ordinary_frame(table, variant)
+        room = len(table.frame.data(ordinary)) - len(short)
+        if room < 0:
+            continue
+        data = bytes(room) + short
+        whole = frame_of(table, variant.command.id, data, variant.direction)
+        place = f"any/{listening}/around-a-frame-{variant.label}"
+        yield stream(codec, listening, "", place, [whole + ordinary])
+        broken = whole[:-1] + bytes([whole[-1] ^ 1])
+        yield stream(codec, listening, "", f"{place}-broken", [broken + ordinary])
+
+
 def _random(
     codec: Codec, listening: Listening, variants: Sequence[CommandVariant], seed: int
 ) -> Question:
@@ -176,6 +199,7 @@ STREAMS = Group(
     "streams",
     (STREAM_FRAMES, STREAM_CHUNKS, STREAM_NOISE, NOISE_REASON),
     _streams,
-    sends="Streams of frames, damaged frames and noise, in chunks, with silences.",
+    sends="Streams of frames, frames around frames, damaged frames and noise, in chunks, with "
+    "silences.",
     subject="each variant of each message, and random streams",
 )

@@ -158,10 +158,12 @@ def _calculate(probe: Probe) -> None:
             mover.go(mover.pose(which))
         known = probe.device.known()
         given = [field.cases[0].numbers for field in probe.command.request[0].fields]
-        if any(units(numbers) not in known for numbers in given):
+        if not all(known.get(units(numbers)) for numbers in given):
             raise NotSupported("no query reports where the arm is")
         mine = _reading(probe, probe.command, *(known[units(numbers)] for numbers in given))
-        reported = known[tuple(part.unit for part in mine)]
+        reported = known.get(tuple(part.unit for part in mine))
+        if not reported:
+            raise NotSupported("no query reports what it calculates")
         wrong = [
             f"{part.name} is {part.value} {part.unit}, but the arm is at {actual}"
             for part, actual in zip(mine, reported)

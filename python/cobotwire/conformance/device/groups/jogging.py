@@ -73,7 +73,7 @@ def _nearby(probe: Probe, part: Field, *, absolute: bool) -> None:
     mover = Mover(probe)
     stays = [
         _stays(probe, mover, part, chosen, sign, absolute=absolute)
-        for chosen in _choices(part)
+        for chosen in _choices(probe, part)
         for sign in (1, -1)
     ]
     reason = f"{probe.command.name}: the arm moved from none of {len(POSES)} poses"
@@ -117,10 +117,10 @@ def _jogs(probe: Probe) -> None:
     """Jog each part both ways and stop; as with steps, some may be out of reach."""
     mover, (part, way) = Mover(probe), _parts(probe)
     went = False
-    for chosen in _choices(part):
+    for chosen in _choices(probe, part):
         moved = [_jog(probe, mover, part, chosen, direction) for direction in way.choices]
         went = went or any(moved)
-        if all(moved) and not part.choices:
+        if all(moved) and not part.labels:
             # Of a joint, the edition does not state the direction.
             one, other = (by[chosen - 1] for by in moved if by is not None)
             reason = (
@@ -243,14 +243,16 @@ def _parts(probe: Probe) -> tuple[Field, Field]:
     return shape
 
 
-def _choices(part: Field) -> Sequence[int]:
+def _choices(probe: Probe, part: Field) -> Sequence[int]:
+    """Return the axes, or the joints whose angles are reported: a waist has others."""
     number = part.cases[0].numbers[0]
-    return part.choices or range(number.minimum, number.maximum + 1)
+    every = part.choices or range(number.minimum, number.maximum + 1)
+    return every if part.labels else [each for each in every if each <= probe.device.table.joints]
 
 
 def _where(probe: Probe, part: Field) -> tuple[Sequence[float], tuple[Number, ...]]:
     """Return the position of the joints or of the end, whichever has the part; and its numbers."""
-    query = probe.device.command("coordinates" if part.choices else "joints")
+    query = probe.device.command("coordinates" if part.labels else "joints")
     reply = None if query is None else probe.device.read(query.request_type())
     if query is None or reply is None:
         raise NotSupported("no query reports where the arm is")

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from functools import partial
 from random import Random
 
-from cobotwire.conformance.device.groups.queries import is_query
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.groups.queries import is_query, sample_of
 from cobotwire.conformance.device.malformed_sender import (
     KEPT,
     RECOVERS,
@@ -17,7 +18,6 @@ from cobotwire.conformance.device.malformed_sender import (
     expect_one_reply,
 )
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import requests
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
@@ -56,8 +56,7 @@ def _damaged(probe: Probe) -> None:
 
 def _sample(probe: Probe) -> EncodedRequest:
     """Return the request to damage: the first sample."""
-    first, *_ = requests(probe.command, probe.command.request[0], probe.device.known(probe.command))
-    return probe.device.requester.prepare(first)
+    return probe.device.requester.prepare(sample_of(probe.device, probe.command))
 
 
 def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, bytes]]:
@@ -123,6 +122,8 @@ def _crowded(probe: Probe) -> None:
     Noise comes last: a device that is confused by it may have lost what comes next.
     """
     device, request = probe.device, _sample(probe)
+    if not device.reply_seconds.get(probe.command.name) and not _is_replied_to(probe):
+        raise NotSupported("it has no reply when it is sent alone either")
     _in_pieces(probe, request)
     _together(probe, request)
     sender = MalformedSender(probe, request)
@@ -138,6 +139,10 @@ def _crowded(probe: Probe) -> None:
         probe.expect(NOISE_BEFORE, not copied, reason)
         again = partial(device.requester.send_instead, request, data, what)
         sender.expect_kept(f"noise {name!r}", data, again)
+
+
+def _is_replied_to(probe: Probe) -> bool:
+    return bool(probe.device.request(sample_of(probe.device, probe.command)).replies)
 
 
 def _in_pieces(probe: Probe, request: EncodedRequest) -> None:

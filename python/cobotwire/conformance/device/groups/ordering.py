@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from cobotwire.conformance.device.groups.queries import is_query
+from cobotwire.conformance.device.groups.queries import is_query, sample_of
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import requests
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
@@ -36,7 +35,7 @@ def _ordered(probe: Probe) -> None:
     device, command = probe.device, probe.command
     other = _other(device.table, command)
     assert other is not None, "the group selects commands with another query"
-    first, *_ = requests(command, command.request[0], device.known(command))
+    first = sample_of(device, command)
     # A query that has no reply fails elsewhere.
     device.require(first)
     mine, theirs = (device.requester.prepare(r) for r in (first, other.request_type()))

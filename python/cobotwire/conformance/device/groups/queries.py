@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, limits_of, requests
@@ -15,6 +15,7 @@ from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Field, Table
 
+UNKNOWN_ROW = "the device does not report the position that the query takes"
 # Between two requests a value with a unit may move by this share of its range.
 DRIFT = 0.02
 # How long an arm that has been switched on may take until what it reports is steady, in seconds.
@@ -67,15 +68,22 @@ def _query(probe: Probe) -> None:
 
 
 def _every(probe: Probe) -> list[Request[Any]]:
-    """Return the query with each set of arguments."""
+    """Return the query with each set of arguments.
+
+    Raises:
+        NotSupported: it takes a position that the device does not report.
+    """
     command = probe.command
     known = probe.device.known(command)
-    return [
+    every = [
         query
         for variant in command.request
         for query in requests(command, variant, known, limits_of(command, variant))
         if _has_part(probe, query)
     ]
+    if not every:
+        raise NotSupported(UNKNOWN_ROW)
+    return every
 
 
 def is_framed_query(table: Table, command: Command) -> bool:
@@ -96,6 +104,18 @@ def _query_with_power(probe: Probe) -> None:
     if first is None or again is None:
         raise NotSupported(f"{probe.command.name} reports nothing")
     expect_repetition(probe, probe.command, first, again)
+
+
+def sample_of(device: Device, command: Command) -> Request[Any]:
+    """Return the first request of a query.
+
+    Raises:
+        NotSupported: it takes a position that the device does not report.
+    """
+    found = requests(command, command.request[0], device.known(command))
+    if not found:
+        raise NotSupported(UNKNOWN_ROW)
+    return found[0]
 
 
 def _has_part(probe: Probe, query: Request[Any]) -> bool:
