@@ -20,6 +20,7 @@ from cobotwire.simulator.peer import Peer
 # Each joint may move this far (degrees), at full speed: a simulated arm cannot be damaged.
 WORKSPACE = (-60.0, 60.0)
 FASTEST = 100
+QUERY_REPLIED = "query-replied"
 
 
 class Complaint(NamedTuple):
@@ -65,11 +66,13 @@ class OnCorrectArm(NamedTuple):
     """What a whole run on the correct arm shows.
 
     ``lacking`` are the commands that the arm does not support, with the reason it states: the
-    coordinates of an unknown geometry. ``judged`` are the commands on which a test case passed.
+    coordinates of an unknown geometry. ``judged`` are the commands on which a test case passed,
+    ``replied`` the queries that had replies.
     """
 
     lacking: dict[str, str]
     judged: frozenset[str]
+    replied: frozenset[str]
 
 
 @cache
@@ -78,26 +81,29 @@ def _of_edition(edition: str, address: str | None) -> OnCorrectArm:
     clock, stated = SteppedClock(), Lacking(table)
     arm = SimulatedArm(table, clock=clock, on_note=stated.note)
     passed = [
-        result.command
+        result
         for result in _results(table, arm, clock, "", address, stated.reasons)
         if result.verdict is Verdict.PASS
     ]
-    return OnCorrectArm(stated.reasons, frozenset(passed))
+    replied = (result.command for result in passed if result.case == QUERY_REPLIED)
+    judged = (result.command for result in passed)
+    return OnCorrectArm(stated.reasons, frozenset(judged), frozenset(replied))
 
 
 def on_correct_arm(table: Table, address: str | None = None) -> OnCorrectArm:
     """Return what a whole run on the correct arm shows; nothing if its geometry is known."""
     if table.robot.geometry is not None:
-        return OnCorrectArm({}, frozenset(command.name for command in table.commands))
+        every = frozenset(command.name for command in table.commands)
+        return OnCorrectArm({}, every, every)
     return _of_edition(table.edition, address or tested_addresses(table)[0])
 
 
 def lacking(table: Table, command: str) -> str:
     """Return why the simulated arm lacks a command at each address; empty if it has it at one."""
-    found = [
-        on_correct_arm(table, each).lacking.get(command, "") for each in tested_addresses(table)
-    ]
-    return found[0] if all(found) else ""
+    arms = [on_correct_arm(table, each) for each in tested_addresses(table)]
+    if any(command in arm.replied for arm in arms):
+        return ""
+    return next((arm.lacking[command] for arm in arms if command in arm.lacking), "")
 
 
 def is_judged(table: Table, command: str) -> bool:
