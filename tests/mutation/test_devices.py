@@ -37,7 +37,7 @@ KINDS = {
     ),
 }
 
-FRAMING = {"LEN", "id", "footer", "check", "header"}
+FRAMING = {"LEN", "id", "footer", "check", "header", "address"}
 
 
 @pytest.fixture(scope="module", params=TABLES, ids=lambda table: table.edition)
@@ -89,8 +89,8 @@ def test_each_sampled_mutant_is_killed_or_excused(suite: DeviceSuite) -> None:
         assert outcome.killed_by or outcome.reason, (case.id, outcome.crash)
 
 
-# Of unknown geometry; and with a check value, events and fields of bytes.
-@pytest.mark.parametrize("edition", ["mypalletizer260", "mercury_a1"])
+# Of unknown geometry; with a check value, events and fields of bytes; with addresses.
+@pytest.mark.parametrize("edition", ["mypalletizer260", "mercury_a1", "mybuddy"])
 def test_wrong_frame_of_another_edition_is_killed_or_excused(edition: str) -> None:
     suite = DeviceSuite(editions.load(edition).TABLE)
     cases = [case for case in sampled(suite.cases(), 1, seed=7) if case.kind in FRAMING]
