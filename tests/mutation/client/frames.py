@@ -13,6 +13,7 @@ from mutation.client.sessions import Session
 
 # Of the class motion, but a client may send them at any time: they start no motion.
 NO_MOTION = ("stop", "pause", "resume", "clear_queue", "jog_stop")
+NO_MOTION_ROLES = ("stop", "halt")
 
 
 def wrong_frames(session: Session) -> Iterator[ClientMutant]:
@@ -98,7 +99,11 @@ def _echoes(command: Command) -> bool:
 def _unpowered(table: Table, sessions: list[Session]) -> Iterator[ClientMutant]:
     """Yield motions after a power-off, and motions of joints after all joints were released."""
     moves = [
-        s for s in sessions if s.command.safety == "motion" and s.command.name not in NO_MOTION
+        s
+        for s in sessions
+        if s.command.safety == "motion"
+        and s.command.name not in NO_MOTION
+        and s.command.role not in NO_MOTION_ROLES
     ]
     joints = [session for session in moves if "gripper" not in session.command.name]
     for kind, name, after in (
