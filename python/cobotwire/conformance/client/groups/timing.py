@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from cobotwire.conformance.client.history import History, Received
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
-from cobotwire.session.matching import replies_differ
-from cobotwire.session.request import request_of
+from cobotwire.protocol.addresses import devices_of
 
 NOTES = "field notes: a reply comes within about 30 ms or never"
 # The longest observed delay of a reply, in seconds.
@@ -65,13 +64,19 @@ def _late_replies(history: History, now: Received) -> Iterator[Observation]:
 
 
 def _alike(history: History, other: Received, now: Received) -> bool:
-    """Return whether nothing distinguishes the replies to two requests.
+    """Return whether neither an address nor an echo distinguishes the replies to two requests.
 
-    Ids, addresses, constants and repeated arguments do. A repeated argument counts only if every
-    variant of the reply has it: older firmware omits it.
+    An echo counts only if every variant of the reply has it: older firmware omits it.
     """
-    earlier, later = (request_of(each.data, history.codec) for each in (other, now))
-    return earlier is not None and later is not None and not replies_differ(earlier, later)
+    if other.command is None or now.command is None or other.command.id != now.command.id:
+        return False
+    table = history.codec.table
+    addresses = {table.frame.address(each.data) for each in (other, now)}
+    own = {device.value for device in devices_of(table)}
+    if len(addresses) == 2 and addresses <= own:
+        return False
+    echoes = [any(field.echo for field in v.fields) for v in now.command.reply]
+    return not echoes or not all(echoes)
 
 
 WAITING = Group("waiting", (AWAITED, GIVEN_TIME), _waiting, subject="each request that has a reply")
