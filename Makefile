@@ -5,9 +5,9 @@ RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name C
 # The Python tests run in five lanes at once. One computes; the others also wait for ports, so that
 # two processors are seldom idle. That one lets the others go first (nice), because a test that
 # waits for a reply has a deadline. The last lane has all tests that no other lane names.
-COMPUTING := $(addprefix tests/,codec codegen diagnose mutation protocol spec)
+COMPUTING := $(addprefix tests/,codec diagnose mutation protocol spec)
 SIMULATING := $(addprefix tests/,conformance defects docs inspect simulator)
-CALLING := $(addprefix tests/,cli newcomer peers)
+CALLING := $(addprefix tests/,cli codegen newcomer peers)
 WAITING := $(addprefix tests/,attack client session transport)
 NAMED := $(COMPUTING) $(SIMULATING) $(CALLING) $(WAITING)
 LANES := computing-tests simulating-tests calling-tests waiting-tests other-tests

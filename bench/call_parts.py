@@ -42,9 +42,9 @@ def _parts(arm: MyCobot) -> dict[str, Callable[[], object]]:
     request = GetAngles()
     encoded = encoder.encode_request(request)
     writer = steps.writer
-    found = native.swap(1.0, REQUEST, "get_angles", writer.lock, writer.finish_write)
+    found = native.swap(0.0, 1.0, REQUEST, "get_angles", writer.lock, writer.finish_write)
     assert isinstance(found, tuple), "the reply came in parts; run the bench again"
-    frame, fields = found
+    frame, fields, _, _ = found
     native.swap = partial(steps._transport.lend, lambda *_: found)  # type: ignore[attr-defined]
     lock = threading.Lock()
 

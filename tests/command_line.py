@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import cobotwire
+
 PROGRAM = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
 
 
@@ -19,4 +21,16 @@ def run_program(*words: str | Path, **environment: str) -> subprocess.CompletedP
         timeout=60,
         check=False,
         env={**os.environ, **environment},
+    )
+
+
+def run_code(code: str) -> subprocess.CompletedProcess[str]:
+    """Run code without installed packages, some of which import modules when Python starts."""
+    return subprocess.run(
+        [sys.executable, "-S", "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(Path(cobotwire.__file__).parents[1])},
     )

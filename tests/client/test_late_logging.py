@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
+from command_line import run_code
 
 OPEN = """
 import sys
@@ -22,8 +21,8 @@ assert "logging" not in sys.modules
 
 
 def _stderr_of(code: str) -> str:
-    command = [sys.executable, "-S", "-c", OPEN + code]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stderr
+    done = run_code(OPEN + code)
+    return done.stderr if done.returncode == 0 else f"failed: {done.stderr}"
 
 
 def test_traffic_is_logged_once_the_program_configures_logging() -> None:

@@ -6,13 +6,12 @@ import copy
 import dataclasses
 import inspect
 import pickle
-import subprocess
-import sys
 from typing import Any, ClassVar
 
 import pytest
 
 from cobotwire.protocol.records import field, record
+from command_line import run_code
 
 
 @record(frozen=True, slots=True)
@@ -124,5 +123,5 @@ class Memory:
 MyCobot280(Memory())
 sys.exit(sorted({"dataclasses", "inspect"} & sys.modules.keys()) or 0)
 """
-    done = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True)
+    done = run_code(code)
     assert (done.returncode, done.stderr) == (0, "")

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from typing import TYPE_CHECKING
 
-from cobotwire.client.aio_slots import AsyncSlots
 from cobotwire.client.aio_steps import AsyncSteps
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
@@ -17,6 +17,9 @@ from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
+
+if TYPE_CHECKING:
+    from cobotwire.client.aio_slots import AsyncSlots
 
 # The longest wait, after which a listening task checks whether the transport is gone.
 LISTEN_SECONDS = 0.05
@@ -110,6 +113,9 @@ class AsyncConnection:
 
     def slots(self, closed: Callable[[], bool]) -> AsyncSlots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
+        # Imported here: most programs open no stream.
+        from cobotwire.client.aio_slots import AsyncSlots
+
         return AsyncSlots(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.native_call import native_call
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
-from cobotwire.client.slots import Slots
 from cobotwire.client.steps import SLICE_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.session import Answer, EncodedRequest, Exchange, PendingRequest, RetryPolicy
 from cobotwire.session.turns import DRAIN_SECONDS
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
+
+if TYPE_CHECKING:
+    from cobotwire.client.slots import Slots
 
 
 class Connection:
@@ -119,6 +121,9 @@ class Connection:
 
     def slots(self, closed: Callable[[], bool]) -> Slots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
+        # Imported here: most programs open no stream.
+        from cobotwire.client.slots import Slots
+
         return Slots(self.now, self.sleep, self.answer, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Choose the variant of a message by the arguments that are given.
+"""Arrange the arguments of a message, and choose the variant that takes those that are given.
 
 A row is one variant as its message class knows it, in the order of the wire: the names of the
 arguments, pairs of a name and its default, and constants.
@@ -6,7 +6,7 @@ arguments, pairs of a name and its default, and constants.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 Row = tuple[Any, ...]
@@ -76,3 +76,28 @@ def _shown(row: Row) -> str:
         if isinstance(part, str | tuple)
     ]
     return ", ".join(words) or "no arguments"
+
+
+def arranged(
+    message: type, names: tuple[str, ...], arguments: tuple[Any, ...], named: Mapping[str, Any]
+) -> list[Any]:
+    """Return the arguments of a message in the order of its fields; defaults are class attributes.
+
+    Raises:
+        TypeError: an argument is missing, unknown, or given twice.
+    """
+    if len(arguments) > len(names):
+        raise TypeError(f"{message.__name__}() takes {len(names)} arguments, not {len(arguments)}")
+    given = dict(zip(names, arguments))
+    for name in named:
+        if name not in names:
+            raise TypeError(f"{message.__name__}() has no argument {name}")
+        if name in given:
+            raise TypeError(f"{message.__name__}() got its argument {name} twice")
+    given.update(named)
+    for name in names:
+        if name not in given:
+            if name not in message.__dict__:
+                raise TypeError(f"{message.__name__}() is missing its argument {name}")
+            given[name] = message.__dict__[name]
+    return [given[name] for name in names]

@@ -18,7 +18,6 @@ this reason neither ``dataclasses`` nor the run-time part of ``typing.Generic`` 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -30,8 +29,8 @@ from typing import (
     dataclass_transform,
 )
 
-from cobotwire.protocol.arguments import Chosen, Row, choose
-from cobotwire.protocol.radians import to_degrees, to_radians
+from cobotwire.protocol.arguments import Chosen, Row, arranged, choose
+from cobotwire.protocol.radians import to_degrees
 
 Result = TypeVar("Result", covariant=True)
 
@@ -46,7 +45,7 @@ class Message:
 
     command: ClassVar[str] = ""
     """The name of the command."""
-    fixed: ClassVar[bool] = False
+    fieldless: ClassVar[bool] = False
     """Whether there is nothing to choose: it has no fields, and no constants on the wire."""
 
     _names: ClassVar[tuple[str, ...]] = ()
@@ -86,7 +85,7 @@ class Message:
         # Type checkers derive it from the annotations, and forbid setting it.
         type.__setattr__(cls, "__match_args__", names)
         cls._rows = tuple([name for name in names if annotations[name].startswith("Sequence")])
-        cls.fixed = not names and not wire
+        cls.fieldless = not names and not wire
         if not names:
             # It takes no arguments either, and a client makes a request for each call.
             type.__setattr__(cls, "__init__", object.__init__)
@@ -103,7 +102,7 @@ class Message:
         def __init__(self, *arguments: Any, **named: Any) -> None:
             names = self._names
             if named or len(arguments) != len(names):
-                arguments = _arranged(type(self), arguments, named)
+                arguments = arranged(type(self), names, arguments, named)
             fields = self.__dict__
             fields.update(zip(names, arguments))
             for name in self._rows:
@@ -149,7 +148,10 @@ class Message:
     def _make_converters(cls) -> Mapping[str, Callable[[Any], Any]]:
         """Return the functions that convert decoded values, by field; they are made once."""
         if cls._converters is None:
-            cls._converters = _converters_of(cls)
+            # Imported here: a program that opens a client need not convert any value.
+            from cobotwire.protocol.converters import converters_of
+
+            cls._converters = converters_of(cls, cls._names, cls._radians)
         return cls._converters
 
     @property
@@ -334,77 +336,3 @@ class Event(Reply[Any]):
         cls._declare(**layout)
         cls.command = event
         cls._results = tuple([name for name in cls._names if name not in cls.__dict__])
-
-
-def _arranged(
-    type: type[Message], arguments: tuple[Any, ...], named: Mapping[str, Any]
-) -> list[Any]:
-    """Return the arguments in the order of the fields.
-
-    Raises:
-        TypeError: an argument is missing, unknown, or given twice.
-    """
-    names = type._names
-    if len(arguments) > len(names):
-        raise TypeError(f"{type.__name__}() takes {len(names)} arguments, not {len(arguments)}")
-    given = dict(zip(names, arguments))
-    for name in named:
-        if name not in names:
-            raise TypeError(f"{type.__name__}() has no argument {name}")
-        if name in given:
-            raise TypeError(f"{type.__name__}() got its argument {name} twice")
-    given.update(named)
-    for name in names:
-        if name not in given:
-            if name not in type.__dict__:
-                raise TypeError(f"{type.__name__}() is missing its argument {name}")
-            given[name] = type.__dict__[name]
-    return [given[name] for name in names]
-
-
-def _converters_of(message: type[Message]) -> dict[str, Callable[[Any], Any]]:
-    """Return the functions that turn decoded values into what the class's annotations declare."""
-    from typing import get_type_hints
-
-    hints = get_type_hints(message)
-    found: dict[str, Callable[[Any], Any]] = {}
-    for name in message._names:
-        convert = _converter(hints[name])
-        if name in message._radians:
-            convert = _in_radians(convert)
-        if convert is not None:
-            found[name] = convert
-    return found
-
-
-def _converter(hint: Any) -> Callable[[Any], Any] | None:
-    """Return the function that converts a decoded value to ``hint``; None if none is needed."""
-    from typing import get_args, get_type_hints
-
-    origin, parts = getattr(hint, "__origin__", None), get_args(hint)
-    if origin is tuple or (origin is not None and origin.__name__ == "Sequence"):
-        element = _converter(parts[0])
-        return None if element is None else lambda values: tuple(map(element, values))
-    if parts:
-        every = [*filter(None, map(_converter, parts))]
-        # Where variants differ in their enum, the field keeps its number.
-        return every[0] if len(every) == 1 else None
-    if not isinstance(hint, type):
-        return None
-    if issubclass(hint, tuple) and hasattr(hint, "_make"):
-        inner = [_converter(each) for each in get_type_hints(hint).values()]
-        if any(inner):
-            return lambda row: hint(*[f(v) if f else v for f, v in zip(inner, row)])
-        # As ``_make`` does, without counting the values: the codec has decoded them.
-        return partial(tuple.__new__, hint)
-    if hint is bool:
-        return bool
-    members = getattr(hint, "_value2member_map_", None)
-    # Where a selector decides the type, a number may belong to another type than the enum.
-    return None if members is None else lambda value: members.get(value, value)
-
-
-def _in_radians(convert: Callable[[Any], Any] | None) -> Callable[[Any], Any]:
-    if convert is None:
-        return to_radians
-    return lambda value: convert(to_radians(value))

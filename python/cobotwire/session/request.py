@@ -75,7 +75,7 @@ class RequestEncoder:
             UsageError: there is no such command, or an argument is not allowed.
         """
         known = self._known.get(request.command)
-        if known is not None and (request.fixed or not request.values):
+        if known is not None and (request.fieldless or not request.values):
             return known
         command, _ = self._command(request.command)
         texts = None if command.request_text is None else request.text_values

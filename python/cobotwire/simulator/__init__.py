@@ -16,7 +16,8 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from cobotwire.simulator.arm import ArmConnection, SimulatedArm
+    from cobotwire.simulator.arm import SimulatedArm
+    from cobotwire.simulator.arm_connection import ArmConnection
     from cobotwire.simulator.clock import RunningClock, SteppedClock
     from cobotwire.simulator.memory import MemoryTransport
     from cobotwire.simulator.pty import PtyServer
@@ -27,7 +28,7 @@ else:
     # Each name is imported on first use: every pytest run imports the plugin in ``testing``, and
     # must not import the arm and the servers with it.
     _MODULES = {
-        "ArmConnection": "arm",
+        "ArmConnection": "arm_connection",
         "MemoryTransport": "memory",
         "PtyServer": "pty",
         "ReplayedArm": "replayed",

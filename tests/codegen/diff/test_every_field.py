@@ -79,6 +79,7 @@ NEW: dict[str, Any] = {
     "fields": (("new", 1),),
     "samples": ((("new", (1, 2)),),),
     "agrees_with": ("get_pose",),
+    "bases": ("new",),
     "lines": ((1, 2),),
     "values": (("new", 1),),
     "commands": ("get_pose",),

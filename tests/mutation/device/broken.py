@@ -9,7 +9,8 @@ from cobotwire.codec.interface import Codec, DecodedMessage, Noise
 from cobotwire.protocol.table import Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
-from cobotwire.simulator.arm import ArmConnection, SimulatedArm
+from cobotwire.simulator.arm import SimulatedArm
+from cobotwire.simulator.arm_connection import ArmConnection
 from cobotwire.simulator.clock import Clock
 from mutation.device.stimulus import Stimulus, kind_of
 
@@ -52,7 +53,8 @@ class BrokenArm(ArmConnection):
     """
 
     def __init__(self, table: Table, fault: Fault, clock: Clock) -> None:
-        super().__init__(SimulatedArm(table, clock=clock), None)
+        self._correct = SimulatedArm(table, clock=clock)
+        super().__init__(self._correct, None)
         self._fault = fault
         # What is sent later: when it is due, its number, and its bytes.
         self._late: list[tuple[float, int, bytes]] = []
@@ -124,7 +126,7 @@ class BrokenArm(ArmConnection):
     def _after_malformed(self, kind: Stimulus, data: bytes) -> bytes:
         if request := self._fault.forgets(kind):
             # The arm's own connection, which nobody reads, takes its acknowledgement.
-            self._arm.receive(request)
+            self._correct.receive(request)
         return self._fault.malformed(self._arm.codec, kind, data)
 
     def _send_later(self, delay: float, data: bytes) -> None:

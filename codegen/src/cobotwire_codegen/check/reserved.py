@@ -15,6 +15,7 @@ _ANNOTATIONS = frozenset({"bool", "bytes", "float", "int", "str", "tuple"})
 RESERVED_FIELDS = _ANNOTATIONS | {
     "ack_within",
     "command",
+    "fieldless",
     "fields",
     "fields_in_radians",
     "from_fields",

@@ -58,7 +58,7 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
         ("edition-renamed", "edition", old.name, new.name),
         ("class-renamed", "edition", old.class_name, new.class_name),
         ("firmware-changed", "edition", old.firmware, new.firmware),
-        ("base-changed", "edition", old.base, new.base),
+        ("base-changed", "edition", *_bases(old, new)),
         ("joints-changed", "edition", old.joints, new.joints),
     )
     for rule, where, before, after in facts:
@@ -68,3 +68,10 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
     yield from prose.doc("edition/title", old.title, new.title)
     yield from prose.doc("edition", old.doc, new.doc)
     yield from prose.doc("edition/document", old.document, new.document)
+
+
+def _bases(old: Edition, new: Edition) -> tuple[str, str]:
+    """Return the bases of both; if those are the same, the bases of these."""
+    if old.base != new.base:
+        return old.base, new.base
+    return ", ".join(old.bases), ", ".join(new.bases)
