@@ -5,10 +5,10 @@ RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name C
 # The Python tests run in five lanes at once. One computes; the others also wait for ports, so that
 # two processors are seldom idle. That one lets the others go first (nice), because a test that
 # waits for a reply has a deadline. The last lane has all tests that no other lane names.
-COMPUTING := $(addprefix tests/,codec diagnose mutation protocol spec)
+COMPUTING := $(addprefix tests/,codec protocol spec)
 SIMULATING := $(addprefix tests/,conformance defects docs inspect simulator)
 CALLING := $(addprefix tests/,cli codegen newcomer peers)
-WAITING := $(addprefix tests/,attack client session transport)
+WAITING := $(addprefix tests/,attack client session transport diagnose mutation)
 NAMED := $(COMPUTING) $(SIMULATING) $(CALLING) $(WAITING)
 LANES := computing-tests simulating-tests calling-tests waiting-tests other-tests
 # In CI, print the output of each lane when it ends; elsewhere, print all output as it comes.

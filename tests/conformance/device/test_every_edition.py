@@ -39,8 +39,8 @@ def test_simulated_arm_of_an_edition_conforms(edition: str) -> None:
     assert report.finished
     passed = sum(result.verdict is Verdict.PASS for result in report.results)
     inconclusive = sum(result.verdict is Verdict.INCONCLUSIVE for result in report.results)
-    # Queries without a reply, and motions to coordinates, show nothing on an arm without geometry.
-    assert passed > 7 * inconclusive
+    # Without a geometry, queries of coordinates are silent; the myBuddy has the most of them.
+    assert passed > (7 if edition == "mybuddy" else 8) * inconclusive
     assert passed > 3 * len(table.commands)
 
 
