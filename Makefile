@@ -2,9 +2,9 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
-# The Python tests run in five lanes at once. One computes; the others also wait for ports, so that
-# two processors are seldom idle. That one lets the others go first (nice), because a test that
-# waits for a reply has a deadline. The last lane has all tests that no other lane names.
+# The Python tests run in five lanes at once, which should end together. The first only computes. It
+# lets the others go first (nice), because they also have tests that wait for a reply until a
+# deadline. The last lane has all tests that no other lane names.
 COMPUTING := $(addprefix tests/,codec protocol spec)
 SIMULATING := $(addprefix tests/,conformance defects docs inspect simulator)
 CALLING := $(addprefix tests/,cli codegen newcomer peers)

@@ -37,8 +37,8 @@ REPLY = "FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA"
 TOGETHER = 50
 # Seconds before the first measured sample.
 WARM_UP = 2.0
-# The streams start during so many periods, so that a stall does not make many of them start
-# together: they would stay together, and each be late by the time that the others take.
+# The streams start one after another, during this many periods. Streams that start together stay
+# together, and each is late by the time that the others take.
 START_PERIODS = 20
 TRACED_ARMS = 50
 LATE_SECONDS = 0.020
