@@ -11,7 +11,7 @@ from accelerated import LATE, LOST, Checker, accelerated
 
 SAMPLES = 24_000
 # At the end, memory is traced, which takes most of the time; before, objects are counted.
-TRACED = 4_000
+TRACED = 12_000
 
 
 def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
