@@ -13,7 +13,7 @@ from cobotwire.session.received import ReceivedMeanwhile
 from cobotwire.session.request import EncodedRequest, as_call
 from cobotwire.session.text import TextCollector
 
-# The fields of a reply by name, when its request was written, and when it was read.
+# The fields of a reply by name, the moment before its request was written, and when it was read.
 Answer = tuple[dict[str, Any], float, float]
 
 
@@ -94,7 +94,7 @@ class PendingRequest(Pending):
         policy: how often it is sent.
         queued_at: when it was submitted.
         attempt_times: when it was sent; empty while it waits for its turn.
-        requested_at: when it was first sent.
+        requested_at: the moment before it was first written.
         offset: where in the received stream its reply can begin at the earliest.
         candidate: a copy of the request that is also a legal reply.
         text: collects a reply that is text outside any frame.

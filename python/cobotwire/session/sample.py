@@ -20,7 +20,7 @@ class Reading(NamedTuple, Generic[Result]):
     value: Result
     """What the client's method for the request returns."""
     requested_at: float
-    """When the request was written."""
+    """The moment before the request was written."""
     replied_at: float
     """When its reply was read."""
 
@@ -45,7 +45,7 @@ class Sample:
 
     @property
     def requested_at(self) -> float:
-        """When its first request was written, in seconds."""
+        """The moment before its first request was written, in seconds."""
         return self.readings[0].requested_at
 
     @property

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Awaitable, Callable, MutableMapping
+from contextlib import suppress
 from typing import Any
 
 from cobotwire.studio.access import HEADERS, Access
 
 # Arguments of one command are the largest thing that a page sends.
 LARGEST_BODY = 64 << 10
+# Of the body of a refused request, this much is read, for at most so many seconds.
+DISCARDED = 1 << 20
+DISCARD_SECONDS = 2.0
 
 Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
@@ -49,6 +54,7 @@ class Gate:
             # Before it is accepted, closing a WebSocket is the HTTP status 403.
             await send({"type": "websocket.close", "code": 1008})
         else:
+            await _discard_body(receive)
             await _refuse(_with_headers(send), *refusal)
 
 
@@ -62,6 +68,18 @@ def _with_headers(send: Send) -> Send:
         await send(message)
 
     return sending
+
+
+async def _discard_body(receive: Receive) -> None:
+    # A connection that is closed before its body was read is reset, and the answer can be lost.
+    left = DISCARDED
+    with suppress(TimeoutError):
+        async with asyncio.timeout(DISCARD_SECONDS):
+            while left > 0:
+                message = await receive()
+                left -= len(message.get("body", b""))
+                if not message.get("more_body", False):
+                    return
 
 
 async def _refuse(send: Send, status: int, reason: str) -> None:

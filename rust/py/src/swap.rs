@@ -122,7 +122,8 @@ pub enum Swapped<T> {
     NotSent,
     /// It was written, and no bytes came.
     Silent,
-    /// What was made of the bytes that came then, when it was written, and when they were read.
+    /// What was made of the bytes that came then, the moment before it was written, and when they
+    /// were read: the reply was made between the two.
     Received(T, f64, f64),
 }
 
@@ -130,8 +131,8 @@ pub enum Swapped<T> {
 enum Progress {
     /// The request is to be written.
     Waiting,
-    /// It was written at that moment.
-    Sent(f64),
+    /// It was written between these two moments. The thread may have been interrupted there.
+    Sent { requested_at: f64, sent_at: f64 },
 }
 
 /// Why the lock of the interpreter is needed again.
@@ -169,7 +170,7 @@ impl Line<'_, '_> {
         loop {
             match (py.detach(|| run.step(&mut space)), &run.progress) {
                 (Ok(Step::Partly(written)), _) => self.write_rest(py, request, written)?,
-                (Ok(Step::Read(size, replied_at)), Progress::Sent(requested_at)) => {
+                (Ok(Step::Read(size, replied_at)), Progress::Sent { requested_at, .. }) => {
                     let data = space.get(..size).unwrap_or_default();
                     return Ok(Swapped::Received(take(data), *requested_at, replied_at));
                 }
@@ -177,7 +178,7 @@ impl Line<'_, '_> {
                 (Err(Errno::INTR), _) => py.check_signals()?,
                 // If the line failed, the next use fails in the same way, and reports it.
                 (_, Progress::Waiting) => return Ok(Swapped::NotSent),
-                (_, Progress::Sent(_)) => return Ok(Swapped::Silent),
+                (_, Progress::Sent { .. }) => return Ok(Swapped::Silent),
             }
         }
     }
@@ -206,21 +207,25 @@ impl Run<'_> {
     /// Go on until Python is needed.
     fn step(&mut self, space: &mut [u8]) -> Result<Step, Errno> {
         let sent_at = match self.progress {
-            Progress::Sent(at) => at,
+            Progress::Sent { sent_at, .. } => sent_at,
             Progress::Waiting => {
                 if self.at > now() && wait([self.alarm], self.at)? {
                     return Ok(Step::NotSent);
                 }
+                let requested_at = now();
                 let Some(written) = self.write() else {
                     return Ok(Step::NotSent);
                 };
-                let at = now();
-                self.progress = Progress::Sent(at);
+                let sent_at = now();
+                self.progress = Progress::Sent {
+                    requested_at,
+                    sent_at,
+                };
                 if written < self.request.len() {
                     return Ok(Step::Partly(written));
                 }
                 self.lock.free();
-                at
+                sent_at
             }
         };
         while wait([self.descriptor, self.alarm], sent_at + self.timeout)? {
