@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from operator import mul
 
 from cobotwire.simulator.kinematics.forward import frames
@@ -37,6 +38,8 @@ LONGEST_STEP = 40.0
 CLOSE = 1e-6
 # The roots of these primes have fractional parts that spread starts evenly.
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
+# How many results are kept.
+REMEMBERED = 1024
 X, Y, Z = 0, 1, 2
 
 
@@ -50,6 +53,14 @@ def search(
     """
     if any(low > high for low, high in limits):
         return None
+    return _search(geometry, target, tuple(present), tuple(limits))
+
+
+# Programs return to the same places, and a place that is out of reach takes the longest.
+@lru_cache(maxsize=REMEMBERED)
+def _search(
+    geometry: Geometry, target: Pose, present: Angles, limits: tuple[tuple[float, float], ...]
+) -> Angles | None:
     exact: list[Angles] = []
     rough: list[Angles] = []
     for index, start in enumerate(_starts(present, limits)):
