@@ -18,6 +18,7 @@ from mutation.listing import lines, page
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, first_difference
 from mutation.oracle.reasons import reason
+from mutation.oracle.undefined import UNWIRED
 from mutation.running import Verdicts, sampled
 from mutation.suite import Case, Outcome, RightRun, total
 
@@ -73,6 +74,14 @@ def test_oracle_explains_why_a_survivor_cannot_be_distinguished() -> None:
     colour = mutants["stored wrong: set_color.red: half of it"]
     assert "no reply shows the effect of the fault" in reason(table, colour)
     assert reason(table, mutants["LEN: get_angles: one too many in LEN"]) == ""
+
+
+@pytest.mark.parametrize(("edition", "known"), [("mercury_a1", True), ("mycobot280", False)])
+def test_output_is_read_back_only_where_a_source_says_so(edition: str, known: bool) -> None:
+    table = editions.load(edition).TABLE
+    mutants = {mutant.id: mutant for mutant in device_mutants(table)}
+    other_pin = mutants["wrong part: set_digital_output.pin: the next part instead"]
+    assert reason(table, other_pin) == (UNWIRED if known else "")
 
 
 def test_conversation_is_the_same_each_time() -> None:

@@ -10,7 +10,14 @@ from mutation.device.testing import is_judged, lacking
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, only_legal, replies_of, values_of
 from mutation.oracle.conversation import Conversation
-from mutation.oracle.undefined import INPUTS, LEFT_OPEN, OF_MEANING, UNWIRED
+from mutation.oracle.undefined import (
+    ERRORS,
+    LEFT_OPEN,
+    NO_ERROR,
+    OF_MEANING,
+    UNWIRED,
+    WIRED,
+)
 
 
 def reason(table: Table, mutant: Mutant) -> str:
@@ -79,6 +86,8 @@ def _undefined(table: Table, mutant: Mutant) -> str:
         return LEFT_OPEN[mutant.command]
     if mutant.kind in (*OF_MEANING, "stale reply") and _is_unwired(table, mutant.command):
         return UNWIRED
+    if mutant.kind == "stale reply" and mutant.command in ERRORS:
+        return NO_ERROR
     if not mutant.command or mutant.field in ("", *_replied(table, mutant.command)):
         return ""
     fields = {field.name: field for field in request_fields(table.command(mutant.command))}
@@ -93,9 +102,10 @@ def _undefined(table: Table, mutant: Mutant) -> str:
 
 
 def _is_unwired(table: Table, name: str) -> bool:
-    """Return whether a command reads inputs, and the edition does not say that outputs set them."""
+    """Return whether a command is of pins, and the edition does not say that outputs set inputs."""
+    query = WIRED.get(name, name)
     backs = (command.read_by for command in table.commands)
-    return name in INPUTS and not any(back is not None and back.query == name for back in backs)
+    return query in WIRED.values() and not any(back and back.query == query for back in backs)
 
 
 def _unsafe(command: Command) -> str:

@@ -12,6 +12,10 @@ OF_MEANING = frozenset(
         *("ignored", "stored wrong", "wrong part"),
     }
 )
+NO_ERROR = (
+    "an error is caused by an impossible motion, and its target lies outside every workspace that "
+    "a tester is permitted"
+)
 LEFT_OPEN = {
     "clear_queue": "no source says what happens to the present motion, and no query reports the "
     "waiting targets",
@@ -20,8 +24,7 @@ LEFT_OPEN = {
     "get_plan_acceleration": "no source says which of the two accelerations set_plan_acceleration "
     "sets, nor what the other one is",
     "joint_brake": "the edition only says that a motor is braked, and no query reports brakes",
-    "clear_error_information": "an error is caused by an impossible motion, and its target "
-    "lies outside every workspace that a tester is permitted",
+    "clear_error_information": NO_ERROR,
     "jog_rpy": "the edition does not say which coordinates roll, pitch and yaw change, nor "
     "which direction is forward",
     "set_four_pieces_zero": "no query reports the four-piece motor, so it is unknown whether its "
@@ -37,7 +40,9 @@ LEFT_OPEN = {
     "which is unknown on the line",
     "drag_clear_record_data": "the maker's library marks the recording's calls as not yet tested",
 }
-# Queries of pins. The simulated arm wires each output to the input of the same number; an edition
-# that does not say so has no command that reads the output back.
-INPUTS = frozenset({"get_digital_input", "get_base_io_input"})
-UNWIRED = "no command sets an input of this arm, and no source says that one is wired to an output"
+# Commands of outputs, with the queries of the inputs of the same numbers. The simulated arm wires
+# one to the other; an edition that does not say so has no command that reads an output back.
+WIRED = {"set_digital_output": "get_digital_input", "set_base_io_output": "get_base_io_input"}
+UNWIRED = "no source says that an output of this arm is wired to an input, and no query reads one"
+# Queries of errors: see "clear_error_information".
+ERRORS = frozenset({"get_error_information"})
