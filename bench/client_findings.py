@@ -14,7 +14,6 @@ from cobotwire.conformance import Report
 from cobotwire.conformance.client import Referee, faulty_replies
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import PtyServer, Server, TcpServer
-from cobotwire.simulator.kinematics import prepare
 from referee.calls import script
 from referee.clients import CLIENTS
 
@@ -41,7 +40,6 @@ LINES: dict[str, Line] = {
 
 def judged(client: str, line: Line) -> tuple[Report, list[str]]:
     """Run the session; return the report, and the calls that raised or returned an error."""
-    prepare()
     kind, play = CLIENTS[client]
     referee = Referee(
         TABLE,

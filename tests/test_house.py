@@ -40,7 +40,7 @@ ONE_IMPORTER = {
     "pytest": ["simulator/testing/plugin.py", "conformance/pytest_"],
     "matplotlib": ["inspect/plot/charts.py", "inspect/plot/pose.py"],
     "numpy": ["codec/columns.py"],
-    "scipy": ["simulator/kinematics/refine.py"],
+    "scipy": [],
     "pyarrow": ["archive/scanning.py", "codec/arrow", "capture/export/"],
     "mcap": ["capture/export/formats/mcap_file.py"],
     "fsspec": ["capture/export/inputs.py", "capture/export/opening.py"],

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import pytest
 
-from cobotwire import MyCobot
+from cobotwire import MyCobot, MyCobot280
 from command_line import PROGRAM, run_program
 
 COMMAND = [*PROGRAM, "sim"]
@@ -279,13 +279,16 @@ def test_faults_are_injected_for_every_client_and_printed(tmp_path: Path) -> Non
 @pytest.mark.skipif(
     not Path("/proc/self/maps").exists(), reason="reads /proc, which only Linux has"
 )
-def test_sim_imports_scipy_before_the_first_slow_request(
+def test_sim_solves_a_target_at_the_edge_of_the_reach_without_numpy_and_scipy(
     sim: subprocess.Popen[str],
 ) -> None:
-    # Otherwise the reply to the first solve_inv_kinematics exceeds its deadline.
+    # Their import takes longer than the deadline of the reply.
     assert sim.stdout is not None
-    assert sim.stdout.readline()
-    maps, end = Path(f"/proc/{sim.pid}/maps"), time.monotonic() + 30
-    while "/scipy/" not in maps.read_text() and time.monotonic() < end:
-        time.sleep(0.05)
-    assert "/scipy/" in maps.read_text()
+    stretched, given = (48.6, -64.6, 410.9, -90.0, 0.0, -90.0), (0.0, 0.0, 10.0, 0.0, 0.0, 0.0)
+    with MyCobot280(sim.stdout.readline().strip()) as arm:
+        solved = arm.solve_inv_kinematics(stretched, given)
+    assert solved != given
+    maps = Path(f"/proc/{sim.pid}/maps").read_text()
+    assert "/python" in maps
+    assert "/numpy/" not in maps
+    assert "/scipy/" not in maps

@@ -14,7 +14,6 @@ from cobotwire.conformance import Report
 from cobotwire.conformance.client import Referee, faulty_replies
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import TcpServer
-from cobotwire.simulator.kinematics import prepare
 from defects.devices import built
 from stalls import unstalled
 
@@ -43,7 +42,6 @@ def _judged(command: list[str], calls: Path, line: str) -> Report:
 
 
 def _session(command: list[str], calls: Path, line: str) -> Report:
-    prepare()
     referee = Referee(
         TABLE,
         scenario=faulty_replies(DELAY, [line] if line else [], EVERY),

@@ -11,7 +11,6 @@ import pytest
 
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm
-from cobotwire.simulator.kinematics import prepare
 from docs.pages import BLOCK, PORT, run
 from vectors import ROOT
 
@@ -27,7 +26,6 @@ PAGES = [
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_commands_of_guide_page_print_the_output_of_the_page(page: Path, tmp_path: Path) -> None:
     shutil.copytree(ROOT / "spec", tmp_path / "spec")
-    prepare()
     with PtyServer(SimulatedArm(TABLE)) as server:
         runs = list(run(page, tmp_path, server.url))
     assert runs, "each page of the guide has at least one command"

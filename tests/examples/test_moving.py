@@ -14,7 +14,6 @@ import pytest
 from cobotwire import LinkError
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm
-from cobotwire.simulator.kinematics import prepare
 from vectors import ROOT
 
 FOLDER = ROOT / "examples"
@@ -36,7 +35,6 @@ class _Arms:
 
 @pytest.fixture
 def arms() -> Iterator[_Arms]:
-    prepare()
     with ExitStack() as stack:
         yield _Arms(stack)
 

@@ -25,7 +25,6 @@ import pytest
 from cobotwire import MyCobot280
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm, TcpServer
-from cobotwire.simulator.kinematics import prepare
 from cobotwire_codegen.cli import main as generator
 from examples.test_moving import load
 from in_process import run as run_in_process
@@ -40,7 +39,6 @@ SECONDS = 30.0
 @pytest.fixture
 def arm() -> Iterator[tuple[SimulatedArm, str]]:
     """Serve a fast simulated arm on a pty."""
-    prepare()
     clock = RunningClock(20.0)
     arm = SimulatedArm(TABLE, clock=clock)
     with PtyServer(arm, clock) as server:

@@ -14,7 +14,6 @@ from cobotwire.protocol.table import Table
 from cobotwire.session import RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, SimulatedArm
-from cobotwire.simulator.kinematics import prepare
 from cobotwire.simulator.state import ArmState
 
 # A joint stops on an encoder tick, so it is off by up to half a tick. Read back, an angle is also
@@ -96,8 +95,6 @@ class Rig:
 @contextmanager
 def driven_by(kind: type[Any], table: Table = TABLE) -> Iterator[Rig]:
     """Open a port with one of pymycobot's classes; two of them sleep 1.5 s while they open it."""
-    # Importing SciPy within a request takes longer than pymycobot waits for the reply.
-    prepare()
     rig = Rig(table)
     with PtyServer(rig.arm) as server:
         rig.peer = kind(server.url)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-import sys
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
@@ -171,13 +170,15 @@ def test_solutions_lie_inside_the_limits_and_narrow_limits_exclude_all() -> None
     assert nearest(MYCOBOT_280, target, angles, [(1.0, 0.0)] * 6) is None
 
 
-def test_only_poses_at_the_edge_need_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
-    monkeypatch.delitem(sys.modules, "cobotwire.simulator.kinematics.refine", raising=False)
-    bent = (10.0, -30.0, -60.0, 20.0, 5.0, 30.0)
-    reported = Pose.of(reported_coords(coords_of(MYCOBOT_280, bent)))
-    assert nearest(MYCOBOT_280, reported, bent, LIMITS) is not None
+@pytest.mark.parametrize(("millimetres", "reachable"), [(0.15, True), (0.3, False)])
+def test_stretched_arm_reaches_as_far_as_the_wire_rounds(
+    millimetres: float, reachable: bool
+) -> None:
     stretched = flange(MYCOBOT_280, (0.0,) * 6)
     x, y, z = stretched.origin
-    with pytest.raises(ImportError):
-        nearest(MYCOBOT_280, stretched._replace(origin=(x, y, z + 0.3)), bent, LIMITS)
+    target = stretched._replace(origin=(x, y, z + millimetres))
+    found = nearest(MYCOBOT_280, target, (10.0, -30.0, -60.0, 20.0, 5.0, 30.0), LIMITS)
+    assert (found is not None) == reachable
+    if found is not None:
+        assert within_limits(found)
+        assert flange(MYCOBOT_280, found).distance(target)[0] <= 0.22

@@ -30,7 +30,6 @@ from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, Server, TcpServer
-from cobotwire.simulator.kinematics import prepare
 from cobotwire.simulator.tcp import address
 
 
@@ -127,8 +126,6 @@ def client(
             sources=spec_lines(edition),
         )
         referee.report.options = options.for_report()
-        # An import while the client waits would delay a reply, and a retry would look hasty.
-        prepare()
         server = _server(listen, referee)
         identify(referee.report, edition, port=server.url)
         with started_client(command, server.url) as ended:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import sys
-import threading
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
@@ -22,15 +21,12 @@ from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
 from cobotwire.simulator.behaviour.external import named
 from cobotwire.simulator.faults import AppliedFault, Scenario, find, shipped
-from cobotwire.simulator.kinematics import prepare
 from cobotwire.simulator.local import local_server
 from cobotwire.simulator.motion.hand import read_points
 from cobotwire.simulator.peer import Peer
 from cobotwire.simulator.tcp import address
 
 FASTEST = 1e6
-# After this time the modules that some replies need are imported, so that no reply is late.
-PREPARE_AFTER_SECONDS = 0.5
 
 
 def _list_scenarios(context: click.Context, option: click.Parameter, wanted: bool) -> None:
@@ -153,10 +149,6 @@ def sim(
             from cobotwire.inspect.plot.live_pose import LivePose
 
             between.append(stack.enter_context(LivePose(package, arm, clock, view)).update)
-        preparation = threading.Timer(PREPARE_AFTER_SECONDS, prepare)
-        preparation.daemon = True
-        preparation.start()
-        stack.callback(preparation.cancel)
         serve(server, output.serving(server.url), between)
 
 

@@ -178,12 +178,7 @@ def jog(
 def solve(arm: ArmState, end: Pose, start: Point) -> Point | None:
     """Return the angles nearest to ``start`` that bring the end there; else None, with a note."""
     assert arm.geometry is not None, "the caller has checked this"
-    try:
-        found = nearest(arm.geometry, arm.flange_for(end), start, arm.limits())
-    except ImportError:
-        what = "rejected: no exact solution, and the search for a near one needs SciPy"
-        reject(arm, f"{what}: pip install 'cobotwire[sim]'", arm.error_codes.no_solution)
-        return None
+    found = nearest(arm.geometry, arm.flange_for(end), start, arm.limits())
     if found is None:
         coords = ", ".join(f"{value:.2f}" for value in end.coords)
         reject(arm, f"rejected: no joint angles reach ({coords})", arm.error_codes.no_solution)
@@ -197,10 +192,7 @@ def _follow(
     assert arm.geometry is not None, "the caller has checked this"
     limits, points = arm.limits(), [start]
     for end in ends:
-        try:
-            found = nearest(arm.geometry, arm.flange_for(end), points[-1], limits)
-        except ImportError:
-            found = None
+        found = nearest(arm.geometry, arm.flange_for(end), points[-1], limits)
         if found is None or max(abs(a - b) for a, b in zip(found, points[-1])) > LARGEST_TURN:
             return [] if whole else points[1:]
         points.append(found)

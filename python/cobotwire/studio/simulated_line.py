@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
@@ -14,7 +13,6 @@ from cobotwire.protocol.table import Table
 from cobotwire.simulator import ArmConnection, RunningClock, SimulatedArm, TcpServer
 from cobotwire.simulator.arm import Note
 from cobotwire.simulator.faults import AppliedFault, Scenario, find, shipped
-from cobotwire.simulator.kinematics import prepare
 from cobotwire.simulator.peer import Peer
 from cobotwire.studio.arm_line import Remark
 
@@ -45,8 +43,6 @@ class SimulatedLine:
 
     def __enter__(self) -> SimulatedLine:
         self._server.__enter__()
-        # What some replies need is imported before they are due.
-        threading.Thread(target=prepare, daemon=True).start()
         return self
 
     def __exit__(self, *error: object) -> None:

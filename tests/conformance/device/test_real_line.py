@@ -19,7 +19,6 @@ from cobotwire.conformance import Verdict
 from cobotwire.conformance.device import DeviceConnection, Permissions, Tester
 from cobotwire.conformance.reports import from_json, to_json
 from cobotwire.simulator import PtyServer, SimulatedArm
-from cobotwire.simulator.kinematics import prepare
 from cobotwire.transport import open_transport
 from conformance.device.testing import prepared
 
@@ -32,7 +31,6 @@ INSTALLED = any(point.name == "cobotwire_conform" for point in entry_points(grou
 
 def test_run_of_queries_takes_less_than_five_seconds() -> None:
     # Computing and waiting are counted separately, because the machine may be busy.
-    prepare()
     with PtyServer(SimulatedArm(TABLE)) as server:
         transport = open_transport(server.url, TABLE.baudrate)
         began = time.process_time()

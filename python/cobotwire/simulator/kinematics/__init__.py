@@ -2,7 +2,7 @@
 
 from cobotwire.simulator.kinematics.forward import coords_of, flange
 from cobotwire.simulator.kinematics.geometry import Geometry, Link, geometry_of
-from cobotwire.simulator.kinematics.inverse import nearest, prepare
+from cobotwire.simulator.kinematics.inverse import nearest
 from cobotwire.simulator.kinematics.pose import Pose
 
 __all__ = [
@@ -13,5 +13,4 @@ __all__ = [
     "flange",
     "geometry_of",
     "nearest",
-    "prepare",
 ]

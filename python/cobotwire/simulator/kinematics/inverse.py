@@ -1,18 +1,18 @@
 """Inverse kinematics: the joint angles that bring the flange to a pose, for any geometry.
 
 Arms with the axes of the 280 have a solution in closed form. A pose may lie slightly out of their
-reach, because the wire rounds it or the arm is stretched out; then SciPy searches for the nearest
-angles. For other arms, ``search`` finds the angles step by step, without SciPy.
+reach, because the wire rounds it or the arm is stretched out; then least squares find the nearest
+angles. For other arms, ``search`` finds the angles step by step.
 """
 
 from __future__ import annotations
 
-import importlib
+import math
 from collections.abc import Sequence
-from contextlib import suppress
 from itertools import islice
 
 from cobotwire.simulator.kinematics.closed_form import ROUNDING, is_solved, solutions
+from cobotwire.simulator.kinematics.descent import descend
 from cobotwire.simulator.kinematics.geometry import Angles, Geometry
 from cobotwire.simulator.kinematics.nearness import (
     DEGREES,
@@ -30,16 +30,9 @@ from cobotwire.simulator.kinematics.search import search
 NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
 # How many guesses are refined before a target counts as out of reach.
 GUESSES = 8
-
-
-def prepare() -> None:
-    """Import SciPy in advance, if it is installed.
-
-    The import takes longer than the deadline of some replies. Without this call, the first target
-    at the edge of the reach waits for it.
-    """
-    with suppress(ImportError):
-        importlib.import_module("cobotwire.simulator.kinematics.refine")
+# A turn weighs as much as the distance by which it moves the ends of the three axes, in the ratio
+# of the two tolerances: least squares come near to both of them alike.
+MILLIMETRES_PER_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
 
 
 def nearest(
@@ -54,9 +47,6 @@ def nearest(
             time: the joint with the longest way counts, then the sum of all ways. Without a closed
             form, it is the nearest of those that the search finds.
         limits: the lowest and the highest angle of each joint, in degrees.
-
-    Raises:
-        ImportError: SciPy is needed, and not installed.
     """
     if not is_solved(geometry):
         return search(geometry, target, present, limits)
@@ -70,9 +60,7 @@ def nearest(
         if not misses(geometry, one, target, NEAR_MILLIMETRES, NEAR_DEGREES)
     )
     for guess in islice(almost, GUESSES):
-        from cobotwire.simulator.kinematics.refine import refined  # an extra, and slow to import
-
-        better = refined(geometry, guess, target, limits)
+        better = descend(geometry, target, guess, limits, MILLIMETRES_PER_RADIAN)
         if not misses(geometry, better, target, MILLIMETRES, DEGREES):
             return better
     return None

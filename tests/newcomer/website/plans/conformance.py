@@ -15,8 +15,6 @@ CONFORMANCE = Plan(
 import os, sys, tty
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import SimulatedArm
-from cobotwire.simulator.kinematics import prepare
-prepare()
 arm = SimulatedArm(TABLE, powered=True)
 source, sink = 0, 1
 if len(sys.argv) > 1:

@@ -1,0 +1,95 @@
+"""Least squares find angles for a pose from angles near them, also for arms with coupled joints."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Sequence
+
+import pytest
+from scipy.optimize import least_squares
+
+from cobotwire.editions import load, names
+from cobotwire.simulator.kinematics import Geometry, Pose, flange, geometry_of
+from cobotwire.simulator.kinematics.descent import _columns, descend
+from cobotwire.simulator.kinematics.forward import frames
+from cobotwire.simulator.kinematics.inverse import MILLIMETRES_PER_RADIAN
+from cobotwire.simulator.kinematics.nearness import DEGREES as NEAR_DEGREES
+from cobotwire.simulator.kinematics.nearness import MILLIMETRES as NEAR_MILLIMETRES
+from cobotwire.simulator.kinematics.nearness import misses
+from cobotwire.simulator.kinematics.pose import cross
+from kinematic_samples import LIMITS, MYCOBOT_280
+
+DEGREES = 1e-5
+GEOMETRIES = {
+    name: found for name in names() if (found := geometry_of(load(name).TABLE)) is not None
+}
+
+
+@pytest.mark.parametrize("name", GEOMETRIES)
+def test_slopes_are_those_of_the_forward_kinematics(name: str) -> None:
+    geometry, chance = GEOMETRIES[name], random.Random(1)
+    for _ in range(5):
+        angles = [chance.uniform(-150, 150) for _ in range(geometry.joints)]
+        here = frames(geometry, angles)
+        columns = _columns(geometry, here, MILLIMETRES_PER_RADIAN)
+        for joint, (*moved, a, b, c) in enumerate(columns):
+            turned = [cross((a, b, c), axis) for axis in here[-1][:3]]
+            ends = []
+            for way in (-DEGREES, DEGREES):
+                others = [angle + way * (at == joint) for at, angle in enumerate(angles)]
+                ends.append(flange(geometry, others))
+            before, after = ([*end.origin, *end.x, *end.y, *end.z] for end in ends)
+            slopes = [*moved, *(part for axis in turned for part in axis)]
+            for row, (one, other) in enumerate(zip(before, after)):
+                weight = 1.0 if row < 3 else MILLIMETRES_PER_RADIAN
+                slope = (other - one) * weight / (2 * DEGREES)
+                assert slopes[row] == pytest.approx(slope, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", GEOMETRIES)
+def test_pose_is_found_from_angles_near_it(name: str) -> None:
+    geometry, chance = GEOMETRIES[name], random.Random(2)
+    limits = [(-150.0, 150.0)] * geometry.joints
+    for _ in range(5):
+        angles = [chance.uniform(-140, 140) for _ in range(geometry.joints)]
+        guess = [angle + chance.uniform(-3, 3) for angle in angles]
+        target = flange(geometry, angles)
+        found = descend(geometry, target, guess, limits, MILLIMETRES_PER_RADIAN)
+        millimetres, degrees = flange(geometry, found).distance(target)
+        assert millimetres < 0.01
+        assert degrees < 0.01
+
+
+def _by_scipy(geometry: Geometry, target: Pose, guess: Sequence[float]) -> tuple[float, ...]:
+    """Return what another implementation of bounded least squares finds, without slopes."""
+    weight = MILLIMETRES_PER_RADIAN / math.sqrt(2)
+
+    def off(angles: Sequence[float]) -> list[float]:
+        pose = flange(geometry, angles)
+        turns = ((a - b) * weight for p, q in zip(pose[:3], target[:3]) for a, b in zip(p, q))
+        return [*(a - b for a, b in zip(pose.origin, target.origin)), *turns]
+
+    found = least_squares(off, guess, bounds=tuple(zip(*LIMITS)))
+    return tuple(map(float, found.x))
+
+
+def test_targets_at_the_edge_of_the_reach_are_those_of_another_least_squares() -> None:
+    chance, reached = random.Random(3), []
+    for _ in range(40):
+        # Joints 2 to 4 are nearly stretched out; the target is up to 0.5 mm from the flange.
+        spread = (100.0, 2.0, 2.0, 2.0, 100.0, 100.0)
+        guess = [chance.uniform(-one, one) for one in spread]
+        pose = flange(MYCOBOT_280, guess)
+        x, y, z = (part + chance.uniform(-0.3, 0.3) for part in pose.origin)
+        target = pose._replace(origin=(x, y, z))
+        found = descend(MYCOBOT_280, target, guess, LIMITS, MILLIMETRES_PER_RADIAN)
+        other = _by_scipy(MYCOBOT_280, target, guess)
+        (way, _), (way_there, _) = (
+            flange(MYCOBOT_280, one).distance(target) for one in (found, other)
+        )
+        assert way == pytest.approx(way_there, abs=0.01)
+        reached.append(not misses(MYCOBOT_280, found, target, NEAR_MILLIMETRES, NEAR_DEGREES))
+        there = not misses(MYCOBOT_280, other, target, NEAR_MILLIMETRES, NEAR_DEGREES)
+        assert reached[-1] == there
+    assert {True, False} == set(reached)
