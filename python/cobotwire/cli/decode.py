@@ -15,6 +15,7 @@ from cobotwire.cli.shared.recordings import recording_named
 from cobotwire.cli.shared.stream_printer import DecodeOptions, print_text
 from cobotwire.codec.interface import Listening
 from cobotwire.diagnose.counts import StreamCounts
+from cobotwire.protocol.counted import counted
 from cobotwire.protocol.printable import printable
 
 
@@ -109,11 +110,12 @@ def _notify(text: str) -> None:
 
 def _counts_lines(counts: StreamCounts) -> Iterator[str]:
     noise, kinds = counts.noise, counts.findings.kinds
-    yield f"{counts.bytes} bytes, {counts.frames.total()} frames, {counts.resyncs} resyncs"
+    sums = (counts.bytes, "byte"), (counts.frames.total(), "frame"), (counts.resyncs, "resync")
+    yield ", ".join(counted(*each) for each in sums)
     yield from (f"  {count:>10} x {name}" for name, count in counts.frames.most_common())
-    yield f"{noise.total()} bytes of noise"
+    yield f"{counted(noise.total(), 'byte')} of noise"
     yield from (f"  {count:>10} {reason}" for reason, count in noise.most_common())
-    yield f"{kinds.total()} findings"
+    yield f"{counted(kinds.total(), 'finding')}"
     yield from (f"  {count:>10} x {kind}" for kind, count in kinds.most_common())
     if diagnosis := str(counts.findings):
         yield f"diagnosis: {diagnosis}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, NamedTuple
 
 from cobotwire.codec.interface import NoiseReason
+from cobotwire.protocol.counted import counted
 from cobotwire.protocol.records import record
 
 # The number of characters of a text that are shown.
@@ -86,8 +87,8 @@ class Finding:
         """Describe ``count`` findings of this class, of ``size`` bytes; this is the first."""
         if count == 1:
             return f"{self.summary_prefix}{self.example()}"
-        plural = f"{self.summary_noun}{'es' if self.summary_noun.endswith('h') else 's'}"
-        return f"{self.summary_prefix}{count} {plural}, e.g. {self.example()}"
+        counts = counted(count, self.summary_noun)
+        return f"{self.summary_prefix}{counts}, e.g. {self.example()}"
 
     @property
     def facts(self) -> dict[str, Any]:

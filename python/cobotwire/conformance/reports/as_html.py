@@ -17,7 +17,6 @@ from cobotwire.conformance.reports.html_matrix import matrix_of
 from cobotwire.conformance.reports.html_parts import (
     anchor,
     class_of,
-    counted_of,
     heading,
     order_of,
     shortened,
@@ -27,6 +26,7 @@ from cobotwire.conformance.reports.html_parts import (
 )
 from cobotwire.conformance.reports.purposes import purposes
 from cobotwire.conformance.reports.times import times_plot
+from cobotwire.protocol.counted import counted
 
 HERE = files("cobotwire.conformance.reports")
 # A group of failures with more commands is folded.
@@ -119,12 +119,12 @@ def _causes(report: Report) -> Iterator[Element]:
         found = [result for result in report.results if result.verdict is verdict]
         groups = group_by_cause(found)
         if groups:
-            counted = f"{counted_of(len(found), 'test case')}, {counted_of(len(groups), 'cause')}"
-            yield heading(title.lower(), title, counted)
+            size = f"{counted(len(found), 'test case')}, {counted(len(groups), 'cause')}"
+            yield heading(title.lower(), title, size)
         yield from (_cause(group, known.get(group.case, "")) for group in groups)
     left = [result for result in report.results if result.verdict is Verdict.NOT_RUN]
     if left:
-        yield heading("not-run", "Not run", counted_of(len(left), "test case"))
+        yield heading("not-run", "Not run", counted(len(left), "test case"))
         counts = Counter(result.reason for result in left)
         lines = (element("li", f"{count}: {text}") for text, count in counts.most_common())
         yield element("ul", *lines)

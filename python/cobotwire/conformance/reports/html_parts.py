@@ -45,11 +45,6 @@ def words_of(count: int, outcome: tuple[Verdict, Cause]) -> str:
     return f"{count} {verdict}" + (f" ({cause})" if cause else "")
 
 
-def counted_of(count: int, noun: str) -> str:
-    """Return a count with its noun, in the plural if need be."""
-    return f"{count} {noun}" + ("s" if count != 1 else "")
-
-
 def shortened(text: str) -> str:
     """Return the start of a long text; all of it is elsewhere."""
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
