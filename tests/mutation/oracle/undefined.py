@@ -38,6 +38,10 @@ LEFT_OPEN = {
     "right",
     "drag_get_record_data": "the points are the motion of the joints while they were led by hand, "
     "which is unknown on the line",
+    "base_external_control": "the bytes of the reply come from a device at the base, which is "
+    "unknown on the line",
+    "tool_serial_read_data": "the bytes come from a device at the end of the arm, which is unknown "
+    "on the line",
     "drag_clear_record_data": "the maker's library marks the recording's calls as not yet tested",
 }
 # Commands of outputs, with the queries of the inputs of the same numbers. The simulated arm wires
