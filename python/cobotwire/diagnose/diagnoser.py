@@ -87,6 +87,8 @@ class Diagnoser:
 
     def _scan(self, items: list[Item], closed: bool) -> None:
         residue = self._residue
+        if not residue and not self._held:
+            return
         residue.join()
         residue.closed = closed
         at = 0

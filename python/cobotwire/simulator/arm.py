@@ -100,6 +100,7 @@ class SimulatedArm:
                 state.power_on()
         self.events = Events(table, self.codec, clock, self._states)
         self._behaviours = installed(table.edition) if behaviours is None else behaviours
+        self._found: dict[str, Behaviour | None] = {}
         self._own_connection = ArmConnection(self, on_event)
 
     @property
@@ -229,7 +230,7 @@ class SimulatedArm:
         """
         state, now = self._states[address], self.clock()
         state.record(now)
-        behaviour = self._behaviours.get(command.name) or own(self.table, command)
+        behaviour = self._behaviours.get(command.name) or self._own(command)
         elsewhere = self._is_elsewhere(fields)
         if elsewhere:
             # The state has no place for it: what is set is only remembered.
@@ -250,6 +251,12 @@ class SimulatedArm:
             for text in state.remarks:
                 self.note(command, text)
             state.remarks.clear()
+
+    def _own(self, command: Command) -> Behaviour | None:
+        """Return the behaviour of cobotwire for a command, which is looked up once."""
+        if command.name not in self._found:
+            self._found[command.name] = own(self.table, command)
+        return self._found[command.name]
 
     def _is_elsewhere(self, fields: Mapping[str, Any]) -> bool:
         """Return whether a request is for a joint that is not in the arm, as those of a waist."""

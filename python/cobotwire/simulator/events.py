@@ -71,12 +71,14 @@ class Events:
         """
         if received < self.count:
             return 0.0
-        waits = [POLL_SECONDS] if self._has_events else []
+        if not self._has_events:
+            return None
+        waits = [POLL_SECONDS]
         if self._ends.wait is not None:
             waits.append(self._ends.wait)
         if self._planned:
             waits.append(max(0.0, self._planned[0][0] - self._clock()))
-        return min(waits, default=None)
+        return min(waits)
 
     def since(self, received: int) -> bytes:
         """Return the events that are due by now, except for the first ``received`` ones."""

@@ -33,7 +33,9 @@ def completed(
         if field.counts
         else request[field.name]
         if field.echo
-        else result.get(field.name, _legal(field, usual))
+        else result[field.name]
+        if field.name in result
+        else _legal(field, usual)
         for field in _variant(command, result).fields
     }
 

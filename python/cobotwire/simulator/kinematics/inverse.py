@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import islice
 
 from cobotwire.simulator.kinematics.closed_form import ROUNDING, is_solved, solutions
@@ -30,6 +31,8 @@ from cobotwire.simulator.kinematics.search import search
 NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
 # How many guesses are refined before a target counts as out of reach.
 GUESSES = 8
+# How many results are kept.
+REMEMBERED = 1024
 # A turn weighs as much as the distance by which it moves the ends of the three axes, in the ratio
 # of the two tolerances: least squares come near to both of them alike.
 MILLIMETRES_PER_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
@@ -48,6 +51,14 @@ def nearest(
             form, it is the nearest of those that the search finds.
         limits: the lowest and the highest angle of each joint, in degrees.
     """
+    return _nearest(geometry, target, tuple(present), tuple(limits))
+
+
+# Programs return to the same places, and a place that is out of reach takes the longest.
+@lru_cache(maxsize=REMEMBERED)
+def _nearest(
+    geometry: Geometry, target: Pose, present: Angles, limits: tuple[tuple[float, float], ...]
+) -> Angles | None:
     if not is_solved(geometry):
         return search(geometry, target, present, limits)
     found = list(solutions(geometry, target, present))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
 
 from cobotwire.simulator.kinematics.descent import clamped, descend
 from cobotwire.simulator.kinematics.geometry import Angles, Geometry
@@ -25,8 +24,6 @@ MILLIMETRES_PER_RADIAN = math.degrees(1) * 5
 STARTS, SOLUTIONS = 48, 3
 # The roots of these primes have fractional parts that spread starts evenly.
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
-# How many results are kept.
-REMEMBERED = 1024
 
 
 def search(
@@ -39,14 +36,6 @@ def search(
     """
     if any(low > high for low, high in limits):
         return None
-    return _search(geometry, target, tuple(present), tuple(limits))
-
-
-# Programs return to the same places, and a place that is out of reach takes the longest.
-@lru_cache(maxsize=REMEMBERED)
-def _search(
-    geometry: Geometry, target: Pose, present: Angles, limits: tuple[tuple[float, float], ...]
-) -> Angles | None:
     exact: list[Angles] = []
     rough: list[Angles] = []
     for index, start in enumerate(_starts(present, limits)):
