@@ -86,6 +86,10 @@ class ReferenceFramer:
                 break
             else:
                 end = start + self._refuted_size(data, start, verdict)
+                if verdict == "no-header":
+                    # Up to the next byte that may begin a header, nothing else is possible.
+                    found = data.find(self._judge.frame.header[:1], end)
+                    end = len(data) if found < 0 else found
                 self._add_noise(events, before.offset + start, data[start:end], verdict)
                 start = min(end, len(data))
         counters, in_noise = _counted(before, len(data) - len(before.waiting), events)

@@ -196,15 +196,11 @@ def _header_bytes(random: Random, table: Table) -> bytes:
 @_noise("false header", 3, before_frames=True)
 def _false_header(random: Random, table: Table) -> bytes:
     """Draw header, LEN and id of a legal reply, without the rest of the frame."""
-    return random.choice(
-        [
-            table.frame.start(
-                command.id, table.frame.length(variant.size, "reply"), direction="reply"
-            )
-            for command in table.commands
-            for variant in command.reply
-        ]
+    command, variant = random.choice(
+        [(command, variant) for command in table.commands for variant in command.reply]
     )
+    length = table.frame.length(variant.size, "reply")
+    return table.frame.start(command.id, length, direction="reply")
 
 
 @_noise("garbage", 3)
