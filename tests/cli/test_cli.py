@@ -13,6 +13,8 @@ import pytest
 
 from cobotwire import __version__
 from cobotwire.cli.app import VERBS, app
+from cobotwire.cli.conform import VERBS as CONFORM_VERBS
+from cobotwire.cli.conform import conform
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
@@ -213,14 +215,26 @@ def test_unknown_edition_gets_a_suggestion() -> None:
     assert "did you mean mycobot?" in result.stderr
 
 
-def test_help_describes_each_verb_as_the_verb_does() -> None:
-    context = click.Context(app)
-    verbs = {name: app.get_command(context, name) for name in VERBS}
-    assert {name: verb.get_short_help_str(200) for name, verb in verbs.items() if verb} == VERBS
+@pytest.mark.parametrize(("group", "texts"), [(app, VERBS), (conform, CONFORM_VERBS)])
+def test_help_describes_each_verb_as_the_verb_does(
+    group: click.Group, texts: dict[str, str]
+) -> None:
+    context = click.Context(group)
+    verbs = {name: group.get_command(context, name) for name in texts}
+    assert {name: verb.get_short_help_str(200) for name, verb in verbs.items() if verb} == texts
 
 
-@pytest.mark.parametrize("words", [["--version"], ["--help"], ["decode", "FE FE 02 12 FA"]])
-def test_start_imports_only_what_the_words_need(words: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("words", "further"),
+    [
+        (["--version"], set()),
+        (["--help"], set()),
+        (["decode", "FE FE 02 12 FA"], set()),
+        (["conform", "cases", "--help"], {"cobotwire.cli.conform_device"}),
+        (["sim", "--help"], {"cobotwire.simulator.faults", "cobotwire.editions.mercury_a1"}),
+    ],
+)
+def test_start_imports_only_what_the_words_need(words: list[str], further: set[str]) -> None:
     code = "import sys; from cobotwire.cli import main; sys.argv[1:] = {}; main()"
     done = subprocess.run(
         [sys.executable, "-X", "importtime", "-c", code.format(words)],
@@ -230,7 +244,9 @@ def test_start_imports_only_what_the_words_need(words: list[str]) -> None:
         check=True,
     )
     imported = {line.split("|")[-1].strip() for line in done.stderr.splitlines()}
-    unwanted = {"rich.console", "cobotwire.session", "cobotwire.client", "cobotwire.cli.sim"}
-    unwanted |= {"cobotwire.capture.reader", "cobotwire.codec.reference"}
+    unwanted = {"rich.console", "cobotwire.capture.reader", "cobotwire.cli.replay", *further}
+    if words[0] not in ("conform", "sim"):
+        unwanted |= {"cobotwire.session", "cobotwire.client", "cobotwire.cli.sim"}
+        unwanted |= {"cobotwire.codec.reference"}
     assert not imported & unwanted
     assert "click" in imported

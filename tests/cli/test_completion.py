@@ -161,7 +161,8 @@ def _taking_a_port() -> set[str]:
     found = {verb: app.get_command(context, verb) for verb in VERBS}
     conform = found["conform"]
     assert isinstance(conform, click.Group)
-    found |= {f"conform {name}": command for name, command in conform.commands.items()}
+    names = conform.list_commands(context)
+    found |= {f"conform {name}": conform.get_command(context, name) for name in names}
     return {
         verb
         for verb, command in found.items()

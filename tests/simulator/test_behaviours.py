@@ -132,6 +132,7 @@ def test_what_read_by_promises_is_remembered_in_every_edition(
     for command in list(BEHAVIOURS):
         monkeypatch.delitem(BEHAVIOURS, command)
     monkeypatch.setattr(registry, "_FAMILIES", {})
+    monkeypatch.setattr(registry, "HOMES", {})
     table: Table = editions.load(name).TABLE
     settings = [setting for command in table.commands for setting in settings_of(table, command)]
     assert settings

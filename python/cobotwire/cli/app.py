@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 import click
@@ -10,10 +9,10 @@ import click
 import cobotwire
 from cobotwire.cli.shared.completers import complete_editions
 from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors
+from cobotwire.cli.shared.lazy_group import LazyGroup
 from cobotwire.editions import DEFAULT
 
-# In the order of --help, each with its text there: --help imports no verb. The verb NAME is the
-# function NAME in the module cobotwire.cli.NAME.
+# In the order of --help, each with its text there: --help imports no verb.
 VERBS = {
     "demo": "Drive a simulated arm; check every reply.",
     "ports": "List serial ports, likely ones first.",
@@ -35,22 +34,9 @@ VERBS = {
 }
 
 
-class _App(click.Group):
-    """Imports a verb when it is used, so that each starts without the imports of the others."""
-
-    def list_commands(self, context: click.Context) -> list[str]:
-        return list(VERBS)
-
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        if name not in VERBS:
-            return None
-        verb = getattr(import_module(f"cobotwire.cli.{name}"), name)
-        assert isinstance(verb, click.Command), f"{name} is a verb"
-        return verb
-
-    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl(list(VERBS.items()))
+class _App(LazyGroup):
+    verbs = VERBS
+    modules = "cobotwire.cli."
 
     def invoke(self, context: click.Context) -> Any:
         with exit_on_errors():

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import click
 
-from cobotwire.cli.conform_cases import cases
-from cobotwire.cli.conform_client import client
-from cobotwire.cli.conform_codec import codec
-from cobotwire.cli.conform_compare import compare
-from cobotwire.cli.conform_device import device
-from cobotwire.cli.conform_statement import statement
+from cobotwire.cli.shared.lazy_group import LazyGroup
+
+VERBS = {
+    "device": "Test the arm at URL against an edition.",
+    "client": "Serve an arm, and judge the client that controls it.",
+    "codec": "Test a codec, which COMMAND runs, against an edition.",
+    "compare": "Compare two reports on the same subject.",
+    "cases": "List the test cases and the permissions.",
+    "statement": "Write the template of a statement about a device.",
+}
 
 
-@click.group(short_help="Test an arm, a client or a codec.")
+class _Conform(LazyGroup):
+    verbs = VERBS
+    modules = "cobotwire.cli.conform_"
+
+
+@click.group(cls=_Conform, short_help="Test an arm, a client or a codec.")
 def conform() -> None:
     """Test an arm, a client or a codec against an edition of the protocol.
 
     Exit codes: 0 the subject conforms; 1 it does not; 2 it could not be tested.
     """
-
-
-for verb in (device, client, codec, compare, cases, statement):
-    conform.add_command(verb)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cobotwire.cli.shared.output import as_hex
 from cobotwire.codec.interface import Noise
@@ -15,7 +15,9 @@ from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.printable import printable
 from cobotwire.session.device import DeviceEvent, MalformedRequest, RequestReceived
 from cobotwire.simulator.arm import Note
-from cobotwire.simulator.faults import AppliedFault
+
+if TYPE_CHECKING:
+    from cobotwire.simulator.faults import AppliedFault
 
 
 def left_out(lines: int) -> str:

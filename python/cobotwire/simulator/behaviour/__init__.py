@@ -1,14 +1,13 @@
-"""What the arm does for each command: registered by the type of its request."""
+"""What the arm does for each command: registered by the type of its request.
+
+The behaviours of families (``registry.HOMES``) are imported when an arm of the family needs them.
+"""
 
 from cobotwire.simulator.behaviour import (  # noqa: F401  (importing them registers them)
     drag,
     gripper,
     io,
     jog,
-    limbs,
-    mercury,
-    mercury_checks,
-    mercury_drag,
     motion,
     planning,
     power,

@@ -11,6 +11,8 @@ a behaviour is remembered (:mod:`cobotwire.simulator.remembered`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from importlib import import_module
+from itertools import chain
 from typing import Any, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Reply, Request
@@ -143,6 +145,8 @@ reported = BEHAVIOURS.reported
 
 # Behaviours of editions that differ from the 280, by the name of the edition; they come first.
 _FAMILIES: dict[str, Behaviours] = {}
+# The modules of this package that register them.
+HOMES = {"mercury_a1": ("mercury", "mercury_checks", "mercury_drag"), "mybuddy": ("limbs",)}
 
 
 def family(edition: str, behaviours: Behaviours) -> Behaviours:
@@ -157,7 +161,10 @@ def own(table: Table, command: Command) -> Behaviour | None:
     A command that only shares the name has other arguments; this behaviour would not understand
     them.
     """
-    families = (_FAMILIES[each] for each in (table.edition, *table.bases) if each in _FAMILIES)
+    lineage = (table.edition, *table.bases)
+    for module in chain.from_iterable(HOMES.get(each, ()) for each in lineage):
+        import_module(f"cobotwire.simulator.behaviour.{module}")
+    families = (_FAMILIES[each] for each in lineage if each in _FAMILIES)
     for behaviours in (*families, BEHAVIOURS):
         found = behaviours.get(command.name)
         if found is not None and found.fits(command):

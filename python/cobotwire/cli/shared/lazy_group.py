@@ -1,0 +1,35 @@
+"""A group of verbs that imports a verb when it is used."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import click
+
+
+class LazyGroup(click.Group):
+    """A group that knows the texts of its verbs, so that each starts without those of the others.
+
+    The verb NAME is the function NAME in the module MODULES + NAME.
+    """
+
+    # Each verb with its text in --help, in the order of --help.
+    verbs: dict[str, str]
+    modules: str
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        """Return the names of the verbs."""
+        return list(self.verbs)
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """Import a verb; return None if there is none of that name."""
+        if name not in self.verbs:
+            return None
+        verb = getattr(import_module(self.modules + name), name)
+        assert isinstance(verb, click.Command), f"{name} is a verb"
+        return verb
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of the verbs."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(self.verbs.items()))
