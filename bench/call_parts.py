@@ -1,17 +1,15 @@
 """Measure what a blocking call does beside system calls: all of it in memory, and its parts alone.
 
-In the place of the native call, which writes, waits, reads and decodes, a function returns a reply
-that came before. The fastest of several turns counts.
+In the place of the native call, which does all from the check whether the request is alone to the
+decoded reply, a function returns a reply that came before. The fastest of several turns counts.
 """
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable
-from functools import partial
 
-from client import REQUEST, RESPONDER
+from client import RESPONDER
 from cobotwire.client.native_call import NativeCall
 from cobotwire.editions.mycobot import MyCobot
 from cobotwire.editions.mycobot.messages.motion import GetAngles
@@ -38,38 +36,30 @@ def _parts(arm: MyCobot) -> dict[str, Callable[[], object]]:
     encoder, connection = arm._encoder, arm._connection
     native = connection._native
     assert isinstance(native, NativeCall), "the native module is not installed"
-    steps, alone, policy = native._steps, native._alone, arm._settings.retry
+    policy = arm._settings.retry
     request = GetAngles()
     encoded = encoder.encode_request(request)
-    writer = steps.writer
-    found = native.swap(0.0, 1.0, REQUEST, "get_angles", writer.lock, writer.finish_write)
-    assert isinstance(found, tuple), "the reply came in parts; run the bench again"
-    frame, fields, _, _ = found
-    native.swap = partial(steps._transport.lend, lambda *_: found)  # type: ignore[attr-defined]
-    lock = threading.Lock()
+    lone = native.lone
+    answer = lone(native, encoded, policy, None, 0.0)
+    assert answer is not None
+    native.lone = lambda *_: answer
+    fields = answer[0]
+    leading = connection._steps.leading
 
-    def state() -> None:
-        alone.begin(encoded, steps.now(), policy.grace)
-        alone.end(frame)
-
-    def with_lock() -> None:
-        with lock:
-            pass
-
-    def acquire_and_release() -> None:
-        lock.acquire()
-        lock.release()
+    def refused() -> None:
+        leading.leader = 0
+        lone(native, encoded, policy, None, 0.0)
+        leading.leader = None
 
     return {
         "nothing": lambda: None,
         "get_angles(), without the native call": arm.get_angles,
         "the request object": GetAngles,
         "its bytes": lambda: encoder.encode_request(request),
+        "the call from the connection on": lambda: connection.call(encoded, policy, None),
         "whether frames are logged": lambda: connection.listeners.silent,
-        "the state of the exchange": state,
+        "a native call that is refused": refused,
         "the result": lambda: request.result_of(fields),
-        "with lock": with_lock,
-        "lock.acquire() and lock.release()": acquire_and_release,
     }
 
 

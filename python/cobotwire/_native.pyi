@@ -10,6 +10,8 @@ from typing import Any, Literal, final
 
 from typing_extensions import Buffer
 
+from cobotwire.client.native_call import NativeCall
+from cobotwire.client.steps import Steps
 from cobotwire.codec.columns import Columns, Scan
 from cobotwire.codec.interface import (
     Counters,
@@ -23,10 +25,14 @@ from cobotwire.codec.interface import (
 from cobotwire.diagnose.servo_bus import Vocabulary
 from cobotwire.diagnose.survey import Rest
 from cobotwire.protocol.table import Command, Direction, Table
+from cobotwire.session import Answer, EncodedRequest, RetryPolicy
+from cobotwire.session.alone import Alone
+from cobotwire.transport.interface import LendingTransport
 
 __all__ = [
     "AlarmClock",
     "LineLock",
+    "LoneCalls",
     "Memory",
     "NativeCaptureReader",
     "NativeCodec",
@@ -148,41 +154,6 @@ class NativeFramer:
     def flush(self) -> list[Event]:
         """Refute what still waits, because the line is idle; return it and what follows it."""
 
-    def swap(
-        self,
-        descriptor: int,
-        alarm: int,
-        at: float,
-        timeout: float,
-        request: bytes,
-        of: str,
-        writing: LineLock,
-        finish: Callable[[bytes, int], object],
-        /,
-    ) -> tuple[Frame, dict[str, Any], float, float] | list[Event] | None:
-        """Send a request, and feed what comes first: the exchange of a request that is alone.
-
-        Other threads run meanwhile, from the beginning to the end.
-
-        Args:
-            descriptor: the line, which never blocks.
-            alarm: becomes readable to end the wait.
-            at: when to send it, in seconds of ``time.monotonic()``; at once if that has passed.
-            timeout: seconds to wait for the first bytes.
-            request: the frame to send.
-            of: the name of its command.
-            writing: the lock that is held while a thread writes to the line.
-            finish: called with the request and the number of bytes that were taken, if these are
-                not all; the lock is held meanwhile.
-
-        Returns:
-            The reply, its fields by name, and when the request was written and the reply read, if
-            all that came is one frame that the command allows as its reply, and no copy of the
-            request. Otherwise the events, perhaps none. None if nothing was sent, because the line
-            is not free: bytes have come, a thread writes or has written since the call, or the
-            system takes no bytes; or because the alarm came first.
-        """
-
     def send(
         self, descriptor: int, alarm: int, request: bytes, of: str, /
     ) -> tuple[Frame, dict[str, Any]] | list[Event] | int | None:
@@ -197,11 +168,13 @@ class NativeFramer:
     def read_reply(
         self, descriptor: int, alarm: int, request: bytes, of: str, /
     ) -> tuple[Frame, dict[str, Any]] | list[Event] | None:
-        """Read what has come, without waiting, and feed it; return what :meth:`swap` does.
+        """Read what has come, without waiting, and feed it; the caller feeds nothing meanwhile.
 
-        The moments are left out. ``request`` and its command ``of`` were sent earlier. None means
-        that nothing has come, or that the data has ended or cannot be read, which the next read
-        reports.
+        Returns:
+            The reply and its fields by name, if all that came is one frame that the command ``of``
+            allows as its reply, and no copy of ``request``, which was sent earlier. Otherwise the
+            events. None if nothing has come, or the data has ended or cannot be read, which the
+            next read reports.
         """
 
     @property
@@ -235,6 +208,52 @@ class AlarmClock:
 
         Raises:
             OSError: the moment is beyond what the system can count.
+        """
+
+@final
+class LoneCalls:
+    """Makes the blocking calls of one connection that are alone on its line."""
+
+    def __new__(
+        cls,
+        framer: NativeFramer,
+        transport: LendingTransport,
+        steps: Steps,
+        alone: Alone,
+        longest: float,
+        /,
+    ) -> LoneCalls:
+        """Take the framer of received bytes, the locks of ``steps``, and the state in ``alone``.
+
+        A call waits at most ``longest`` seconds itself.
+        """
+
+    def call(
+        self,
+        caller: NativeCall,
+        request: EncodedRequest,
+        policy: RetryPolicy,
+        wait: float | None,
+        at: float,
+        /,
+    ) -> Answer | None:
+        """Send a plain request, and return its answer: the whole call, if it is alone.
+
+        Other threads run from before the request is written until bytes have come.
+
+        Args:
+            caller: goes on if anything but the reply comes, or an exception does; writes the rest
+                of a request of which the system took only a part.
+            request: what to send.
+            policy: how often it may be sent.
+            wait: its deadline in seconds; None: that of its command.
+            at: when to send it, in seconds of ``time.monotonic()``; at once if that has passed.
+
+        Returns:
+            The answer, if all that came is one frame that the command allows as its reply, and no
+            copy of a request; otherwise what ``caller`` returns. None if nothing was sent, because
+            the request is not alone, or the line not free: bytes have come, a thread writes or has
+            written since the call, or the system takes no bytes; or because the alarm came first.
         """
 
 @final

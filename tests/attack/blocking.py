@@ -12,7 +12,7 @@ from random import Random
 from types import FrameType
 from typing import Any
 
-from attack.record import open_observed
+from attack.record import observe_native_calls, open_observed
 from attack.setting import Setting
 from cobotwire import CobotwireError, LinkError
 
@@ -58,6 +58,7 @@ class Shared:
         self.client = setting.client(
             self._transport, codec=plan.codec, timeout=plan.timeout, retry=setting.retry
         )
+        observe_native_calls(setting.record, self.client)
 
 
 class Interrupts:

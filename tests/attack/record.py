@@ -119,7 +119,8 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
 
     own = vars(transport)
     own["_write_now"] = observed
-    own["lend"] = partial(_swap_observed, record, not small, transport.lend)
+    if small:
+        own["lend"] = lambda: None
     own["lend_now"] = partial(_send_observed, record, not small, transport.lend_now)
     if small:
         own["_connect"] = connected
@@ -127,39 +128,50 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
     return transport
 
 
-def _swap_observed(
-    record: Record,
-    may_send: bool,
-    lend: Callable[..., Any],
-    call: Callable[..., Any],
-    *arguments: Any,
-) -> Any:
-    """Lend the descriptor; record the request if the native call sends one."""
-    if not may_send:
-        return None  # not sent: the client sends it in steps
-    at, timeout, request, of, writing, finish = arguments
-    parts = []
+def observe_native_calls(record: Record, client: Any) -> None:
+    """Record the requests that a blocking client sends in native calls.
 
-    def finish_observed(data: bytes, written: int) -> object:
+    The instance is patched: its native module uses these methods.
+    """
+    native = client._connection._native
+    if native is None:
+        return
+    lock, lone, finish_write = (
+        client._connection._steps.writer.lock,
+        native.lone,
+        native.finish_write,
+    )
+    # The threads whose request was not taken at once.
+    parts: set[int] = set()
+
+    def observed_finish(data: bytes, written: int) -> object:
         # The rest is sent as any other bytes are.
-        parts.append(written)
+        parts.add(threading.get_ident())
         record.bytes_taken += written
-        return finish(data, written)
+        return finish_write(data, written)
 
-    handed = (time.monotonic(), request)
-    record.handed.append(handed)
-    sent = True
-    try:
-        found = lend(call, at, timeout, request, of, writing, finish_observed)
-        sent = found is not None
-        return found
-    finally:
-        if not sent:
-            record.handed.remove(handed)
-        elif not parts:
-            record.bytes_taken += len(request)
-            # Other threads may have written while this one waited.
-            insort(record.taken, handed)
+    def observed(caller: Any, request: Any, *arguments: Any) -> Any:
+        me, before = threading.get_ident(), lock.taken
+        parts.discard(me)
+        handed = (time.monotonic(), request.frame)
+        record.handed.append(handed)
+        sent = False
+        try:
+            answer = lone(caller, request, *arguments)
+            sent = answer is not None
+            return answer
+        except BaseException:
+            sent = lock.taken != before
+            raise
+        finally:
+            if not sent:
+                record.handed.remove(handed)
+            elif me not in parts:
+                record.bytes_taken += len(request.frame)
+                # Other threads may have written while this one waited.
+                insort(record.taken, handed)
+
+    native.lone, native.finish_write = observed, observed_finish
 
 
 def _send_observed(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import signal
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
@@ -13,7 +15,9 @@ from hypothesis import strategies as st
 
 from cobotwire import AsyncMyCobot, MyCobot, ReplyTimeout, RetryPolicy
 from cobotwire import codec as codecs
+from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import CobotwireError
+from cobotwire.session import EncodedRequest
 from scripted_peer import ScriptedPeer
 
 pytestmark = pytest.mark.skipif(not codecs.native_available(), reason="there is no native module")
@@ -96,24 +100,32 @@ def test_same_traffic_has_the_same_results_in_one_call_and_in_steps(run: Any, sc
     assert in_one == in_steps
 
 
-def test_ctrl_c_ends_the_wait_and_the_late_reply_holds_the_next_call() -> None:
+@contextmanager
+def ctrl_c_soon() -> Iterator[None]:
+    """Raise KeyboardInterrupt in the block, by a signal."""
+
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    other = bytes.fromhex("FE FE 0E 20 01 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
     before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.01)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_ctrl_c_ends_the_wait_and_the_late_reply_holds_the_next_call() -> None:
+    other = bytes.fromhex("FE FE 0E 20 01 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
     # The first reply is late; the second one is the reply to the second call.
     with (
         ScriptedPeer([0.3, ANGLES], [other]) as peer,
         MyCobot(peer.url, timeout=20.0, retry=RetryPolicy(attempts=1, grace=0.6)) as arm,
     ):
         started = time.monotonic()
-        signal.setitimer(signal.ITIMER_REAL, 0.01)
-        try:
-            with pytest.raises(KeyboardInterrupt):
-                arm.get_angles()
-        finally:
-            signal.signal(signal.SIGALRM, before)
+        with ctrl_c_soon(), pytest.raises(KeyboardInterrupt):
+            arm.get_angles()
         assert time.monotonic() - started < 10
         assert arm.get_angles()[0] == 3.96
 
@@ -122,17 +134,12 @@ def test_ctrl_c_ends_the_wait_and_the_late_reply_holds_the_next_call() -> None:
 def test_interrupted_request_is_noted_for_the_next_session_if_it_was_written(written: bool) -> None:
     with ScriptedPeer() as peer, MyCobot(peer.url) as arm:
         connection, exchange = arm._connection, arm._connection._exchange
-
-        def interrupted(*arguments: object) -> None:
-            if written:
-                with connection._steps.writer.lock:
-                    raise KeyboardInterrupt
-            raise KeyboardInterrupt
-
-        assert connection._native is not None
-        connection._native.swap = interrupted
-        with pytest.raises(KeyboardInterrupt):
-            arm.get_angles()
+        native = connection._native
+        assert native is not None
+        request = EncodedRequest(TABLE.command("get_angles"), REQUEST, b"", {}, plain=True)
+        at = 0.0 if written else time.monotonic() + 60
+        with ctrl_c_soon(), pytest.raises(KeyboardInterrupt):
+            native.lone(native, request, RetryPolicy(attempts=1), 20.0, at)
         late = [reply.request for reply in exchange.leave(connection.now()).late]
         assert late == [REQUEST] * written
 
@@ -149,8 +156,8 @@ def test_traffic_that_somebody_reads_is_reported_step_by_step(
         # A recording needs the time of each write and read.
         assert (native is None) == (reader == "recording")
         if native is not None:
-            swap = native.swap
-            native.swap = lambda *given: calls.append(given) or swap(*given)  # type: ignore[func-returns-value]
+            call = native.lone
+            native.lone = lambda *given: calls.append(given) or call(*given)  # type: ignore[func-returns-value]
         if reader == "listener":
             arm.add_traffic_listener(traffic.append)
         if reader == "log":

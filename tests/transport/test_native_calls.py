@@ -7,17 +7,24 @@ import signal
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from cobotwire import RetryPolicy
 from cobotwire import codec as codecs
+from cobotwire.client.steps import Steps
+from cobotwire.client.traffic import TrafficListeners
 from cobotwire.codec.interface import Noise
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError
+from cobotwire.session import EncodedRequest, Exchange, PendingRequest
+from cobotwire.session.alone import Begun
 from cobotwire.transport.descriptor import DescriptorTransport
-from cobotwire.transport.waiting import line_lock
+from cobotwire.transport.interface import Loan
+from cobotwire.transport.waiting import line_lock, native_calls
 from transport.ends import Line
 
 pytestmark = pytest.mark.skipif(not codecs.native_available(), reason="there is no native module")
@@ -74,30 +81,71 @@ def test_close_ends_a_read_in_another_thread(line: Line) -> None:
 
 
 class Swapping:
-    """One end of a pair of sockets whose framer exchanges requests; the test has the other end."""
+    """One end of a pair of sockets that exchanges requests; the test has the other end.
+
+    It is the transport, and the caller of the native calls.
+    """
 
     def __init__(self) -> None:
         self.ours, self.peer = socket.socketpair()
         self.ours.setblocking(False)
         self.alarm = os.eventfd(0)
-        self.framer: Any = codecs.load(TABLE, "native").framer("reply")
-        self.writing: Any = line_lock()
+        self.lock = threading.RLock()
+        self.loan: Loan | None = Loan(
+            self.lock.acquire, self.lock.release, self.ours.fileno(), self.alarm
+        )
+        self.codec: Any = codecs.load(TABLE, "native")
+        self.exchange = Exchange(self.codec)
+        listeners = TrafficListeners(None, "")
+        unused: Any = SimpleNamespace()
+        self.steps = Steps(unused, self.exchange, listeners, time.monotonic)
+        self.framer: Any = self.exchange.framer
+        self.alone = self.exchange.alone
+        self.writing: Any = self.steps.writer.lock
         self.finished: list[tuple[bytes, int, bool]] = []
         self.error: Exception | None = None
+        native = native_calls()
+        assert native is not None
+        self.lone = native.lone_calls(self.framer, self, self.steps, self.alone, 99.0)
 
-    def swap(self, request: bytes = REQUEST, timeout: float = 5.0, at: float = 0.0) -> Any:
-        return self.framer.swap(
-            self.ours.fileno(),
-            self.alarm,
-            at,
-            timeout,
-            request,
-            "get_angles",
-            self.writing,
-            self.finish,
+    def swap(self, frame: bytes = REQUEST, timeout: float = 5.0, at: float = 0.0) -> Any:
+        try:
+            return self.call(frame, timeout, at)
+        finally:
+            assert self.free == (True, True, None, None)
+
+    def call(self, frame: bytes = REQUEST, timeout: float = 5.0, at: float = 0.0) -> Any:
+        command = TABLE.command("get_angles")
+        request = EncodedRequest(command, frame, b"", {}, plain=True)
+        return self.lone.call(self, request, RetryPolicy(attempts=1), timeout, at)
+
+    @property
+    def free(self) -> tuple[bool, bool, object, object]:
+        """What a call takes: whether both locks are free, the leader, and what has begun."""
+        reading, lent = (
+            not lock._is_owned()  # type: ignore[attr-defined]
+            for lock in (self.steps.reading, self.lock)
         )
+        return reading, lent, self.steps.leading.leader, self.alone.begun
 
-    def finish(self, request: bytes, written: int) -> None:
+    # What native calls use.
+
+    def resume(self, begun: Begun, events: Any, wait: object, policy: object) -> Any:
+        assert self.free[:2] == (False, True), "bytes are sorted in order, and the port may close"
+        assert begun is self.alone.begun
+        return events
+
+    def wait(self, events: Any) -> Any:
+        assert self.free[:2] == (True, True)
+        self.alone.begun = self.steps.leading.leader = None
+        return events
+
+    def abandon(self, begun: Begun, sent: bool) -> None:
+        assert begun is self.alone.begun
+        self.sent = sent
+        self.alone.begun = self.steps.leading.leader = None
+
+    def finish_write(self, request: bytes, written: int) -> None:
         self.finished.append((request, written, self.writing.locked()))
         if self.error is not None:
             raise self.error
@@ -119,12 +167,11 @@ def test_swap_returns_the_only_frame_and_its_fields(swapping: Swapping) -> None:
     answering = threading.Timer(0.02, swapping.peer.send, [ANGLES])
     answering.start()
     started = time.monotonic()
-    frame, fields, requested_at, replied_at = swapping.swap()
+    fields, requested_at, replied_at = swapping.swap()
     answering.join()
     assert started <= requested_at < replied_at <= time.monotonic()
     assert swapping.peer.recv(99) == REQUEST
-    assert frame.data == ANGLES
-    assert fields == frame.decode("reply", of="get_angles").fields
+    assert fields == swapping.codec.decode("reply", ANGLES, of="get_angles").fields
 
 
 @pytest.mark.parametrize(
@@ -155,6 +202,62 @@ def test_swap_sends_nothing_on_a_line_that_is_not_free(swapping: Swapping) -> No
     assert swapping.framer.fed == 0
 
 
+def take_in_another_thread(lock: Any) -> None:
+    taking = threading.Thread(target=lock.acquire)
+    taking.start()
+    taking.join()
+
+
+PENDING = PendingRequest(
+    EncodedRequest(TABLE.command("get_angles"), REQUEST, b"", {}), 1.0, RetryPolicy(), 0.0
+)
+BUSY: dict[str, Callable[[Swapping], object]] = {
+    "a thread is at a step": lambda one: one.steps.state.acquire(),
+    "a thread reads": lambda one: take_in_another_thread(one.steps.reading),
+    "a thread has the descriptor": lambda one: take_in_another_thread(one.lock),
+    "a thread leads": lambda one: setattr(one.steps.leading, "leader", 1),
+    "a request waits": lambda one: setattr(one.alone.turns, "last", PENDING),
+    "a request is queued": lambda one: one.exchange.enqueue(PENDING),
+    "a reply is outstanding": lambda one: one.alone.outstanding_replies.expect_late(
+        SimpleNamespace(request=PENDING.request, attempt_times=(0.0,), policy=RetryPolicy()),  # type: ignore[arg-type]
+        0,
+    ),
+    "an acknowledgement is waited for": lambda one: one.alone.acks.waiting.append(None),  # type: ignore[arg-type]
+    "a request is alone": lambda one: setattr(
+        one.alone, "begun", (PENDING.request, 0.0, 0, RetryPolicy().grace)
+    ),
+    "the line is not aligned": lambda one: setattr(one.exchange.alignment, "align", b"x"),
+}
+
+
+@pytest.mark.parametrize("why", BUSY)
+def test_request_that_is_not_alone_is_not_sent_and_changes_nothing(
+    swapping: Swapping, why: str
+) -> None:
+    BUSY[why](swapping)
+    before = swapping.steps.leading.leader, swapping.alone.begun, swapping.framer.fed
+    assert swapping.call() is None
+    assert (swapping.steps.leading.leader, swapping.alone.begun, swapping.framer.fed) == before
+    assert swapping.exchange.alignment.last_request == b""
+    swapping.peer.setblocking(False)
+    with pytest.raises(BlockingIOError):
+        swapping.peer.recv(99)
+    assert not swapping.writing.locked()
+    if why != "a thread reads":
+        assert not swapping.steps.reading._is_owned()  # type: ignore[attr-defined]
+
+
+def test_copy_of_a_one_way_request_is_not_taken_for_the_reply(swapping: Swapping) -> None:
+    stop = EncodedRequest(TABLE.command("stop"), ANGLES, b"", {})
+    swapping.exchange.send_one_way(stop, time.monotonic())
+    swapping.alone.outstanding_replies.replies = ()
+    answering = threading.Timer(0.02, swapping.peer.send, [ANGLES])
+    answering.start()
+    [frame] = swapping.swap()
+    answering.join()
+    assert frame.data == ANGLES
+
+
 def test_swap_returns_no_events_after_its_time_at_the_end_or_by_the_alarm(
     swapping: Swapping,
 ) -> None:
@@ -164,6 +267,8 @@ def test_swap_returns_no_events_after_its_time_at_the_end_or_by_the_alarm(
     os.eventfd_write(swapping.alarm, 1)
     assert swapping.swap(timeout=60) == []
     swapping.peer.close()
+    assert swapping.swap(timeout=60) is None
+    swapping.loan = None
     assert swapping.swap(timeout=60) is None
     assert time.monotonic() - started < 30
 
@@ -200,7 +305,7 @@ def test_swap_writes_at_its_moment_while_other_threads_run(swapping: Swapping) -
     others = threading.Thread(target=answer)
     others.start()
     at = time.monotonic() + 0.05
-    _, _, requested_at, replied_at = swapping.swap(at=at)
+    _, requested_at, replied_at = swapping.swap(at=at)
     others.join()
     assert at <= requested_at < replied_at
 
@@ -247,6 +352,7 @@ def test_signal_handler_ends_the_wait_for_the_moment(swapping: Swapping) -> None
     finally:
         signal.signal(signal.SIGALRM, before)
     assert swapping.writing.taken == 0
+    assert not swapping.sent
 
 
 def test_line_lock_is_held_by_one_thread_at_a_time() -> None:

@@ -27,7 +27,7 @@ def native_call(
 
     ``written`` is called when a write ends that was not taken at once.
     """
-    if not hasattr(exchange.framer, "swap") or not isinstance(transport, PolledTransport):
+    if not hasattr(exchange.framer, "read_reply") or not isinstance(transport, PolledTransport):
         return None
     polled = transport.native(exchange.framer)
     return None if polled is None else AsyncNativeCall(polled, exchange, writer, written)

@@ -80,7 +80,7 @@ class Connection:
         """
         native = self._native
         if native is not None and request.plain and self.listeners.silent:
-            answer = native.call(request, policy, wait)
+            answer = native.lone(native, request, policy, wait, 0.0)
             if answer is not None:
                 return answer[0]
         return self.request(request, policy, wait).result()
@@ -112,7 +112,7 @@ class Connection:
         """
         native = self._native
         if native is not None and request.plain and self.listeners.silent:
-            answer = native.call(request, policy, wait, at)
+            answer = native.lone(native, request, policy, wait, at)
             if answer is not None:
                 return answer
         while (left := at - self.now()) > 0:
@@ -161,4 +161,6 @@ class Connection:
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held; in a forked child the transport is closed."""
         self._steps.leave_to_parent()
+        # It has the locks of the parent.
+        self._native = None
         self._memory.leave_to_parent()

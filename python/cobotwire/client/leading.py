@@ -21,7 +21,9 @@ class Leading:
 
     Attributes:
         leader: which thread leads; None: no thread does.
-        turns: how often leaders have read; a leader that does not count on is gone.
+        turns: how often leaders have read; a leader that does not count on is gone. A native call
+            is one turn, and ends long before the others conclude that.
+        followers: what wakes the threads that wait for the leader.
     """
 
     def __init__(self, state: threading.Lock) -> None:
@@ -29,7 +31,7 @@ class Leading:
         self._state = state
         self.leader: int | None = None
         self.turns = 0
-        self._followers: list[threading.Lock] = []
+        self.followers: list[threading.Lock] = []
 
     def leads(self) -> bool:
         """Return whether this thread leads; it does from now on if no other one does."""
@@ -44,7 +46,7 @@ class Leading:
         """Let another thread lead, if this one does."""
         if self.leader == threading.get_ident():
             self.leader = None
-            if self._followers:
+            if self.followers:
                 self.wake_followers()
 
     def follow(self, pending: Pending) -> None:
@@ -55,7 +57,7 @@ class Leading:
             leader, turns = self.leader, self.turns
             if pending.done or leader is None:
                 return
-            self._followers.append(baton)
+            self.followers.append(baton)
         if not baton.acquire(timeout=CHECK_SECONDS):
             with self._state:
                 if (leader, turns) == (self.leader, self.turns):
@@ -64,9 +66,9 @@ class Leading:
 
     def wake_followers(self) -> None:
         """Have each follower check whether its request is done."""
-        if not self._followers:
+        if not self.followers:
             return
         with self._state:
-            batons, self._followers = self._followers, []
+            batons, self.followers = self.followers, []
         for baton in batons:
             baton.release()

@@ -1,111 +1,91 @@
-"""A query that is alone on its line, in one native call that writes, waits, reads and decodes.
+"""A query that is alone on its line, in one native call that does all of it.
 
-It decides only the usual case, that what comes is one frame and the reply. Everything else goes on
-step by step.
+It holds the locks, writes, waits, reads and decodes. It decides only the usual case, that what
+comes is one frame and the reply. Everything else goes on step by step.
 """
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable
-from functools import partial
-from typing import Any
+from collections.abc import Callable, Sequence
 
 from cobotwire.client.steps import SLICE_SECONDS, Steps
-from cobotwire.codec.interface import Event, Frame
+from cobotwire.codec.interface import Event
 from cobotwire.session import Answer, EncodedRequest, PendingRequest, RetryPolicy
 from cobotwire.session.alone import Begun
 from cobotwire.transport.interface import LendingTransport, Transport
+from cobotwire.transport.waiting import native_calls
 
-# Sends a request that is alone: its arguments are those of ``NativeFramer.swap`` after the alarm.
-Swap = Callable[
-    [float, float, bytes, str, Any, Callable[[bytes, int], object]],
-    tuple[Frame, dict[str, Any], float, float] | list[Event] | None,
-]
+Lone = Callable[["NativeCall", EncodedRequest, RetryPolicy, float | None, float], Answer | None]
 
 
 def native_call(steps: Steps, transport: Transport) -> NativeCall | None:
     """Return how the native module makes calls; None: transport or codec do not allow it."""
-    swap: Any = getattr(steps.exchange.framer, "swap", None)
-    if swap is None or not isinstance(transport, LendingTransport) or not transport.lends:
+    exchange = steps.exchange
+    native, framer = native_calls(), exchange.framer
+    # The codec can be the reference all the same.
+    if native is None or not hasattr(framer, "read_reply"):
         return None
-    return NativeCall(steps, partial(transport.lend, swap))
+    if not isinstance(transport, LendingTransport) or not transport.lends:
+        return None
+    transport.lend()
+    lone = native.lone_calls(framer, transport, steps, exchange.alone, SLICE_SECONDS)
+    return NativeCall(steps, lone.call)
 
 
 class NativeCall:
-    """Makes calls with one native call each, if they are alone on their line.
+    """The native call of one connection, and what it calls if more happens than the reply comes.
 
     Attributes:
-        swap: the native call.
+        lone: ``lone(native_call, request, policy, wait, at)`` sends a plain request at a moment, or
+            at once if it has passed, and returns its reply; None if it was not sent, because it is
+            not alone on the line.
+        finish_write: writes the rest of a request of which a part was taken.
+        leave: gives up a request that was resumed.
     """
 
-    def __init__(self, steps: Steps, swap: Swap) -> None:
+    def __init__(self, steps: Steps, lone: Lone) -> None:
         self._steps = steps
         self._alone = steps.exchange.alone
-        self.swap = swap
+        self.lone = lone
+        self.finish_write = steps.writer.finish_write
+        self.leave = steps.leave
 
-    def call(
-        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None, at: float = 0.0
-    ) -> Answer | None:
-        """Send a plain request at a moment, or at once if it has passed; return its reply.
+    def resume(
+        self, begun: Begun, received: Sequence[Event], wait: float | None, policy: RetryPolicy
+    ) -> PendingRequest:
+        """Go on with a request after something else has come than its reply.
 
-        If anything but the reply comes, the request goes on as any other does.
-
-        Returns:
-            None if the request was not sent, because it is not alone on the line.
+        The lock of reading is held.
         """
-        steps, alone = self._steps, self._alone
-        leading = steps.leading
-        # Native calls come with a native lock.
-        lock: Any = steps.writer.lock
-        begun: Begun | None = None
+        steps = self._steps
         pending: PendingRequest | None = None
-        seconds = request.command.deadline_ms / 1000 if wait is None else wait
-        # The first attempt takes at least the share of all of them.
-        attempt = seconds / policy.attempts
         try:
             with steps.state:
-                if leading.leader is None:
-                    now = steps.now()
-                    begun = alone.begin(request, now if now > at else at, policy.grace)
-                if begun is None:
-                    return None
-                leading.leader = threading.get_ident()
-                taken = lock.taken
-            with steps.reading:
-                leading.turns += 1
-                found = self.swap(
-                    at,
-                    attempt if attempt < SLICE_SECONDS else SLICE_SECONDS,
-                    request.frame,
-                    request.command.name,
-                    lock,
-                    steps.writer.finish_write,
-                )
-                if found is None:
-                    alone.end_unsent()
-                    return None
-                if isinstance(found, tuple):
-                    frame, fields, requested_at, replied_at = found
-                    if alone.end(frame):
-                        return fields, requested_at, replied_at
-                    found = [frame]
-                with steps.state:
-                    now = steps.now()
-                    pending = PendingRequest(request, wait, policy, begun[1])
-                    events = alone.resume(begun, pending, found, now)
-                steps.listeners.received(events, now)
-            steps.wait(pending)
-            return pending.answer()
-        finally:
+                now = steps.now()
+                pending = PendingRequest(begun[0], wait, policy, begun[1])
+                events = self._alone.resume(begun, pending, received, now)
+            steps.listeners.received(events, now)
+            return pending
+        except BaseException:
             if pending is not None:
                 steps.leave(pending)
-            elif begun is not None:
-                if alone.under_way:
-                    with steps.state:
-                        if lock.taken == taken:
-                            # It was not sent: a signal ended the wait for its moment.
-                            alone.end_unsent()
-                        else:
-                            alone.settle(begun)
-                leading.resign()
+            raise
+
+    def wait(self, pending: PendingRequest) -> Answer:
+        """Wait until a request is done that was resumed; return its reply."""
+        try:
+            self._steps.wait(pending)
+            return pending.answer()
+        finally:
+            self._steps.leave(pending)
+
+    def abandon(self, begun: Begun, sent: bool) -> None:
+        """Note that Ctrl-C has ended a call, and whether anything was sent since it began."""
+        steps, alone = self._steps, self._alone
+        with steps.state:
+            if sent:
+                alone.settle(begun)
+            else:
+                # A signal ended the wait for its moment.
+                alone.end_unsent(begun)
+        steps.leading.resign()

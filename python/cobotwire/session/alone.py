@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cobotwire.codec.interface import Event, Frame, Framer
+from cobotwire.codec.interface import Event, Framer
 from cobotwire.session.acks import Acks
 from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
@@ -27,9 +27,14 @@ Begun = tuple[EncodedRequest, float, int, float]
 class Alone:
     """The request that is alone on its line, if there is one.
 
-    The caller of :meth:`begin` sends it on a drained line, feeds the framer what comes first, and
-    calls :meth:`end` or :meth:`resume`, or :meth:`end_unsent` if it could not send it. If it does
-    none of these, after Ctrl-C, say, it calls :meth:`settle`.
+    A native call (``LoneCalls``) checks that nothing else is under way, and sets ``begun``,
+    ``alignment.last_request`` and ``echo.latest``. If the reply is all that comes, it resets
+    ``begun``, which ends the request. Otherwise its caller calls :meth:`resume`, or
+    :meth:`end_unsent` if it could not be sent. If it does neither, after Ctrl-C, say,
+    :meth:`settle` is called.
+
+    Attributes:
+        begun: the request that has begun, and has neither ended nor been resumed.
     """
 
     def __init__(
@@ -42,32 +47,17 @@ class Alone:
         acks: Acks,
         echo: EchoDetector,
     ) -> None:
-        self._framer, self._alignment = framer, alignment
-        self._turns, self._replies = turns, replies
-        self._outstanding, self._acks, self._echo = outstanding, acks, echo
-        self._begun: Begun | None = None
-
-    @property
-    def under_way(self) -> bool:
-        """Whether a request has begun, and has neither ended nor been resumed."""
-        return self._begun is not None
+        self._framer, self.alignment = framer, alignment
+        self.turns, self._replies = turns, replies
+        self.outstanding_replies, self.acks, self.echo = outstanding, acks, echo
+        self.begun: Begun | None = None
 
     def outstanding(self) -> list[OutstandingReply]:
         """Return the reply to the request that is under way, if there is one."""
-        if self._begun is None:
+        if self.begun is None:
             return []
-        request, sent_at, _, grace = self._begun
+        request, sent_at, _, grace = self.begun
         return [OutstandingReply(request, sent_at + grace)]
-
-    def begin(self, request: EncodedRequest, now: float, grace: float) -> Begun | None:
-        """Begin a request; return None if anything is under way, or a reply outstanding."""
-        if not self._is_free():
-            return None
-        fed = self._framer.fed
-        self._echo.sent(request, fed)
-        self._alignment.last_request = request.frame
-        self._begun = begun = request, now, fed, grace
-        return begun
 
     def wait_on(self, pending: PendingRequest, now: float) -> int | None:
         """Have a request wait for its reply that the caller is about to send; it is not resumed.
@@ -79,41 +69,32 @@ class Alone:
         if not self._is_free():
             return None
         fed = self._framer.fed
-        self._echo.sent(pending.request, fed)
+        self.echo.sent(pending.request, fed)
         pending.begin(now, fed)
-        self._turns.last, self._alignment.last_request = pending, pending.request.frame
+        self.turns.last, self.alignment.last_request = pending, pending.request.frame
         return fed
 
     def take_back(self, pending: PendingRequest) -> None:
         """Note that the request of :meth:`wait_on` was not sent; it may be queued now."""
-        self._turns.last = None
+        self.turns.last = None
         pending.attempt_times = ()
 
     def _is_free(self) -> bool:
-        turns = self._turns
+        turns = self.turns
         last = turns.last
         return not (
             (last is not None and not last.done)
             or turns.queue
-            or self._outstanding.replies
-            or self._acks.waiting
-            or self._begun is not None
-            or self._alignment.align
+            or self.outstanding_replies.replies
+            or self.acks.waiting
+            or self.begun is not None
+            or self.alignment.align
         )
 
-    def end(self, frame: Frame) -> bool:
-        """Return whether the only frame that came is the reply; the codec has decoded it as such.
-
-        If it may be a copy of another request, the caller resumes the request with the frame.
-        """
-        if not self._echo.sent_no_other(frame):
-            return False
-        self._begun = None
-        return True
-
-    def end_unsent(self) -> None:
-        """Note that the request was not sent."""
-        self._begun = None
+    def end_unsent(self, begun: Begun) -> None:
+        """Note that a request was not sent, unless another one has begun since."""
+        if begun is self.begun:
+            self.begun = None
 
     def resume(
         self, begun: Begun, pending: PendingRequest, received: Sequence[Event], now: float
@@ -121,12 +102,12 @@ class Alone:
         """Go on with the request as with any other; return what was received."""
         _, sent_at, offset, _ = begun
         pending.begin(sent_at, offset)
-        self._turns.last, self._begun = pending, None
+        self.turns.last, self.begun = pending, None
         self._replies.chunk_at = offset
         return self._replies.sort(received, now)
 
     def settle(self, begun: Begun | None = None) -> None:
         """Expect the reply to a request of which the caller is gone."""
-        if self._begun is not None and (begun is None or begun is self._begun):
-            (request, sent_at, _, grace), self._begun = self._begun, None
-            self._outstanding.expect(request, sent_at + grace)
+        if self.begun is not None and (begun is None or begun is self.begun):
+            (request, sent_at, _, grace), self.begun = self.begun, None
+            self.outstanding_replies.expect(request, sent_at + grace)

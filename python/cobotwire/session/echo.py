@@ -30,31 +30,30 @@ class EchoDetector:
 
     Attributes:
         proven: whether the line was seen to echo.
+        latest: the frame of the last request, and where its copy can begin, until it matters:
+            native calls set this alone.
+        one_way: the last one-way request.
     """
 
     def __init__(self) -> None:
         self.proven = False
+        self.latest: tuple[bytes, int] | None = None
         self._request: _Sent | None = None
-        self._one_way: _Sent | None = None
+        self.one_way: _Sent | None = None
         self._noise = b""
 
     def sent(self, request: EncodedRequest, offset: int) -> None:
         """Note a request that goes out; its copy can begin at ``offset`` of the stream."""
-        sent = self._request
-        if sent is not None and sent.frame is request.frame:
-            sent.offset, sent.copies = offset, 1
-        else:
-            self._request = _Sent(request.frame, offset)
-        if not self.proven:
-            self._noise = b""
+        self.latest = request.frame, offset
 
     def sent_one_way(self, request: EncodedRequest, offset: int) -> None:
         """Note a one-way request that goes out, likewise."""
-        self._one_way = _Sent(request.frame, offset)
+        self.one_way = _Sent(request.frame, offset)
         self._restart()
 
     def sent_again(self) -> None:
         """Note that the last request that waits for a reply goes out once more."""
+        self._note_latest()
         if self._request is not None:
             self._request.copies += 1
         self._restart()
@@ -65,9 +64,10 @@ class EchoDetector:
 
     def add_noise(self, noise: Noise) -> None:
         """Look for copies in noise: most requests are not legal replies, so they come as noise."""
+        self._note_latest()
         if self.proven:
             return
-        watched = [sent for sent in (self._request, self._one_way) if sent is not None]
+        watched = [sent for sent in (self._request, self.one_way) if sent is not None]
         if not watched:
             return
         offset = min(sent.offset for sent in watched)
@@ -80,9 +80,10 @@ class EchoDetector:
 
         Each sending has one copy; one that comes beyond that is the arm's own frame.
         """
+        self._note_latest()
         self._noise = b""
         data = frame.data
-        for sent in (self._request, self._one_way):
+        for sent in (self._request, self.one_way):
             if (
                 sent is not None
                 and data == sent.frame
@@ -96,7 +97,13 @@ class EchoDetector:
     def sent_no_other(self, frame: Frame) -> bool:
         """Return whether a frame, which is no copy of the last request, is no other copy either."""
         self._noise = b""
-        return self._one_way is None or frame.data != self._one_way.frame
+        return self.one_way is None or frame.data != self.one_way.frame
+
+    def _note_latest(self) -> None:
+        if self.latest is not None:
+            self._request = _Sent(*self.latest)
+            self._restart()
+            self.latest = None
 
     def _restart(self) -> None:
         if not self.proven:

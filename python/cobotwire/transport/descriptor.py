@@ -12,6 +12,7 @@ from typing import NoReturn, TypeVar
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
+from cobotwire.transport.interface import Loan
 from cobotwire.transport.log import Log
 from cobotwire.transport.waiting import Waiter, native_calls
 
@@ -44,6 +45,8 @@ class DescriptorTransport(ABC):
         self._why_closed = "it is closed"
         # -1 while it is closed, which no wait takes.
         self._descriptor = -1
+        self.loan: Loan | None = None
+        self._lent = False
         self._waiter = Waiter()
         self._native = native_calls()
         # Reentrant, since a signal may close the transport in the very thread that waits for it.
@@ -84,13 +87,14 @@ class DescriptorTransport(ABC):
         """Whether native functions can wait for the descriptor."""
         return self._native is not None
 
-    def lend(self, call: Callable[..., T], *arguments: object) -> T | None:
-        """Return the result of ``call(descriptor, alarm, *arguments)``; None if it is closed."""
+    def lend(self) -> None:
+        """Set ``loan``, now and whenever it is opened again."""
         with self._reading:
+            self._lent = True
             alarm = self._waiter.alarm()
-            if self._closed or alarm is None:
-                return None
-            return call(self._descriptor, alarm, *arguments)
+            if not self._closed and alarm is not None:
+                reading = self._reading
+                self.loan = Loan(reading.acquire, reading.release, self._descriptor, alarm)
 
     def lend_now(self, call: Callable[..., T], *arguments: object) -> T | None:
         """Return the result of ``call(descriptor, -1, *arguments)``; None if it is closed."""
@@ -173,6 +177,7 @@ class DescriptorTransport(ABC):
     def close(self) -> None:
         """Close it; a read or write in another thread ends at once."""
         self._closed = True
+        self.loan = None
         self._waiter.wake()
         # Only when no thread waits any longer: another file may get the number of a closed
         # descriptor a moment later.
@@ -188,12 +193,15 @@ class DescriptorTransport(ABC):
             self._descriptor = self._connect()
             self._waiter = Waiter()
             self._closed, self._why_closed = False, "it is closed"
+            if self._lent:
+                self.lend()
         _log.info("%s: opened", self.url)
 
     def leave_to_parent(self) -> None:
         """Close a forked child's copies, which the parent does not notice."""
         # Another thread of the parent may have held the locks; it does not exist here.
         self._reading, self._writing = threading.RLock(), threading.RLock()
+        self.loan = None
         if not self._closed:
             self._closed, self._why_closed = True, forks.opened_by_parent()
             self._waiter.close()

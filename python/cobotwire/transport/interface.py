@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol, TypeVar, runtime_checkable
+from typing import NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from cobotwire.protocol.errors import LinkError
 
@@ -57,6 +57,24 @@ class PollableTransport(Transport, Protocol):
         ...
 
 
+class Loan(NamedTuple):
+    """What a native call needs to use a descriptor.
+
+    While it holds the lock, no other thread can read, and none can close the descriptor.
+
+    Attributes:
+        acquire: takes the lock.
+        release: frees it.
+        descriptor: what is read and written.
+        alarm: becomes readable to end a wait.
+    """
+
+    acquire: Callable[[bool], bool]
+    release: Callable[[], None]
+    descriptor: int
+    alarm: int
+
+
 @runtime_checkable
 class LendingTransport(PollableTransport, Protocol):
     """A transport whose descriptor a function of the native module may read and write itself."""
@@ -66,16 +84,21 @@ class LendingTransport(PollableTransport, Protocol):
         """Whether the descriptor can be used so on this system."""
         ...
 
-    def lend(self, call: Callable[..., T], *arguments: object) -> T | None:
-        """Return the result of ``call(descriptor, alarm, *arguments)``; None if it is closed.
+    @property
+    def loan(self) -> Loan | None:
+        """What native calls use; None: it is closed, or :meth:`lend` was not called."""
+        ...
 
-        The call may wait until the descriptor is readable, or the alarm. Until it returns, no other
-        thread can read, and none can close the descriptor.
-        """
+    def lend(self) -> None:
+        """Set :attr:`loan`, now and whenever the transport is opened again."""
         ...
 
     def lend_now(self, call: Callable[..., T], *arguments: object) -> T | None:
-        """Do the same with a call that does not wait, and needs no alarm: -1 takes its place."""
+        """Return the result of ``call(descriptor, -1, *arguments)``; None if it is closed.
+
+        The call does not wait. Until it returns, no other thread can read, and none can close the
+        descriptor.
+        """
         ...
 
     def finish_write(self, data: bytes, written: int) -> None:

@@ -7,7 +7,7 @@ import sys
 import threading
 from collections.abc import Callable
 from types import TracebackType
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from cobotwire import codec as codecs
 from cobotwire.transport.alarm import Alarm, new_alarm
@@ -40,11 +40,12 @@ class NativeCalls(NamedTuple):
     """Functions of the native module that do what :class:`DescriptorTransport` does in Python.
 
     ``read_within(descriptor, timeout, alarm)`` waits and reads. ``write_now(descriptor, data)``
-    writes what is taken at once.
+    writes what is taken at once. ``lone_calls`` is the class that makes whole blocking calls.
     """
 
     read_within: Callable[[int, float, int], bytes | None]
     write_now: Callable[[int, bytes], int]
+    lone_calls: Callable[..., Any]
 
 
 def native_calls() -> NativeCalls | None:
@@ -53,10 +54,10 @@ def native_calls() -> NativeCalls | None:
         return None
     from cobotwire import _native
 
-    if not hasattr(_native, "LineLock"):
+    if not hasattr(_native, "LoneCalls"):
         # The binary is older than this file; build it again for speed.
         return None
-    return NativeCalls(_native.read_within, _native.write_now)
+    return NativeCalls(_native.read_within, _native.write_now, _native.LoneCalls)
 
 
 def line_lock() -> LineLock:

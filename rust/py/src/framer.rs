@@ -11,8 +11,6 @@ use crate::descriptor::{read_now, write_if_free};
 use crate::events::Events;
 use crate::frame::{NativeFrame, Origin};
 use crate::names::Names;
-#[cfg(unix)]
-use crate::swap::{Line, LineLock, Swapped};
 
 /// Cuts frames out of a byte stream.
 #[pyclass(module = "cobotwire._native")]
@@ -49,45 +47,6 @@ impl NativeFramer {
         events.finish()
     }
 
-    /// Send a request at the moment `at`, and read what comes first, in one call: the exchange of a
-    /// request that is alone on its line. Bytes that are one frame, and a reply of the command `of`,
-    /// are decoded, and returned with the moments of writing and reading.
-    #[cfg(unix)]
-    #[pyo3(signature = (descriptor, alarm, at, timeout, request, of, writing, finish, /))]
-    #[allow(clippy::too_many_arguments)] // an object for them would cost more than the call
-    fn swap<'py>(
-        slf: &Bound<'py, Self>,
-        descriptor: i32,
-        alarm: i32,
-        at: f64,
-        timeout: f64,
-        request: &[u8],
-        of: &Bound<'py, PyAny>,
-        writing: &Bound<'py, LineLock>,
-        finish: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let (py, line) = (
-            slf.py(),
-            Line {
-                descriptor,
-                alarm,
-                writing: writing.get(),
-                finish,
-            },
-        );
-        let take = |data: &[u8]| slf.try_borrow_mut()?.take_reply(py, data, request, of);
-        Ok(match line.swap(py, at, timeout, request, take)? {
-            Swapped::NotSent => None,
-            Swapped::Silent => Some(PyList::empty(py).into_any()),
-            Swapped::Received(taken, requested_at, replied_at) => Some(match taken? {
-                Taken::Reply(frame, fields) => (frame, fields, requested_at, replied_at)
-                    .into_pyobject(py)?
-                    .into_any(),
-                Taken::Events(events) => events.into_any(),
-            }),
-        })
-    }
-
     /// Send a request if nothing has come, and read what has come then, without waiting. Return
     /// None if nothing was sent, or how many bytes were taken if these are not all.
     #[cfg(unix)]
@@ -111,7 +70,7 @@ impl NativeFramer {
         Ok(Some(found.unwrap_or_else(|| PyList::empty(py).into_any())))
     }
 
-    /// Read what has come to a line, and feed it, in one call: `swap` without a request to send.
+    /// Read what has come to a line, and feed it, in one call.
     /// Return None if nothing has come, or the data has ended, which the next read reports.
     #[cfg(unix)]
     #[pyo3(signature = (descriptor, alarm, request, of, /))]
@@ -143,7 +102,7 @@ impl NativeFramer {
 
     /// The number of bytes fed since the start of the stream.
     #[getter]
-    fn fed(&self) -> u64 {
+    pub fn fed(&self) -> u64 {
         self.core.tally().bytes
     }
 
@@ -157,7 +116,7 @@ impl NativeFramer {
 impl NativeFramer {
     /// Feed what came after a request. Return the frame and its fields if all of it is one frame
     /// that replies to the command `of` and is no copy of the request; otherwise the events.
-    fn take_reply<'py>(
+    pub fn take_reply<'py>(
         &mut self,
         py: Python<'py>,
         data: &[u8],
@@ -181,7 +140,7 @@ impl NativeFramer {
 }
 
 /// What came after a request.
-enum Taken<'py> {
+pub enum Taken<'py> {
     /// The reply alone, and its fields.
     Reply(Bound<'py, PyAny>, Bound<'py, PyAny>),
     Events(Bound<'py, PyList>),

@@ -22,12 +22,16 @@ mod frame;
 mod framer;
 mod given;
 mod interpreter;
+#[cfg(unix)]
+mod lone;
 mod memory;
 mod names;
 mod objects;
 mod once;
 mod parts;
 mod plain;
+#[cfg(unix)]
+mod session;
 mod survey;
 #[cfg(unix)]
 mod swap;
@@ -53,6 +57,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     {
         descriptor::add_to(module)?;
         module.add_class::<swap::LineLock>()?;
+        module.add_class::<lone::LoneCalls>()?;
     }
     #[cfg(target_os = "linux")]
     module.add_class::<alarm_clock::AlarmClock>()?;

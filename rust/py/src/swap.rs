@@ -10,6 +10,7 @@ use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -44,7 +45,8 @@ impl LineLock {
                 .is_ok()
     }
 
-    fn state(&self) -> u64 {
+    /// A number that changes whenever it is taken or freed.
+    pub fn state(&self) -> u64 {
         self.state.load(Ordering::Relaxed)
     }
 
@@ -111,8 +113,9 @@ pub struct Line<'a, 'py> {
     /// Becomes readable to end the wait.
     pub alarm: RawFd,
     pub writing: &'a LineLock,
-    /// Called with a request of which a part was taken, and the size of this part, to write the rest.
-    pub finish: &'a Bound<'py, PyAny>,
+    /// Its method `finish_write` is called with a request of which a part was taken, and the size of
+    /// this part, to write the rest.
+    pub caller: &'a Bound<'py, PyAny>,
 }
 
 /// What became of a request.
@@ -184,7 +187,8 @@ impl Line<'_, '_> {
     }
 
     fn write_rest(&self, py: Python<'_>, request: &[u8], written: usize) -> PyResult<()> {
-        let done = self.finish.call1((PyBytes::new(py, request), written));
+        let rest = (PyBytes::new(py, request), written);
+        let done = self.caller.call_method1(intern!(py, "finish_write"), rest);
         self.writing.free();
         done.map(|_| ())
     }
@@ -206,13 +210,17 @@ struct Run<'a> {
 impl Run<'_> {
     /// Go on until Python is needed.
     fn step(&mut self, space: &mut [u8]) -> Result<Step, Errno> {
-        let sent_at = match self.progress {
-            Progress::Sent { sent_at, .. } => sent_at,
+        // Reading the clock is a hundredth of a call, so each moment is read once.
+        let (sent_at, mut from) = match self.progress {
+            Progress::Sent { sent_at, .. } => (sent_at, now()),
             Progress::Waiting => {
-                if self.at > now() && wait([self.alarm], self.at)? {
-                    return Ok(Step::NotSent);
+                let mut requested_at = now();
+                if self.at > requested_at {
+                    if wait([self.alarm], self.at - requested_at)?.is_some() {
+                        return Ok(Step::NotSent);
+                    }
+                    requested_at = now();
                 }
-                let requested_at = now();
                 let Some(written) = self.write() else {
                     return Ok(Step::NotSent);
                 };
@@ -225,19 +233,17 @@ impl Run<'_> {
                     return Ok(Step::Partly(written));
                 }
                 self.lock.free();
-                sent_at
+                (sent_at, sent_at)
             }
         };
-        while wait([self.descriptor, self.alarm], sent_at + self.timeout)? {
-            // A terminal without data reads as if the data had ended, so it is read only if ready.
-            if !can_be_read(self.descriptor)? {
-                // It was the alarm.
-                break;
-            }
+        // A terminal without data reads as if the data had ended, so it is read only if it is ready.
+        // The alarm, or the end of the time, is the end of the wait.
+        let until = sent_at + self.timeout;
+        while wait([self.descriptor, self.alarm], until - from)? == Some(true) {
             match read(self.descriptor, &mut *space) {
                 Ok(size) => return Ok(Step::Read(size, now())),
                 // Another reader was faster.
-                Err(Errno::AGAIN) => (),
+                Err(Errno::AGAIN) => from = now(),
                 Err(error) => return Err(error),
             }
         }
@@ -262,15 +268,23 @@ impl Run<'_> {
     }
 }
 
-/// Wait until one of the descriptors can be read, or is gone; return false at the moment `until`.
-fn wait<const N: usize>(descriptors: [BorrowedFd<'_>; N], until: f64) -> Result<bool, Errno> {
-    let left = Duration::from_secs_f64((until - now()).clamp(0.0, LONGEST));
+/// Wait until one of the descriptors can be read, or is gone; return whether the first is. None: none
+/// is after that many seconds.
+fn wait<const N: usize>(
+    descriptors: [BorrowedFd<'_>; N],
+    seconds: f64,
+) -> Result<Option<bool>, Errno> {
+    let left = Duration::from_secs_f64(seconds.clamp(0.0, LONGEST));
     let left = Timespec::try_from(left).map_err(|_| Errno::INVAL)?;
     let mut polled = descriptors.map(|each| PollFd::from_borrowed_fd(each, PollFlags::IN));
-    poll(&mut polled, Some(&left)).map(|count| count > 0)
+    let count = poll(&mut polled, Some(&left))?;
+    let first = polled
+        .first()
+        .is_some_and(|each| !each.revents().is_empty());
+    Ok((count > 0).then_some(first))
 }
 
 /// Return the seconds of the monotonic clock, as Python's `time.monotonic` does.
-fn now() -> f64 {
+pub fn now() -> f64 {
     Duration::try_from(clock_gettime(ClockId::Monotonic)).map_or(0.0, |time| time.as_secs_f64())
 }
