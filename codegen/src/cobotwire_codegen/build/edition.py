@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from cobotwire_codegen import language
@@ -20,6 +20,8 @@ from cobotwire_codegen.model import Edition, Family, Frame, Vector
 from cobotwire_codegen.reader import Reader
 
 MOST_BASES = 10
+# Editions without problems, by the resolved path of their file.
+Built = dict[Path, Edition]
 
 
 def build_edition(
@@ -35,17 +37,30 @@ def build_edition(
     Raises:
         SpecError: reading found problems; the error carries all of them.
     """
+    return _edition(path, Texts(root, unsaved or {}), {})
+
+
+def build_editions(paths: Iterable[Path], root: Path) -> list[Edition]:
+    """Return editions as :func:`build_edition` does; a base of several of them is built once.
+
+    Raises:
+        SpecError: reading an edition found problems; the error carries all problems of the first.
+    """
+    built: Built = {}
+    return [_edition(path, Texts(root, {}), built) for path in paths]
+
+
+def _edition(path: Path, texts: Texts, built: Built) -> Edition:
     problems: list[Problem] = []
-    texts = Texts(root, unsaved or {})
-    reader, parts = _collect(path, texts, problems, ())
-    edition = _build(reader, parts, problems)
+    reader, parts = _collect(path, texts, problems, (), built)
+    edition = _built(path, reader, parts, problems, built)
     if problems:
         raise SpecError(problems, edition)
     return edition
 
 
 def _collect(
-    path: Path, texts: Texts, problems: list[Problem], above: tuple[Path, ...]
+    path: Path, texts: Texts, problems: list[Problem], above: tuple[Path, ...], built: Built
 ) -> tuple[Reader, Parts]:
     """Return the parts of an edition: those of its base, changed by the delta, then its own."""
     files = Files(path.parent, texts, problems)
@@ -62,8 +77,8 @@ def _collect(
         if len(above) > MOST_BASES:
             message = f"the edition has more than {MOST_BASES} bases below each other, the limit"
             raise SpecError([*problems, Problem(base.place, "too-large", message)])
-        base_reader, parts = _collect(base_path, texts, problems, above)
-        parts.base = _build(base_reader, parts, problems)
+        base_reader, parts = _collect(base_path, texts, problems, above, built)
+        parts.base = _built(base_path, base_reader, parts, problems, built)
         parts.vectors = []
         parts.inherited = [Inherited(each, each.command) for each in parts.base.vectors]
         # The base's errata are about the base's document, its changes about its own base.
@@ -72,6 +87,19 @@ def _collect(
             apply_changes(parts, node, problems)
     add_own(parts, reader, files)
     return reader, parts
+
+
+def _built(
+    path: Path, reader: Reader, parts: Parts, problems: list[Problem], built: Built
+) -> Edition:
+    """Return the edition of these parts; the one that was built before, if there is one."""
+    known = built.get(path.resolve())
+    if known is not None:
+        return known
+    edition = _build(reader, parts, problems)
+    if not problems:
+        built[path.resolve()] = edition
+    return edition
 
 
 def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:

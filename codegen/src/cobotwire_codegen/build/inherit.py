@@ -47,7 +47,7 @@ def carried(
         commands: the commands of the delta, by name.
     """
     own = replace(vector, command=name, accepted=(), refused=())
-    before = next((command for command in base.commands if command.name == vector.command), None)
+    before = base.by_name.get(vector.command)
     after = commands.get(name)
     if vector.frame is None or before is None or after is None:
         return own

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 from cobotwire_codegen.errors import Place, nearest
@@ -68,7 +70,7 @@ class Vector:
     refused: Limits = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, for the cached properties
 class Edition:
     """One edition of a protocol."""
 
@@ -99,7 +101,12 @@ class Edition:
         hint = dict(self.gone).get(name) or nearest(name, (c.name for c in self.commands))
         return f"there is no command {name}{hint}"
 
-    @property
+    @cached_property
     def commands(self) -> tuple[Command, ...]:
         """All commands, family by family."""
         return tuple(command for family in self.families for command in family.commands)
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Command]:
+        """The commands by name."""
+        return {command.name: command for command in self.commands}

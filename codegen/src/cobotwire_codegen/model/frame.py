@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
 from typing import Literal
 
 from cobotwire_codegen.catalogue import Crc
@@ -52,7 +54,7 @@ class FrameNumber:
     order: Order = "big"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, for the cached properties
 class Frame:
     """The frame format and the transport.
 
@@ -76,7 +78,7 @@ class Frame:
     command_number: FrameNumber = FrameNumber()
     replies_have_command: bool = True
 
-    @property
+    @cached_property
     def address_values(self) -> tuple[int, ...]:
         """Every legal address byte; the first one is sent unless the caller chooses another."""
         named = tuple(address.value for address in self.addresses)
@@ -97,7 +99,7 @@ class Frame:
         """The number of bytes of check and footer."""
         return self.sizes["check"] + self.sizes["footer"]
 
-    @property
+    @cached_property
     def sizes(self) -> dict[str, int]:
         """The size of each part except the data."""
         return {
@@ -111,8 +113,13 @@ class Frame:
 
     def offset(self, part: str) -> int:
         """Return where a part of a request starts; the part is not check or footer."""
+        return self._offsets[part]
+
+    @cached_property
+    def _offsets(self) -> dict[str, int]:
         order = ("header", *self.layout, "data")
-        return sum(self.sizes[before] for before in order[: order.index(part)])
+        ends = accumulate((self.sizes[part] for part in order[:-1]), initial=0)
+        return dict(zip(order, ends))
 
     def data_at(self, direction: Direction) -> int:
         """Return where the data starts; without a command id, in its place."""
@@ -125,9 +132,12 @@ class Frame:
     def length(self, data_size: int, direction: Direction = "request") -> int:
         """Return LEN of a frame with that many data bytes."""
         absent = 0 if self.has_command(direction) else self.sizes["command"]
-        fixed = sum(self.sizes.get(part, 0) for part in self.counted)
         # A reply without an id has data in its place: frames of one LEN have one size.
-        return fixed + data_size - absent
+        return self._counted_size + data_size - absent
+
+    @cached_property
+    def _counted_size(self) -> int:
+        return sum(self.sizes.get(part, 0) for part in self.counted)
 
     @property
     def maximum_length(self) -> int:

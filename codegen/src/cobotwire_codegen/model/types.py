@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import ClassVar, Literal
 
 from cobotwire_codegen.errors import Place
@@ -127,7 +128,7 @@ class _Scalar:
         return ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, for the cached property
 class Quantity(_Scalar):
     """A wire type with a scale, a unit and a range (in that unit; None: every raw value).
 
@@ -154,7 +155,7 @@ class Quantity(_Scalar):
     not_finite: bool = False
     meanings: tuple[tuple[int, int, str], ...] = ()
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[Fraction, Fraction]:
         """The range as raw values; their denominators are 1 if the wire type can encode them."""
         if self.choices:

@@ -41,9 +41,10 @@ def plain(edition: Edition, vector: Vector, name: str, value: object) -> Any:
         return [plain(edition, vector, name, item) for item in value]
     if isinstance(value, Fraction):
         return float(value)
-    if vector.frame is None:
+    # Only a text or a truth value can stand for the number of a member.
+    if vector.frame is None or type(value) is int:
         return value
-    command = next(command for command in edition.commands if command.name == vector.command)
+    command = edition.by_name[vector.command]
     variant, _ = encode_variant(command, vector.direction, dict(vector.values))
     field = next(field for field in variant if field.name == name)
     if not isinstance(field.type, Enum):

@@ -48,7 +48,7 @@ def document(edition: Edition) -> str:
                 "reason": case.fault.reason,
                 "offset": case.fault.offset,
             }
-            for case in malformed(edition, laws)
+            for case in malformed(edition, laws, found)
         ],
         "streams": [
             {
@@ -57,7 +57,7 @@ def document(edition: Edition) -> str:
                 "bytes": _hex(stream.data),
                 "events": [_span(span) for span in stream.spans],
             }
-            for stream in streams(edition, laws)
+            for stream in streams(edition, laws, ordinary)
         ],
         "texts": _texts(edition),
     }

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import islice
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from cobotwire_codegen.model import Edition, Frame
 from cobotwire_codegen.targets.vectors.law import Direction, Fault, Law
-from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, beyond, examples
+from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, Example, beyond
 
 
 class Malformed(NamedTuple):
@@ -20,21 +19,30 @@ class Malformed(NamedTuple):
     fault: Fault
 
 
-def malformed(edition: Edition, laws: dict[Direction, Law]) -> Iterator[Malformed]:
-    """Yield every kind of damage for every variant, and every number that can be out of range."""
-    for direction, what, data in _broken(edition):
+def malformed(
+    edition: Edition, laws: dict[Direction, Law], found: Sequence[Example]
+) -> Iterator[Malformed]:
+    """Yield every kind of damage for every variant, and every number that can be out of range.
+
+    Args:
+        edition: the edition.
+        laws: its law in each direction.
+        found: all its examples.
+    """
+    for direction, what, data in _broken(edition, found):
         fault = laws[direction].read(data)
         # Damage can produce another legal message; then there is nothing to reject.
         if isinstance(fault, Fault):
             yield Malformed(what, direction, data, fault)
 
 
-def _broken(edition: Edition) -> Iterator[tuple[Direction, str, bytes]]:
+def _broken(edition: Edition, found: Sequence[Example]) -> Iterator[tuple[Direction, str, bytes]]:
     for direction in DIRECTIONS:
         yield direction, "nothing", b""
-        for data in _unknown(edition, direction):
-            yield direction, "unknown id", data
-    for example in examples(edition):
+        first = next((example for example in found if example.direction == direction), None)
+        if first is not None and edition.frame.has_command(direction):
+            yield direction, "unknown id", _unknown(edition, first)
+    for example in found:
         name = f"{example.command.name}"
         if example.what.startswith("ordinary"):
             for what, data in _damaged(edition, example.data):
@@ -70,10 +78,8 @@ def _with(frame: Frame, data: bytes, part: str, change: int) -> bytes:
     return data[:at] + changed + data[at + form.width :]
 
 
-def _unknown(edition: Edition, direction: Direction) -> Iterator[bytes]:
-    """Yield a message with an id that the edition lacks; none if the direction has no messages."""
-    ids = {command.id for command in edition.commands if command.variants(direction)}
+def _unknown(edition: Edition, example: Example) -> bytes:
+    """Return a message with an id that its direction of the edition lacks."""
+    ids = {command.id for command in edition.commands if command.variants(example.direction)}
     free = next(id for id in range(255, -1, -1) if id not in ids and id not in (0xFE, 0xFA))
-    for example in islice((e for e in examples(edition) if e.direction == direction), 1):
-        if edition.frame.has_command(direction):
-            yield _with(edition.frame, example.data, "command", free - example.command.id)
+    return _with(edition.frame, example.data, "command", free - example.command.id)

@@ -23,6 +23,7 @@ from cobotwire_codegen.model import (
     Wire,
     floats,
 )
+from cobotwire_codegen.render.by_identity import by_identity
 
 RawValues = dict[str, tuple[int, ...]]
 """A message: its raw values by field."""
@@ -108,7 +109,7 @@ class Slot:
 def slots(field: Field, variant: Variant, raw_values: RawValues) -> tuple[Slot, ...] | None:
     """Return a field's numbers in a message; None if its selector picks no case."""
     if not field.selector:
-        return _slots(field, field.type)
+        return _own_slots(field)
     picked = raw_values[field.selector][0]
     for when, type in lower.cases(field):
         if picked in when:
@@ -153,6 +154,11 @@ def texts(field: Field, raw_values: tuple[int, ...]) -> str | list[str] | None:
         data = bytes(raw_values[at : at + size])
         found.append((data.rstrip(pad) if pad else data).decode(type.encoding))
     return found if listed else found[0]
+
+
+@by_identity
+def _own_slots(field: Field) -> tuple[Slot, ...]:
+    return _slots(field, field.type)
 
 
 def _slots(field: Field, type: Type) -> tuple[Slot, ...]:

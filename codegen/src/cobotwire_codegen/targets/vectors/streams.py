@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.vectors.law import Direction, Law, Span
-from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, Example, examples
+from cobotwire_codegen.targets.vectors.messages import DIRECTIONS, Example
 
 
 class Stream(NamedTuple):
@@ -22,19 +22,17 @@ class Stream(NamedTuple):
 Recipe = Callable[[Edition, bytes, bytes], bytes]
 
 
-def streams(edition: Edition, laws: dict[Direction, Law]) -> Iterator[Stream]:
-    """Yield every recipe in every direction until each variant has been in a stream."""
+def streams(
+    edition: Edition, laws: dict[Direction, Law], ordinary: Sequence[Example]
+) -> Iterator[Stream]:
+    """Yield every recipe in every direction until each ordinary example has been in a stream."""
     for direction in DIRECTIONS:
-        found = [e for e in examples(edition) if _ordinary(e, direction)]
+        found = [example for example in ordinary if example.direction == direction]
         for index in range(max(len(found), len(RECIPES)) if found else 0):
             one, other = found[index % len(found)].data, found[(index + 1) % len(found)].data
             what, recipe = RECIPES[index % len(RECIPES)]
             data = recipe(edition, one, other)
             yield Stream(what, direction, data, tuple(laws[direction].cut(data)))
-
-
-def _ordinary(example: Example, direction: Direction) -> bool:
-    return example.direction == direction and example.what.startswith("ordinary")
 
 
 def _false_header(edition: Edition, one: bytes, other: bytes) -> bytes:
