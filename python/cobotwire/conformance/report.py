@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from enum import StrEnum
-from typing import Literal
+from typing import Literal, NamedTuple
 
 Kind = Literal["device", "client", "codec"]
 Direction = Literal["sent", "received"]
@@ -49,8 +49,7 @@ OF_CAUSE = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Exchange:
+class Exchange(NamedTuple):
     """Bytes on the line, ``sent`` or ``received`` by the tester.
 
     ``at`` is seconds since the run started.

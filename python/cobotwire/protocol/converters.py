@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Container, Sequence
 from functools import partial
 from typing import Any, get_args, get_type_hints
@@ -19,7 +20,7 @@ def converters_of(
         names: its fields.
         radians: those in radians, which the wire carries in degrees.
     """
-    hints = get_type_hints(message)
+    hints = _declared(message)
     found: dict[str, Callable[[Any], Any]] = {}
     for name in names:
         convert = _converter(hints[name])
@@ -28,6 +29,16 @@ def converters_of(
         if convert is not None:
             found[name] = convert
     return found
+
+
+def _declared(message: type) -> dict[str, Any]:
+    """Return the types of a class's own annotations: those of its bases take most of the time."""
+
+    def own() -> None:
+        pass
+
+    own.__annotations__ = message.__annotations__
+    return get_type_hints(own, vars(sys.modules[message.__module__]))
 
 
 def _converter(hint: Any) -> Callable[[Any], Any] | None:

@@ -53,6 +53,9 @@ class Requester:
         self._devices: dict[int | None, Address] = {d.value: d for d in addresses_of(codec.table)}
         self._framer = codec.framer("reply")
         self._diagnoser = Diagnoser(codec)
+        self._event_ids = {each.id for each in codec.table.commands if each.event}
+        # Most requests are repeated, so each is described once.
+        self._descriptions: dict[tuple[str, bytes], str] = {}
         # The last two requests, of different commands, that had a reply.
         self._replied: list[EncodedRequest] = []
 
@@ -74,7 +77,11 @@ class Requester:
 
     def describe(self, request: EncodedRequest) -> str:
         """Return a request as a person writes it: ``get_encoder(joint=1)``."""
-        return as_call(request, self._codec)
+        key = request.command.name, request.frame
+        found = self._descriptions.get(key)
+        if found is None:
+            found = self._descriptions[key] = as_call(request, self._codec)
+        return found
 
     def send(self, request: EncodedRequest) -> Response:
         """Send a request, and listen until its reply has come or cannot come any more."""
@@ -192,6 +199,8 @@ class Requester:
 
     def _is_event(self, frame: Frame) -> bool:
         """Return whether a frame is a legal event: the device may send it at any time."""
+        if frame.command not in self._event_ids:
+            return False
         for command in self._codec.table.commands:
             if command.event and command.id == frame.command:
                 with suppress(ProtocolError):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire.codec.interface import DecodedMessage, Frame
 from cobotwire.conformance.hex_text import shown
@@ -14,8 +14,7 @@ from cobotwire.session.matching import repeats_arguments
 from cobotwire.session.request import EncodedRequest
 
 
-@dataclass(frozen=True, slots=True)
-class ReceivedReply:
+class ReceivedReply(NamedTuple):
     """A frame with the request's id, ``seconds`` after the request; or the text that replies to it.
 
     If the edition does not allow it, ``error`` says why, and there is no ``message``. ``decoded``
@@ -77,7 +76,10 @@ class Response:
     @property
     def valid(self) -> ReceivedReply | None:
         """The first legal reply with the right echo."""
-        return next((reply for reply in self.replies if self.accepts(reply)), None)
+        for reply in self.replies:
+            if self.accepts(reply):
+                return reply
+        return None
 
     @property
     def only_valid(self) -> bool:
