@@ -7,21 +7,22 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from cobotwire_codegen import project
 from cobotwire_codegen.model import Edition, Octets, Vector
-from cobotwire_codegen.project import editions
 from cobotwire_codegen.render.vectors_json import plain
 
 ROOT = Path(__file__).parent.parent
 
 
 @lru_cache(maxsize=1)
-def _editions() -> dict[str, Edition]:
-    return {edition.name: edition for edition in editions(ROOT)}
+def editions() -> dict[str, Edition]:
+    """Return the checked models of all editions by name. To load them takes seconds."""
+    return {edition.name: edition for edition in project.editions(ROOT)}
 
 
 def edition(name: str = "mycobot") -> Edition:
     """Return the checked model of an edition."""
-    return _editions()[name]
+    return editions()[name]
 
 
 # Each vector of these editions is a test of its own; a further edition is one test.
@@ -30,7 +31,7 @@ ONE_BY_ONE = ("mycobot", "mycobot280")
 
 def further() -> list[str]:
     """Return the names of the other editions."""
-    return [name for name in _editions() if name not in ONE_BY_ONE]
+    return [name for name in editions() if name not in ONE_BY_ONE]
 
 
 def every() -> list[tuple[str, Vector]]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import vectors
 from cobotwire_codegen.emit import write
-from cobotwire_codegen.project import editions, products
+from cobotwire_codegen.project import products
 
 
 @lru_cache
@@ -18,6 +18,6 @@ def built(target: str) -> Path:
     """Return a folder with the generated files of an output target, such as ``wireshark``."""
     root = Path(tempfile.mkdtemp(prefix=f"cobotwire-{target}-"))
     atexit.register(shutil.rmtree, root, ignore_errors=True)
-    [made] = products(root, editions(vectors.ROOT), [f"targets/{target}"])
+    [made] = products(root, [*vectors.editions().values()], [f"targets/{target}"])
     write(made)
     return made.folder

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path, PurePosixPath
 
-from cobotwire_codegen.build import build_edition, build_editions
+from cobotwire_codegen.build import Built, build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
@@ -39,7 +39,8 @@ def editions(root: Path) -> list[Edition]:
     Raises:
         SpecError: the spec is wrong, or has no edition.
     """
-    found = build_editions(edition_files(root), root)
+    built: Built = {}
+    found = [build_edition(path, root, built=built) for path in edition_files(root)]
     for edition in found:
         check(edition)
     return found

@@ -14,7 +14,6 @@ from cobotwire_codegen.author.codes import CODES, Explanation
 from cobotwire_codegen.language.edition import FILES
 from cobotwire_codegen.language.records import Choice
 from cobotwire_codegen.language.schema import records
-from cobotwire_codegen.project import editions
 from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
@@ -130,7 +129,7 @@ def test_explain_prints_all_parts_of_a_command() -> None:
 def test_every_command_of_every_edition_can_be_explained() -> None:
     from cobotwire_codegen.author.describe import describe_command
 
-    for edition in editions(vectors.ROOT):
+    for edition in vectors.editions().values():
         for command in edition.commands:
             text = describe_command(edition, command)
             assert text.startswith(f"{command.name}: ")

@@ -1,5 +1,5 @@
 """Builds the model from nodes: resolves references and fills in defaults."""
 
-from cobotwire_codegen.build.edition import build_edition, build_editions
+from cobotwire_codegen.build.edition import Built, build_edition
 
-__all__ = ["build_edition", "build_editions"]
+__all__ = ["Built", "build_edition"]

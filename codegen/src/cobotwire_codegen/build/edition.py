@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from cobotwire_codegen import language
@@ -25,7 +25,10 @@ Built = dict[Path, Edition]
 
 
 def build_edition(
-    path: Path, root: Path, unsaved: Mapping[Path, str | Node] | None = None
+    path: Path,
+    root: Path,
+    unsaved: Mapping[Path, str | Node] | None = None,
+    built: Built | None = None,
 ) -> Edition:
     """Return an edition; file names in messages are relative to ``root``.
 
@@ -33,25 +36,14 @@ def build_edition(
         path: the edition's file.
         root: the folder to which file names in messages are relative.
         unsaved: texts or nodes that replace the content of files on disk, by resolved path.
+        built: editions that were built before from the same files; a base is taken from here, and
+            what is built is added. Without it, each base is built again.
 
     Raises:
         SpecError: reading found problems; the error carries all of them.
     """
-    return _edition(path, Texts(root, unsaved or {}), {})
-
-
-def build_editions(paths: Iterable[Path], root: Path) -> list[Edition]:
-    """Return editions as :func:`build_edition` does; a base of several of them is built once.
-
-    Raises:
-        SpecError: reading an edition found problems; the error carries all problems of the first.
-    """
-    built: Built = {}
-    return [_edition(path, Texts(root, {}), built) for path in paths]
-
-
-def _edition(path: Path, texts: Texts, built: Built) -> Edition:
     problems: list[Problem] = []
+    texts, built = Texts(root, unsaved or {}), {} if built is None else built
     reader, parts = _collect(path, texts, problems, (), built)
     edition = _built(path, reader, parts, problems, built)
     if problems:

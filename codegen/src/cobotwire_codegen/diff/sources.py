@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.build import Built, build_edition
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.project import edition_files
@@ -71,7 +71,8 @@ def paired(old: Source, new: Source) -> tuple[dict[str, Edition], dict[str, Edit
 
 
 def _editions(folder: Path, root: Path) -> dict[str, Edition]:
-    found = [build_edition(path, root) for path in edition_files(folder)]
+    built: Built = {}
+    found = [build_edition(path, root, built=built) for path in edition_files(folder)]
     return {edition.name: edition for edition in found}
 
 

@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from cobotwire_codegen.author.append import files_of
-from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.build import Built, build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.load import Mapping, Node, load
@@ -60,18 +60,19 @@ class Workspace:
         """Return the problems of the editions of a file, by file; the file itself is always in."""
         found: dict[Path, list[Problem]] = defaultdict(list)
         found[path.resolve()] = []
+        built: Built = {}
         for edition in self.editions_of(path):
             for file in _files(edition):
                 found.setdefault(file, [])
-            for problem in self._problems_of(edition):
+            for problem in self._problems_of(edition, built):
                 file = self.path(problem.place)
                 if problem not in found[file]:
                     found[file].append(problem)
         return found
 
-    def _problems_of(self, edition: Path) -> Iterable[Problem]:
+    def _problems_of(self, edition: Path, built: Built) -> Iterable[Problem]:
         try:
-            self._built[edition] = build_edition(edition, self.root, self.unsaved)
+            self._built[edition] = build_edition(edition, self.root, self.unsaved, built)
             check(self._built[edition])
         except SpecError as error:
             return error.problems
