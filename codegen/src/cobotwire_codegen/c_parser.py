@@ -9,7 +9,7 @@ mistakes, that is a mapping or a list, and in which no value is left out or empt
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import import_module
 from typing import Any
 
@@ -26,6 +26,7 @@ from ruamel.yaml.events import (
     StreamStartEvent,
 )
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from ruamel.yaml.tag import Tag
 
 c_library: Any
 try:
@@ -38,6 +39,8 @@ except ImportError:
 _READ_OTHERWISE = re.compile(r"[\t\ufeff\x85\u2028\u2029]|[|>][-+0-9]*#")
 _RESOLVER = YAML(typ="safe", pure=True).resolver
 _TAG = "tag:yaml.org,2002:"
+# Shared by nodes: a tag remembers its text, which it makes letter by letter.
+_SEQUENCE, _MAPPING = Tag(suffix=f"{_TAG}seq"), Tag(suffix=f"{_TAG}map")
 
 
 class _Unsure(Exception):
@@ -93,9 +96,9 @@ class _Composer:
                 raise _Unsure
             return ScalarNode(_scalar_tag(event.value, event.implicit), event.value, mark)
         if isinstance(event, SequenceStartEvent):
-            return SequenceNode(f"{_TAG}seq", self._items(depth), mark)
+            return SequenceNode(_SEQUENCE, self._items(depth), mark)
         if isinstance(event, MappingStartEvent):
-            return MappingNode(f"{_TAG}map", self._entries(depth), mark)
+            return MappingNode(_MAPPING, self._entries(depth), mark)
         raise _Unsure
 
     def _items(self, depth: int) -> list[Node]:
@@ -113,6 +116,11 @@ class _Composer:
 
 
 @lru_cache(maxsize=10_000)
-def _scalar_tag(value: str, implicit: tuple[bool, bool]) -> str:
+def _scalar_tag(value: str, implicit: tuple[bool, bool]) -> Tag:
     """Return the tag of a scalar by the rules of YAML 1.2."""
-    return str(_RESOLVER.resolve(ScalarNode, value, implicit))
+    return _tag(str(_RESOLVER.resolve(ScalarNode, value, implicit)))
+
+
+@cache
+def _tag(text: str) -> Tag:
+    return Tag(suffix=text)

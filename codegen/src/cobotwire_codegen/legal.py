@@ -15,6 +15,8 @@ def odd_character(text: str) -> str:
     bidirectional formats (which make a reviewer see another text) and lone surrogates (which have
     no encoding) are not.
     """
+    if text.isprintable():
+        return ""
     odd = next((letter for letter in text if not _legal(letter)), None)
     return "" if odd is None else f"U+{ord(odd):04X}, which cannot be printed"
 
