@@ -4,17 +4,16 @@ use crate::direction::Direction;
 use crate::frame::Frame;
 use crate::judge::Rules;
 use crate::message::VariantId;
-use crate::number::Value;
 use crate::table::Table;
-use crate::template::{Exact, LONGEST_PLAIN, MOST_PLAIN, Place};
+use crate::template::{Exact, LONGEST_PLAIN, MOST_PLAIN, Place, PlainNumbers};
 
 /// A message that a template read.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct PlainMessage<'a> {
     /// Which message it is.
     pub variant: VariantId,
-    /// Its values: one for each field; the elements of a row follow the row.
-    pub values: &'a [Value],
+    /// Its values.
+    pub numbers: PlainNumbers<'a>,
     /// Its address byte, if the format has one.
     pub address: Option<u8>,
 }
@@ -48,11 +47,11 @@ pub fn encode_plain<'a>(
 /// rules is plain and allows the values.
 #[inline]
 pub fn read_plain<'a>(
-    table: &Table,
+    table: &'a Table,
     rules: &Rules,
     frame: Frame<'_>,
     of: Option<usize>,
-    space: &'a mut [Value; MOST_PLAIN],
+    space: &'a mut [i64; MOST_PLAIN],
 ) -> Option<PlainMessage<'a>> {
     let variants = rules.variants(frame).iter();
     let mut variants = variants.filter(|id| of.is_none_or(|of| of == id.command));
@@ -61,7 +60,7 @@ pub fn read_plain<'a>(
     let template = templates.get(variant.variant)?;
     Some(PlainMessage {
         variant,
-        values: template.read(table.frame().data(frame, variant.direction), space)?,
+        numbers: template.read(table.frame().data(frame, variant.direction), space)?,
         address: table.frame().address(frame),
     })
 }

@@ -9,10 +9,11 @@ use crate::field::{Field, Shape};
 use crate::frame::FrameFormat;
 use crate::message::{Command, Variant};
 use crate::number::{Number, Value};
+use crate::step::Step;
 
 /// The size of the longest frame that a template builds.
 pub const LONGEST_PLAIN: usize = 64;
-/// The most values that a template reads, with rows and their elements.
+/// The most numbers that a template reads.
 pub const MOST_PLAIN: usize = 24;
 
 /// A number of the caller that needed no conversion.
@@ -47,8 +48,18 @@ pub(crate) struct Template {
     frame: Vec<u8>,
     data_at: usize,
     slots: Vec<Slot>,
-    /// The number of values when decoded, with rows and their elements.
-    values: usize,
+    /// How to read the numbers of the slots.
+    steps: Vec<Step>,
+    /// The fields, in order.
+    parts: Vec<Part>,
+}
+
+/// The numbers of one field.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// Whether the field's value is a row of them, rather than the one number.
+    many: bool,
+    numbers: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -86,10 +97,14 @@ impl Template {
         direction: Direction,
         variant: &Variant,
     ) -> Option<Self> {
-        let mut slots = Vec::new();
+        let (mut slots, mut steps, mut parts) = (Vec::new(), Vec::new(), Vec::new());
         for (index, field) in variant.fields().iter().enumerate() {
             let numbers = plain_numbers(field)?;
             let mut at = variant.start(index);
+            parts.push(Part {
+                many: field.many,
+                numbers: numbers.len(),
+            });
             for (element, number) in numbers.iter().enumerate() {
                 slots.push(Slot {
                     place: match (field.many, element) {
@@ -101,6 +116,8 @@ impl Template {
                     number: number.clone(),
                     choices: field.choices.clone(),
                 });
+                let bounded = field.choices.is_empty() && number.choices.is_empty();
+                steps.push(Step::new(number, at, bounded));
                 at += number.step();
             }
         }
@@ -110,14 +127,13 @@ impl Template {
         format.start(&mut frame, address, length, command.id, direction);
         let data_at = frame.len();
         frame.resize(data_at + variant.size() + format.check.size(), 0);
-        let rows = variant.fields().iter().filter(|field| field.many).count();
-        let values = rows + slots.len();
-        (frame.len() <= LONGEST_PLAIN && values <= MOST_PLAIN).then_some(Self {
+        (frame.len() <= LONGEST_PLAIN && slots.len() <= MOST_PLAIN).then_some(Self {
             fields: variant.fields().len(),
             frame,
             data_at,
             slots,
-            values,
+            steps,
+            parts,
         })
     }
 
@@ -138,26 +154,52 @@ impl Template {
         Some(frame)
     }
 
-    /// Read the values of the data.
+    /// Read the raw values of the data.
     #[inline]
     pub(crate) fn read<'a>(
-        &self,
+        &'a self,
         data: &[u8],
-        space: &'a mut [Value; MOST_PLAIN],
-    ) -> Option<&'a [Value]> {
-        let values = space.get_mut(..self.values)?;
-        let mut places = values.iter_mut();
-        for slot in &self.slots {
-            let raw = slot.number.unpack(data, slot.at);
-            if !slot.allows(raw) {
-                return None;
-            }
-            if let Place::First(_, count) = slot.place {
-                *places.next()? = Value::Row(count);
-            }
-            *places.next()? = slot.number.physical(raw);
+        space: &'a mut [i64; MOST_PLAIN],
+    ) -> Option<PlainNumbers<'a>> {
+        let raws = space.get_mut(..self.steps.len())?;
+        for ((place, step), slot) in raws.iter_mut().zip(&self.steps).zip(&self.slots) {
+            *place = match step.raw(data) {
+                Ok(raw) => raw?,
+                Err(at) => {
+                    let raw = slot.number.unpack(data, at);
+                    slot.allows(raw).then_some(raw)?
+                }
+            };
         }
-        Some(values)
+        Some(PlainNumbers {
+            template: self,
+            raws,
+        })
+    }
+}
+
+/// The numbers of a message that a template read.
+#[derive(Clone, Copy, Debug)]
+pub struct PlainNumbers<'a> {
+    template: &'a Template,
+    raws: &'a [i64],
+}
+
+impl<'a> PlainNumbers<'a> {
+    /// Return the fields in order: whether the value is a row, and the number or its elements.
+    #[inline]
+    pub fn fields(
+        self,
+    ) -> impl ExactSizeIterator<Item = (bool, impl ExactSizeIterator<Item = Value> + 'a)> {
+        let Template { steps, parts, .. } = self.template;
+        let (mut steps, mut raws) = (steps.as_slice(), self.raws);
+        parts.iter().map(move |part| {
+            let (own, other) = steps.split_at_checked(part.numbers).unwrap_or_default();
+            let (numbers, rest) = raws.split_at_checked(part.numbers).unwrap_or_default();
+            (steps, raws) = (other, rest);
+            let values = own.iter().zip(numbers);
+            (part.many, values.map(|(step, raw)| step.physical(*raw)))
+        })
     }
 }
 

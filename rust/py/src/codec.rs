@@ -145,11 +145,12 @@ impl NativeCodec {
             Listening::To(direction) => direction,
             Listening::Both => Direction::Request,
         };
-        Ok(NativeFramer::new(Origin {
+        let origin = Origin {
             edition: Arc::clone(&self.edition),
             rules,
             direction,
-        }))
+        };
+        NativeFramer::new(listening.py(), origin)
     }
 
     /// Return the positions of the frames of a whole stream.

@@ -1,28 +1,28 @@
 //! Converts the core's events to Python's `Frame` and `Noise`.
 
-use std::sync::Arc;
-
 use cobotwire_core::{Event, Frame, Reason};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyList};
+use pyo3::types::{PyBytes, PyList, PyType};
 
 use crate::frame::{NativeFrame, Origin};
-use crate::memory::untrack;
+use crate::frame_class::{class, object};
 use crate::names::Names;
 
 /// Collects the events of one call.
 pub struct Events<'py, 'a> {
     names: &'static Names,
-    origin: &'a Arc<Origin>,
+    origin: &'a Py<Origin>,
+    frames: &'py Bound<'py, PyType>,
     list: Bound<'py, PyList>,
     failed: Option<PyErr>,
 }
 
 impl<'py, 'a> Events<'py, 'a> {
-    pub fn new(py: Python<'py>, origin: &'a Arc<Origin>) -> PyResult<Self> {
+    pub fn new(py: Python<'py>, origin: &'a Py<Origin>) -> PyResult<Self> {
         Ok(Self {
             names: Names::get(py)?,
             origin,
+            frames: class(py)?,
             list: PyList::empty(py),
             failed: None,
         })
@@ -52,11 +52,8 @@ impl<'py, 'a> Events<'py, 'a> {
     }
 
     fn frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<Bound<'py, PyAny>> {
-        let frame = NativeFrame::new(Arc::clone(self.origin), offset, frame);
-        let frame = Bound::new(self.list.py(), frame)?;
-        // It holds only numbers in tuples, so it cannot be part of a cycle.
-        untrack(&frame);
-        Ok(frame.into_any())
+        let origin = self.origin.clone_ref(self.list.py());
+        object(self.frames, NativeFrame::new(origin, offset, frame))
     }
 
     fn noise(&self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<Bound<'py, PyAny>> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cobotwire_core::{
-    DecodeError, Direction, Frame, Listening, MOST_PLAIN, OwnedFrame, Rules, Value, VariantId,
+    DecodeError, Direction, Frame, Listening, MOST_PLAIN, OwnedFrame, Rules, VariantId,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -11,10 +11,12 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 use crate::edition::Edition;
 use crate::names::Names;
 use crate::once::Once;
-use crate::values::objects;
+use crate::values::{objects, plain_objects};
 use crate::words::one_way;
 
-/// The data that all frames of one framer share.
+/// The data that all frames of one framer share. Python counts its references, since that is faster
+/// than counting them for several threads at once.
+#[pyclass(frozen, module = "cobotwire._native")]
 pub struct Origin {
     pub edition: Arc<Edition>,
     pub rules: Rules,
@@ -22,15 +24,13 @@ pub struct Origin {
     pub direction: Direction,
 }
 
-/// A whole, legal frame.
-#[pyclass(frozen, module = "cobotwire._native")]
+/// A whole, legal frame; `frame_class` has its Python class.
 pub struct NativeFrame {
-    origin: Arc<Origin>,
+    origin: Py<Origin>,
     /// The position of its first byte in the stream.
-    #[pyo3(get)]
-    offset: u64,
+    pub offset: u64,
     frame: OwnedFrame,
-    /// Its values, after their first use.
+    /// Its values, if they were used more than once, or take long to decode.
     values: Once,
 }
 
@@ -42,7 +42,7 @@ struct Message<'py> {
 }
 
 impl NativeFrame {
-    pub fn new(origin: Arc<Origin>, offset: u64, frame: Frame<'_>) -> Self {
+    pub fn new(origin: Py<Origin>, offset: u64, frame: Frame<'_>) -> Self {
         Self {
             origin,
             offset,
@@ -52,7 +52,7 @@ impl NativeFrame {
     }
 
     fn frame(&self) -> Frame<'_> {
-        self.frame.get(self.origin.edition.core.frame())
+        self.frame.get(self.origin.get().edition.core.frame())
     }
 
     /// Decode it in one direction, or in those that the framer listens to. With `of`, only messages
@@ -63,10 +63,10 @@ impl NativeFrame {
         direction: Option<Direction>,
         of: Option<usize>,
     ) -> PyResult<Message<'py>> {
-        let Origin { edition, rules, .. } = &*self.origin;
+        let Origin { edition, rules, .. } = self.origin.get();
         let rules = direction.map_or(rules, |way| edition.core.rules(Listening::To(way)));
         self.decoded(py, rules, of)?.map_err(|error| {
-            let direction = direction.unwrap_or(self.origin.direction);
+            let direction = direction.unwrap_or(self.origin.get().direction);
             match Names::get(py) {
                 Ok(names) => {
                     let direction = names.direction(py, direction);
@@ -83,12 +83,12 @@ impl NativeFrame {
         rules: &Rules,
         of: Option<usize>,
     ) -> PyResult<Result<Message<'py>, DecodeError>> {
-        let (core, frame) = (&self.origin.edition.core, self.frame());
-        let mut space = [Value::Integer(0); MOST_PLAIN];
+        let (core, frame) = (&self.origin.get().edition.core, self.frame());
+        let mut space = [0; MOST_PLAIN];
         if let Some(plain) = cobotwire_core::read_plain(core, rules, frame, of, &mut space) {
             return Ok(Ok(Message {
                 variant: plain.variant,
-                values: objects(py, plain.values)?,
+                values: plain_objects(py, plain.numbers)?,
                 address: plain.address,
             }));
         }
@@ -114,12 +114,12 @@ impl NativeFrame {
             core,
             commands,
             ..
-        } = &*self.origin.edition;
+        } = &*self.origin.get().edition;
         let of = commands.find(table, of)?;
         let rules = core.rules(Listening::To(Direction::Reply));
         match self.decoded(py, rules, Some(of))? {
             Ok(message) => {
-                let edition = &self.origin.edition;
+                let edition = &self.origin.get().edition;
                 edition.fields(message.variant, &message.values).map(Some)
             }
             Err(_) => Ok(None),
@@ -133,36 +133,32 @@ impl NativeFrame {
             values,
             address,
         } = message;
-        let edition = &self.origin.edition;
+        let edition = &self.origin.get().edition;
         edition.message(values.py(), *variant, values, *address)
     }
 }
 
-#[pymethods]
+/// What Python's class has.
 impl NativeFrame {
     /// Its bytes, from header to check.
-    #[getter]
-    fn data<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+    pub fn data<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, self.frame.bytes())
     }
 
     /// Its command id.
-    #[getter]
-    fn command(&self) -> u16 {
+    pub fn command(&self) -> u16 {
         self.frame().id()
     }
 
     /// Its message: the first one that allows its values.
-    #[getter]
-    fn message<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    pub fn message<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let read = self.read(py, None, None)?;
         let values = self.values.set(read.values);
         self.tuple_of(&Message { values, ..read })
     }
 
     /// Return what `codec.decode(direction, frame.data, of=of)` returns, without judging it again.
-    #[pyo3(signature = (direction = None, *, of = None))]
-    fn decode<'py>(
+    pub fn decode<'py>(
         &self,
         py: Python<'py>,
         direction: Option<&Bound<'py, PyAny>>,
@@ -170,38 +166,56 @@ impl NativeFrame {
     ) -> PyResult<Bound<'py, PyAny>> {
         let Edition {
             table, commands, ..
-        } = &*self.origin.edition;
+        } = &*self.origin.get().edition;
+        let of = of.filter(|name| !name.is_none());
         let of = of.map(|name| commands.find(table, name)).transpose()?;
+        let direction = direction.filter(|word| !word.is_none());
         self.tuple_of(&self.read(py, direction.map(one_way).transpose()?, of)?)
     }
 
     /// The values of its message, one for each field.
-    #[getter]
-    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    #[inline]
+    pub fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         if let Some(values) = self.values.get(py) {
             return Ok(values);
         }
-        Ok(self.values.set(self.read(py, None, None)?.values))
+        let Origin { edition, rules, .. } = self.origin.get();
+        let (core, mut space) = (&edition.core, [0; MOST_PLAIN]);
+        match cobotwire_core::read_plain(core, rules, self.frame(), None, &mut space) {
+            // Most programs read a frame once: keeping its values then takes memory, and more time
+            // than decoding them.
+            Some(plain) => {
+                let values = plain_objects(py, plain.numbers)?;
+                Ok(if self.values.is_first(py) {
+                    values
+                } else {
+                    self.values.set(values)
+                })
+            }
+            None => Ok(self.values.set(self.read(py, None, None)?.values)),
+        }
     }
 
-    fn __eq__(&self, other: &Self) -> bool {
+    /// Whether two frames are equal.
+    pub fn same(&self, other: &Self) -> bool {
         self.offset == other.offset && self.frame == other.frame
     }
 
-    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-        // Equal to the hash of Python's own class, because the frames can be equal.
+    /// Return the hash of Python's own class of frames, because the two can be equal.
+    pub fn hash(&self, py: Python<'_>) -> PyResult<isize> {
         (self.offset, self.command(), self.data(py))
             .into_pyobject(py)?
             .hash()
     }
 
-    fn __repr__(&self) -> String {
-        let data: Vec<String> = self
-            .frame
-            .bytes()
-            .iter()
-            .map(|byte| format!("{byte:02X}"))
-            .collect();
+    pub fn repr(&self) -> String {
+        let bytes = self.frame.bytes().iter();
+        let data: Vec<String> = bytes.map(|byte| format!("{byte:02X}")).collect();
         format!("<Frame {} at {}>", data.join(" "), self.offset)
+    }
+
+    /// Drop it in a thread that is attached, which saves asking whether it is.
+    pub fn drop_in(self, py: Python<'_>) {
+        self.origin.drop_ref(py);
     }
 }

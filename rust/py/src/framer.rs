@@ -1,7 +1,5 @@
 //! `NativeFramer`: implements `cobotwire.codec.interface.Framer` with the core.
 
-use std::sync::Arc;
-
 use cobotwire_core::{Framer, Reason, Tally};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
@@ -9,22 +7,23 @@ use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 #[cfg(unix)]
 use crate::descriptor::{read_now, write_if_free};
 use crate::events::Events;
-use crate::frame::{NativeFrame, Origin};
+use crate::frame::Origin;
+use crate::frame_class;
 use crate::names::Names;
 
 /// Cuts frames out of a byte stream.
 #[pyclass(module = "cobotwire._native")]
 pub struct NativeFramer {
     core: Framer,
-    origin: Arc<Origin>,
+    origin: Py<Origin>,
 }
 
 impl NativeFramer {
-    pub fn new(origin: Origin) -> Self {
-        Self {
+    pub fn new(py: Python<'_>, origin: Origin) -> PyResult<Self> {
+        Ok(Self {
             core: Framer::new(origin.rules.clone()),
-            origin: Arc::new(origin),
-        }
+            origin: Py::new(py, origin)?,
+        })
     }
 }
 
@@ -129,8 +128,8 @@ impl NativeFramer {
         let events = events.finish()?;
         if whole && self.core.pending() == 0 && events.len() == 1 {
             let event = events.get_item(0)?;
-            if let Ok(frame) = event.cast::<NativeFrame>()
-                && let Some(fields) = frame.get().fields_of(py, of)?
+            if let Some(frame) = frame_class::frame(&event)
+                && let Some(fields) = frame.fields_of(py, of)?
             {
                 return Ok(Taken::Reply(event, fields.into_any()));
             }

@@ -1,6 +1,6 @@
 //! Converts rows of values between Python's tuples and the core's.
 
-use cobotwire_core::Value;
+use cobotwire_core::{PlainNumbers, Value};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyTuple};
 
@@ -33,6 +33,35 @@ pub fn objects<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, Py
     }
 }
 
+/// Return the same of a message that a template read.
+pub fn plain_objects<'py>(
+    py: Python<'py>,
+    values: PlainNumbers<'_>,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let all = PyTuple::new(py, values.fields().map(PlainField))?;
+    untrack(&all);
+    Ok(all)
+}
+
+/// Whether a field's value is a row, and its numbers.
+struct PlainField<I>((bool, I));
+
+impl<'py, I: ExactSizeIterator<Item = Value>> IntoPyObject<'py> for PlainField<I> {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Self((many, mut numbers)) = self;
+        if many {
+            let row = PyTuple::new(py, numbers.map(Number))?;
+            untrack(&row);
+            return Ok(row.into_any());
+        }
+        Number(numbers.next().unwrap_or(Value::Integer(0))).into_pyobject(py)
+    }
+}
+
 /// Return whether a value is more than a number.
 fn compound(value: &Value) -> bool {
     !matches!(value, Value::Integer(_) | Value::Real(_))
@@ -41,7 +70,7 @@ fn compound(value: &Value) -> bool {
 /// Return a tuple of numbers; the values contain no row.
 fn numbers<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, PyTuple>> {
     let all = PyTuple::new(py, values.iter().map(|value| Number(*value)))?;
-    // Numbers refer to nothing; the collector would untrack the tuple itself, but later.
+    // PlainNumbers refer to nothing; the collector would untrack the tuple itself, but later.
     untrack(&all);
     Ok(all)
 }

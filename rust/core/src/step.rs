@@ -1,0 +1,96 @@
+//! Numbers in the form in which short calls read them.
+//!
+//! A [`Number`] describes every number that a table can have. Most are plain integers of one or two
+//! bytes; what reading one of these needs is prepared here, in less than a cache line.
+
+use crate::number::{Number, Order, Value};
+
+/// How to read one number.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    /// The offset of its first byte in the data.
+    at: usize,
+    form: Form,
+    /// The raw value is negative above this number.
+    signed_at: i32,
+    /// The least and the largest legal raw value.
+    least: i32,
+    most: i32,
+    scaled: bool,
+    multiply: i64,
+    divide: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Byte,
+    Big,
+    Little,
+    /// The number itself must be asked.
+    Other,
+}
+
+impl Step {
+    /// Return the step of a number that starts at `at`. It asks the number unless bounds decide
+    /// which raw values are legal.
+    pub(crate) fn new(number: &Number, at: usize, bounded: bool) -> Self {
+        let form = match (number.width, number.order) {
+            _ if !bounded || number.float || number.bits.is_some() => Form::Other,
+            (1, _) => Form::Byte,
+            (2, Order::Big) => Form::Big,
+            (2, Order::Little) => Form::Little,
+            _ => Form::Other,
+        };
+        Self {
+            at,
+            form,
+            signed_at: cut(number.signed_at),
+            least: cut(number.minimum),
+            most: cut(number.maximum),
+            scaled: number.scaled(),
+            multiply: number.multiply,
+            divide: number.divide as f64,
+        }
+    }
+
+    /// Return the raw value in the data; `None` if it is not legal. `Err`: the number must be asked, at
+    /// this offset.
+    #[inline(always)]
+    pub(crate) fn raw(&self, data: &[u8]) -> Result<Option<i64>, usize> {
+        let rest = data.get(self.at..).unwrap_or_default();
+        let (unsigned, modulus) = match (self.form, rest) {
+            (Form::Byte, &[byte, ..]) => (i32::from(byte), 1 << 8),
+            (Form::Big, &[first, second, ..]) => {
+                (i32::from(u16::from_be_bytes([first, second])), 1 << 16)
+            }
+            (Form::Little, &[first, second, ..]) => {
+                (i32::from(u16::from_le_bytes([first, second])), 1 << 16)
+            }
+            (Form::Other, _) => return Err(self.at),
+            _ => return Ok(None),
+        };
+        let negative = if unsigned > self.signed_at {
+            modulus
+        } else {
+            0
+        };
+        let raw = unsigned - negative;
+        let legal = self.least <= raw && raw <= self.most;
+        Ok(legal.then_some(i64::from(raw)))
+    }
+
+    /// Return the physical value of a raw value, as [`Number::physical`] does.
+    #[inline(always)]
+    pub(crate) fn physical(&self, raw: i64) -> Value {
+        if self.scaled {
+            Value::Real((raw * self.multiply) as f64 / self.divide)
+        } else {
+            Value::Integer(raw)
+        }
+    }
+}
+
+/// Return the nearest number of 32 bits: numbers of two bytes compare the same with it.
+fn cut(number: i64) -> i32 {
+    number.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
+}

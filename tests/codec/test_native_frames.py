@@ -1,0 +1,146 @@
+"""The native class of frames: what a frame takes, gives back, and accepts.
+
+That its values are those of the reference is tested in test_agreement and test_frame_decode.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Callable
+from threading import Barrier, Thread
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import Frame, Framer
+from cobotwire.editions.mycobot280 import TABLE
+
+CODEC = codecs.load(TABLE, "native")
+ANGLES = CODEC.encode("get_angles", "reply", ([1.5, -20.25, 30.0, 0.01, 0.29, -179.99],))
+POWER = CODEC.encode("is_power_on", "reply", (1,))
+
+
+def _frames(count: int, framer: Framer | None = None) -> list[Frame]:
+    events = (framer or CODEC.framer("reply")).feed((ANGLES + POWER) * (count // 2))
+    return [event for event in events if isinstance(event, Frame)]
+
+
+def test_a_frame_takes_at_most_64_bytes_and_the_collector_does_not_visit_it() -> None:
+    frame = _frames(2)[0]
+    assert sys.getsizeof(frame) <= 64
+    assert not gc.is_tracked(frame)
+
+
+def test_frames_give_all_back() -> None:
+    """Leaks of one reference for each frame would remain: to the class, its origin, its values."""
+    kind = type(_frames(2)[0])
+    framer = CODEC.framer("reply")
+    _use(_frames(1000, framer))
+    gc.collect()
+    before, blocks = sys.getrefcount(kind), sys.getallocatedblocks()
+    for _ in range(5):
+        _use(_frames(1000, framer))
+    gc.collect()
+    assert sys.getrefcount(kind) == before
+    assert sys.getallocatedblocks() - blocks < 500
+
+
+def _use(frames: list[Frame]) -> None:
+    for place, frame in enumerate(frames):
+        for _ in range(place % 4):
+            assert frame.values
+        if place % 5 == 0:
+            assert frame.message.values == frame.values
+
+
+def test_frames_outlive_their_framer_and_codec() -> None:
+    codec = codecs.load(TABLE, "native")
+    frame = next(iter(codec.framer("reply").feed(ANGLES)))
+    del codec
+    gc.collect()
+    assert isinstance(frame, Frame)
+    assert frame.values == ((1.5, -20.25, 30.0, 0.01, 0.29, -179.99),)
+    assert frame.message.command.name == "get_angles"
+
+
+def test_values_are_kept_from_the_second_use_on() -> None:
+    frame = _frames(2)[0]
+    first, second, third = frame.values, frame.values, frame.values
+    assert first == second
+    assert second is third
+    assert frame.message.values is third
+
+
+def test_threads_read_the_same_frames() -> None:
+    frames = _frames(4000)
+    expected = [CODEC.decode("reply", frame.data).values for frame in frames[:2]] * 2000
+    barrier, found = Barrier(4), []
+
+    def read() -> None:
+        barrier.wait()
+        found.append([(frame.values, frame.values) for frame in frames])
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        threads = [Thread(target=read) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    finally:
+        sys.setswitchinterval(interval)
+    assert len(found) == 4
+    for values in found:
+        assert values == [(each, each) for each in expected]
+    # Each kept tuple is the same for all threads.
+    assert all(frame.values is frame.values for frame in frames)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda frame: frame.decode("reply", "reply"),
+        lambda frame: frame.decode("reply", direction="reply"),
+        lambda frame: frame.decode(by="get_angles"),
+        lambda frame: frame.decode("reply", of="get_angles", by=1),
+        lambda frame: type(frame)(),
+        lambda frame: type("Derived", (type(frame),), {}),
+        lambda frame: frame < frame,
+    ],
+)
+def test_wrong_calls_are_type_errors(call: Callable[[Any], Any]) -> None:
+    with pytest.raises(TypeError):
+        call(_frames(2)[0])
+
+
+def test_decode_takes_none_as_not_given() -> None:
+    frame = _frames(2)[0]
+    assert frame.decode(None, of=None) == frame.decode() == frame.message
+    assert frame.decode(direction="reply", of="get_angles") == frame.message
+
+
+@pytest.mark.parametrize("name", ["offset", "data", "command", "values", "message", "other"])
+def test_attributes_cannot_be_set(name: str) -> None:
+    frame = _frames(2)[0]
+    with pytest.raises(AttributeError):
+        setattr(frame, name, 1)
+    with pytest.raises(TypeError):
+        setattr(type(frame), name, 1)
+
+
+def test_names_of_attributes_are_compared_by_their_text() -> None:
+    frame = _frames(2)[0]
+    assert getattr(frame, "".join(["val", "ues"])) == frame.values
+    with pytest.raises(AttributeError, match="nothing"):
+        getattr(frame, "".join(["no", "thing"]))
+
+
+def test_frames_equal_frames_only() -> None:
+    one, other = _frames(2), _frames(2)
+    assert one == other
+    assert hash(one[0]) == hash(other[0])
+    assert one[0] != one[1]
+    assert one[0] != ANGLES
