@@ -119,6 +119,17 @@ class Swapping:
         request = EncodedRequest(command, frame, b"", {}, plain=True)
         return self.lone.call(self, request, RetryPolicy(attempts=1), timeout, at)
 
+    def answer_with(self, data: bytes) -> threading.Thread:
+        """Let the peer send bytes as soon as a request has come, which stays there."""
+
+        def answer() -> None:
+            self.peer.recv(99, socket.MSG_PEEK)
+            self.peer.send(data)
+
+        answering = threading.Thread(target=answer)
+        answering.start()
+        return answering
+
     @property
     def free(self) -> tuple[bool, bool, object, object]:
         """What a call takes: whether both locks are free, the leader, and what has begun."""
@@ -164,8 +175,7 @@ def swapping() -> Iterator[Swapping]:
 
 
 def test_swap_returns_the_only_frame_and_its_fields(swapping: Swapping) -> None:
-    answering = threading.Timer(0.02, swapping.peer.send, [ANGLES])
-    answering.start()
+    answering = swapping.answer_with(ANGLES)
     started = time.monotonic()
     fields, requested_at, replied_at = swapping.swap()
     answering.join()
@@ -181,8 +191,7 @@ def test_swap_returns_events_if_more_or_less_than_the_reply_comes(
     swapping: Swapping, received: bytes
 ) -> None:
     plain = codecs.load(TABLE, "native").framer("reply")
-    answering = threading.Timer(0.02, swapping.peer.send, [received])
-    answering.start()
+    answering = swapping.answer_with(received)
     events = swapping.swap()
     answering.join()
     assert events == plain.feed(received)
@@ -251,8 +260,7 @@ def test_copy_of_a_one_way_request_is_not_taken_for_the_reply(swapping: Swapping
     stop = EncodedRequest(TABLE.command("stop"), ANGLES, b"", {})
     swapping.exchange.send_one_way(stop, time.monotonic())
     swapping.alone.outstanding_replies.replies = ()
-    answering = threading.Timer(0.02, swapping.peer.send, [ANGLES])
-    answering.start()
+    answering = swapping.answer_with(ANGLES)
     [frame] = swapping.swap()
     answering.join()
     assert frame.data == ANGLES
@@ -291,8 +299,9 @@ def test_error_of_writing_the_rest_is_raised_and_frees_the_lock(swapping: Swappi
 
 
 def test_noise_before_a_reply_is_an_event(swapping: Swapping) -> None:
-    threading.Timer(0.02, swapping.peer.send, [b"boot\r\n" + ANGLES]).start()
+    answering = swapping.answer_with(b"boot\r\n" + ANGLES)
     noise, frame = swapping.swap()
+    answering.join()
     assert isinstance(noise, Noise)
     assert frame.data == ANGLES
 

@@ -19,6 +19,7 @@ from cobotwire.transport.interface import (
     PollableTransport,
     Transport,
 )
+from cobotwire.transport.loop_readers import readers_of
 
 # A write fails when no byte of it was taken for this long.
 WRITE_TIMEOUT = 1.0
@@ -50,7 +51,8 @@ class PolledTransport:
         self._transport = transport
         self._descriptor = descriptor
         self._loop = asyncio.get_running_loop()
-        self._loop.add_reader(descriptor, ready)
+        self._readers = readers_of(self._loop)
+        self._readers.add(descriptor, ready)
         # Writes that were not taken yet, oldest first, and how much of the first one was taken.
         self.unwritten: deque[tuple[bytes, Done]] = deque()
         self._taken = 0
@@ -140,7 +142,7 @@ class PolledTransport:
         """Stop watching and close the transport."""
         if not self._closed:
             self._closed = True
-            self._loop.remove_reader(self._descriptor)
+            self._readers.remove(self._descriptor)
             self._end_writing(LinkError(self._transport.url, "was closed"))
             self._transport.close()
 
