@@ -16,7 +16,7 @@ import pytest
 
 from cobotwire.transport.loop_readers import FEW, LoopReaders, readers_of
 
-MANY = 3 * FEW
+MANY = FEW + 20
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has epoll")
 needs_readers = pytest.mark.skipif(
     sys.platform == "win32", reason="its loop watches no descriptors"
