@@ -143,7 +143,11 @@ fn next(quick: Quick<'_>, data: &Block, from: usize, end: usize) -> (usize, usiz
     while at < end {
         let window = quick.window(data, at);
         let skipped = (window.candidates.trailing_zeros() as usize).min(end - at);
-        lengths += window.first(skipped).bad_lengths.count_ones() as usize;
+        // Headers in noise are rare, and old processors have no instruction that counts bits.
+        let bad_lengths = window.first(skipped).bad_lengths;
+        if bad_lengths != 0 {
+            lengths += bad_lengths.count_ones() as usize;
+        }
         at += skipped;
         if skipped < WINDOW {
             break;
