@@ -152,4 +152,4 @@ def _native(
 
     assert isinstance(codec, NativeCodec), "reads() tells whether a codec has a survey"
     names = None if texts is None else texts[:4]
-    return NativeSurvey(codec, listening, accept_unknown, servo_bus().vocabulary(), names)
+    return NativeSurvey(codec, listening, accept_unknown, servo_bus().vocabulary, names)

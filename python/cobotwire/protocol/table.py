@@ -262,6 +262,10 @@ class Table:
     addresses: tuple[Address, ...] = ()
     bases: tuple[str, ...] = ()
 
+    def __hash__(self) -> int:
+        """Return a hash of some fields, which tell editions apart: that of all takes long."""
+        return hash((self.edition, self.title, self.joints, self.baudrate, len(self.commands)))
+
     def command(self, name: str) -> Command:
         """Return the command called ``name``.
 

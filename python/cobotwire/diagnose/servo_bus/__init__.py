@@ -6,7 +6,7 @@ a thousand sizes, and the native codec would take 50 MB to hold a variant for ea
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from cobotwire.codec.events import DecodedMessage
@@ -100,8 +100,9 @@ class ServoBusReader:
         self.status = lru_cache(512)(self._status)
         self.instruction = lru_cache(REMEMBERED)(self._instruction)
 
+    @cached_property
     def vocabulary(self) -> Vocabulary:
-        """Return what the native survey needs to read packets."""
+        """What the native survey needs to read packets."""
         return Vocabulary(
             frame=self.table.frame,
             lengths=self.lengths,
