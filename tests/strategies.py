@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -49,7 +50,18 @@ def codec_of(edition: str, name: codecs.CodecName) -> Codec:
 
 def variants(table: Table = TABLE) -> st.SearchStrategy[CommandVariant]:
     """Draw any variant of any message of the edition."""
-    return st.sampled_from(VARIANTS if table is TABLE else variants_of(table))
+    return _sampled(VARIANTS if table is TABLE else variants_of(table))
+
+
+def _sampled(variants: Sequence[CommandVariant]) -> st.SearchStrategy[CommandVariant]:
+    """Draw one of the variants. Hypothesis would hash all of them each time, which takes long."""
+    return st.sampled_from(range(len(variants))).map(lambda index: variants[index])
+
+
+def _with_values(
+    variant: CommandVariant,
+) -> st.SearchStrategy[tuple[CommandVariant, tuple[Any, ...]]]:
+    return legal_values(variant.variant).map(lambda values: (variant, values))
 
 
 def _raw(field: Field, number: Number) -> st.SearchStrategy[int]:
@@ -83,9 +95,7 @@ def legal_values(draw: st.DrawFn, variant: Variant) -> tuple[Any, ...]:
 
 def messages(table: Table = TABLE) -> st.SearchStrategy[tuple[CommandVariant, tuple[Any, ...]]]:
     """Draw any legal message: its variant and its values."""
-    return variants(table).flatmap(
-        lambda variant: st.tuples(st.just(variant), legal_values(variant.variant))
-    )
+    return variants(table).flatmap(_with_values)
 
 
 def odd_values() -> st.SearchStrategy[Any]:
@@ -160,11 +170,7 @@ def received(table: Table, listening: Listening) -> st.SearchStrategy[noisy_line
     expected = [
         variant for variant in variants_of(table) if listening in (variant.direction, "both")
     ]
-    frames = (
-        st.sampled_from(expected)
-        .flatmap(lambda variant: st.tuples(st.just(variant), legal_values(variant.variant)))
-        .map(lambda message: frame_of(codec, *message))
-    )
+    frames = _sampled(expected).flatmap(_with_values).map(lambda message: frame_of(codec, *message))
     return noisy_lines.received(frames, table)
 
 
