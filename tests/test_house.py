@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -119,6 +120,15 @@ def test_rust_core_depends_only_on_the_crate_of_instructions() -> None:
     )
     assert list(core["dependencies"]) == ["cobotwire-simd"]
     assert "dependencies" not in simd
+
+
+def test_sources_of_the_rust_core_have_no_tests_because_none_would_run() -> None:
+    core = vectors.ROOT / "rust" / "core"
+    assert tomllib.loads((core / "Cargo.toml").read_text())["lib"]["test"] is False
+    for path in (core / "src").rglob("*.rs"):
+        text = path.read_text("utf-8")
+        assert "#[test]" not in text, path
+        assert not re.search(r"^\s*//[/!] ```", text, re.MULTILINE), path
 
 
 def test_importing_the_package_loads_no_extra() -> None:

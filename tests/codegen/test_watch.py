@@ -36,12 +36,16 @@ def test_watch_generates_again_and_survives_a_broken_spec(tmp_path: Path) -> Non
             command, cwd=folder, stdout=output, stderr=subprocess.STDOUT, env=environment
         ) as watch,
     ):
-        until(log, "watching ")
-        until(package / "__init__.py", "GENERATED")
-        lamp.write_text(text.replace("safety: query", "safety: qery"))
-        until(log, "unknown-word")
-        lamp.write_text(text.replace("title: ", "title: New ", 1))
-        until(package / "edition.json", "New ")
-        watch.send_signal(signal.SIGINT)
-        assert watch.wait(SECONDS) == 0
+        try:
+            until(log, "watching ")
+            until(package / "__init__.py", "GENERATED")
+            lamp.write_text(text.replace("safety: query", "safety: qery"))
+            until(log, "unknown-word")
+            lamp.write_text(text.replace("title: ", "title: New ", 1))
+            until(package / "edition.json", "New ")
+            watch.send_signal(signal.SIGINT)
+            assert watch.wait(SECONDS) == 0
+        finally:
+            # A shell starts background jobs with SIGINT ignored, and the program inherits that.
+            watch.kill()
     assert "Traceback" not in log.read_text()
