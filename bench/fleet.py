@@ -61,12 +61,18 @@ def main() -> None:
     parser.add_argument("--arms", type=int, default=1000)
     parser.add_argument("--rate", type=float, default=20.0)
     parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument(
+        "--rare-collections",
+        action="store_true",
+        help="collect garbage rarely, as docs/guide/fleet.md shows",
+    )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if a limit is missed")
     options = parser.parse_args()
     raise_limit()
     with _arms() as url:
         _show_floor(asyncio.run(run_floor(url, bytes.fromhex(REQUEST), options.arms, options.rate)))
-        result = asyncio.run(_run(url, options.arms, options.rate, options.seconds))
+        rarely = options.rare_collections
+        result = asyncio.run(_run(url, options.arms, options.rate, options.seconds, rarely))
         traced = asyncio.run(_traced(url))
     late = sorted(result.lateness)
     p99 = late[len(late) * 99 // 100]
@@ -120,12 +126,15 @@ def _keep_apart(arms: int) -> None:
         os.sched_setaffinity(0, cores[-1:])
 
 
-async def _run(url: str, count: int, rate: float, seconds: float) -> Result:
+async def _run(url: str, count: int, rate: float, seconds: float, rarely: bool) -> Result:
     # What all arms share is there before the first measured one.
     await _closed(await _opened(url, 1))
     gc.collect()
     before = _resident()
     arms = await _opened(url, count)
+    if rarely:
+        gc.freeze()
+        gc.set_threshold(50_000, 20, 100)
     streams = [arm.stream(GetAngles(), rate=rate) for arm in arms]
     lateness: list[float] = []
     begin = time.monotonic() + WARM_UP + 1 / rate
