@@ -52,9 +52,19 @@ lint-and-rust: lint
 rust-test: products ## run the Rust tests
 	+cargo test --workspace --quiet
 
-rust-asan: ## run the tests of the unsafe code with AddressSanitizer; needs a nightly toolchain
+ASAN := target/asan
+ASAN_TESTS := $(addprefix tests/codec/test_,native_frames.py frame_decode.py agreement.py reused_columns.py stretches.py shared_reader.py buffer_protocol.py subinterpreters.py) tests/transport/test_native_calls.py
+
+rust-asan: .venv/.tools ## run the tests of the unsafe code with AddressSanitizer; needs a nightly toolchain and clang
 	RUSTFLAGS=-Zsanitizer=address cargo +nightly test --package cobotwire-simd --quiet \
-		--target $$(rustc -vV | sed -n 's/host: //p') --target-dir target/asan
+		--target $$(rustc -vV | sed -n 's/host: //p') --target-dir $(ASAN)
+	RUSTFLAGS=-Zsanitizer=address PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo +nightly build --package cobotwire-native \
+		--quiet --target $$(rustc -vV | sed -n 's/host: //p') --target-dir $(ASAN)
+	rm -rf $(ASAN)/package && mkdir $(ASAN)/package && cp -rL python/cobotwire $(ASAN)/package
+	cp $(ASAN)/*/debug/lib_native.so $(ASAN)/package/cobotwire/_native.abi3.so
+	PYTHONPATH=$(ASAN)/package:tests:tests/peers PYTHONMALLOC=malloc ASAN_OPTIONS=detect_leaks=0 \
+		LD_PRELOAD=$$(clang -print-file-name=libclang_rt.asan-$$(uname -m).so) \
+		$(BIN)/python -m pytest -q --capture=no $(ASAN_TESTS)
 
 python-test: .venv/.tools .venv/.native front-end-if-reachable ## run the Python tests on both codecs, in five lanes
 	$(MAKE) --no-print-directory --jobs 5 $(IN_TURN) $(LANES)
