@@ -11,7 +11,7 @@ from cobotwire.studio.access import HEADERS, Access
 
 # Arguments of one command are the largest thing that a page sends.
 LARGEST_BODY = 64 << 10
-# Of the body of a refused request, this much is read, for at most so many seconds.
+# How much of the body of a refused request is read, in bytes, and for how long, in seconds.
 DISCARDED = 1 << 20
 DISCARD_SECONDS = 2.0
 

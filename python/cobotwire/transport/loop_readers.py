@@ -14,8 +14,8 @@ from contextlib import suppress
 from contextvars import Context, copy_context
 from weakref import WeakValueDictionary
 
-# So many descriptors are watched by the loop itself: with few, each turn serves one or two of them,
-# and a second epoll costs more than it saves.
+# The loop itself watches this many descriptors: with few, each turn serves one or two of them, and
+# a second epoll costs more than it saves.
 FEW = 64
 # The most descriptors that are served in one turn of the loop.
 MOST_EVENTS = 256
