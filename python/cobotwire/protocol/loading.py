@@ -7,10 +7,8 @@ import os
 import sys
 from collections.abc import Iterator
 from itertools import product
-from math import inf
 from typing import Any
 
-from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.robot import load_robot
 from cobotwire.protocol.table import (
     Address,
@@ -29,13 +27,18 @@ from cobotwire.protocol.table import (
     Unsigned,
     Variant,
 )
+from cobotwire.protocol.type_records import (
+    BYTE,
+    Record,
+    TypeRecords,
+    choices_of,
+    letters_of,
+    tuples_of,
+)
 
-Record = dict[str, Any]
 VERSION = 2
 # The kinds of types that are more than one number or a row of numbers.
 SHAPED = ("bits", "bytes", "text", "list")
-BYTE = Number("", 1, "big", 255, 1, 1, 0, 255, "")
-ASCII = Number("", 1, "big", 255, 1, 1, 0, 127, "")
 
 
 def load_table(package: str) -> Table:
@@ -134,15 +137,11 @@ def _stored(package: str) -> tuple[str, bytes]:
 
 
 class _Reader:
-    """Turns the document's records into those of a table; shared types are converted once."""
+    """Turns the records of commands into those of a table."""
 
     def __init__(self, document: Record, package: str) -> None:
         self._package = package
-        self._wires = {wire["name"]: wire for wire in document["wires"]}
-        self._types: dict[str, Record] = {}
-        self._numbers: dict[str, tuple[Number, ...]] = {}
-        for type in document["types"]:
-            self._types[type["name"]] = _prepared(type)
+        self._types = TypeRecords(document["wires"], document["types"])
         self._deadline = document["frame"]["deadline_ms"]
         self._most = document["frame"]["maximum_data"]
 
@@ -164,8 +163,8 @@ class _Reader:
             get("ack", False),
             request_text and TextRequest(*_affixes(request_text), request_text.get("suffix", "")),
             get("role", ""),
-            read_by and ReadBack(read_by["query"], _tuples(read_by["fields"])),
-            _tuples(get("samples", ())),
+            read_by and ReadBack(read_by["query"], tuples_of(read_by["fields"])),
+            tuples_of(get("samples", ())),
             tuple(get("agrees_with", ())),
             tuple(get("arguments", ())),
             get("event", False),
@@ -191,7 +190,7 @@ class _Reader:
 
     def _sizes(self, field: Record) -> tuple[int, int] | None:
         """Return the least and the most elements of a field if they differ."""
-        type = self._type(field["type"]) if "type" in field else {}
+        type = self._types.record(field["type"]) if "type" in field else {}
         least, most = type.get("least", 1), type.get("most", 1)
         return (least, most) if least < most else None
 
@@ -207,7 +206,7 @@ class _Reader:
                 from dataclasses import replace
 
                 field = replace(field, sizes=sizes, counts=counted)
-            elif self._type(record["type"])["kind"] in SHAPED if "type" in record else False:
+            elif "type" in record and self._types.record(record["type"])["kind"] in SHAPED:
                 field = self._shaped(record, counts.get(record["name"]))
             else:
                 field = self._field(record, names)
@@ -216,22 +215,22 @@ class _Reader:
 
     def _shaped(self, record: Record, count: int | None) -> Field:
         """Return a field of bits, bytes, a text or a list, with that many elements."""
-        type = self._type(record["type"])
+        type = self._types.record(record["type"])
         kind: FieldKind = type["kind"] if type["kind"] in ("bytes", "text") else "number"
         each, of = 0, type
         element: tuple[Number, ...] = (BYTE,)
         if type["kind"] == "bits":
             element = type["numbers"]
         elif type["kind"] == "list":
-            of = self._type(type["of"])
+            of = self._types.record(type["of"])
             if of["kind"] == "text":
-                kind, element = "text", _letters(of) * of["least"]
+                kind, element = "text", letters_of(of) * of["least"]
             else:
-                element = self._numbers_of(type["of"])
+                element = self._types.numbers_of(type["of"])
                 kind = of["kind"] if of["kind"] in ("enum", "flag") else "number"
             each = len(element) if of["kind"] in ("value", "text") else 0
         elif kind == "text":
-            element = _letters(type)
+            element = letters_of(type)
         members = of.get("members", ())
         return Field(
             record["name"],
@@ -239,7 +238,7 @@ class _Reader:
             (Case((), element * (type.get("least", 1) if count is None else count)),),
             record.get("doc", ""),
             True,
-            _choices(of) if type["kind"] == "list" else (),
+            choices_of(of) if type["kind"] == "list" else (),
             tuple([name for name, _, _ in members]),
             echo="echo" in record,
             each=each,
@@ -252,8 +251,8 @@ class _Reader:
         get = record.get
         selector = get("selector", "")
         types = get("cases") or (((), record["type"]),)
-        cases = tuple([Case(tuple(when), self._numbers_of(type)) for when, type in types])
-        first = self._type(types[0][1])
+        cases = tuple([Case(tuple(when), self._types.numbers_of(type)) for when, type in types])
+        first = self._types.record(types[0][1])
         const, kind = get("const"), first["kind"]
         choices: tuple[int, ...] = ()
         labels: tuple[str, ...] = ()
@@ -261,7 +260,7 @@ class _Reader:
             choices = (const,)
         else:
             # Each case of a selected quantity has its own choices, in its number.
-            choices = () if selector and first["kind"] == "quantity" else _choices(first)
+            choices = () if selector and first["kind"] == "quantity" else choices_of(first)
             labels = tuple([name for name, _, _ in first.get("members", ())])
         return Field(
             record["name"],
@@ -278,87 +277,6 @@ class _Reader:
             meanings=first["meanings"],
         )
 
-    def _type(self, reference: str | Record) -> Record:
-        if isinstance(reference, str):
-            return self._types[reference]
-        return reference if "numbers" in reference else _prepared(reference)
-
-    def _numbers_of(self, reference: str | Record) -> tuple[Number, ...]:
-        """Return a type's numbers in the order of the wire."""
-        if isinstance(reference, str) and reference in self._numbers:
-            return self._numbers[reference]
-        type = self._type(reference)
-        if type["kind"] == "value":
-            numbers = tuple([self._number(name, self._type(item)) for name, item in type["items"]])
-        else:
-            numbers = (self._number("", type),)
-        if isinstance(reference, str):
-            self._numbers[reference] = numbers
-        return numbers
-
-    def _number(self, name: str, type: Record) -> Number:
-        wire = type["wire"]
-        if isinstance(wire, str):
-            wire = self._wires[wire]
-        top = 256 ** wire["width"]
-        signed_at, get = wire["signed_at"], type.get
-        encoding = wire.get("encoding", "integer")
-        low, high = (signed_at + 1 - top if signed_at < top - 1 else 0), signed_at
-        if encoding == "float":
-            # Left out: all finite floats.
-            high = raw_of_float(inf, wire["width"]) - 1
-            low = -1 - high
-        kind = type["kind"]
-        if kind == "flag":
-            low, high = 0, 1
-        elif listed := [v for _, v, _ in type["members"]] if kind == "enum" else get("choices"):
-            low, high = min(listed), max(listed)
-        else:
-            low, high = get("minimum", low), get("maximum", high)
-        multiply, _, divide = str(get("scale", 1)).partition("/")
-        return Number(
-            name,
-            wire["width"],
-            wire["order"],
-            signed_at,
-            int(multiply),
-            int(divide or 1),
-            low,
-            high,
-            get("unit", ""),
-            encoding,
-            choices=tuple(get("choices", ())),
-        )
-
-
-def _prepared(type: Record) -> Record:
-    """Convert the lists of a type once, not for each field of each variant."""
-    type["meanings"] = _tuples(type.get("meanings", ()))
-    type["numbers"] = tuple([_bits(number) for number in type.get("numbers", ())])
-    return type
-
-
-def _choices(type: Record) -> tuple[int, ...]:
-    """Return all legal raw values of a type; empty if it has a range."""
-    if type["kind"] == "flag":
-        return 0, 1
-    return tuple([value for _, value, _ in type.get("members", ())] or type.get("choices", ()))
-
-
-def _bits(record: Record) -> Number:
-    """Return a part of a word."""
-    lists = {name: tuple(record[name]) for name in ("choices", "labels")}
-    return Number(**{**record, **lists})
-
-
-def _letters(type: Record) -> tuple[Number, ...]:
-    """Return the number of a byte of text."""
-    return (ASCII if type["encoding"] == "ascii" else BYTE,)
-
 
 def _affixes(text: Record) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(text["prefixes"]), tuple([name for name, _ in text["fields"]])
-
-
-def _tuples(value: Any) -> Any:
-    return tuple([_tuples(part) for part in value]) if isinstance(value, list | tuple) else value

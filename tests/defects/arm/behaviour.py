@@ -1,87 +1,10 @@
-"""Planted defects: framing, timing, acknowledgements, state and motion go wrong."""
+"""Planted defects: framing, acknowledgements, values and state go wrong."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from conformance.independent.arm import COORDS, SIZES, signed
+from conformance.independent.arm import SIZES
 from defects.arm.moving import MovingArm
 from defects.arm.replies import framed
-
-LATE, A_LITTLE = 0.7, 0.01
-
-
-class TimedArm(MovingArm):
-    """The correct arm; ``_later`` sends bytes after some seconds."""
-
-    def __init__(self, clock: Callable[[], float]) -> None:
-        self._due: list[tuple[float, bytes]] = []
-        super().__init__(clock)
-
-    @property
-    def wait(self) -> float | None:
-        """Seconds until something is due."""
-        waits = [] if (wait := super().wait) is None else [wait]
-        return min((*waits, *(max(0.0, at - self._clock()) for at, _ in self._due)), default=None)
-
-    def flush(self) -> bytes:
-        """Return what is due by now."""
-        sent = super().flush()
-        now = self._clock()
-        sent += b"".join(data for at, data in self._due if at <= now)
-        self._due = [(at, data) for at, data in self._due if at > now]
-        return sent
-
-    def _later(self, seconds: float, data: bytes) -> None:
-        self._due.append((self._clock() + seconds, data))
-
-
-class Late(TimedArm):
-    """get_coords is replied to after its deadline."""
-
-    def _reply(self, id: int, data: bytes) -> bytes:
-        sent = super()._reply(id, data)
-        if id != 0x23:
-            return sent
-        self._later(LATE, sent)
-        return b""
-
-
-class Halved(TimedArm):
-    """The second half of the reply to get_encoders comes much later."""
-
-    def _reply(self, id: int, data: bytes) -> bytes:
-        sent = super()._reply(id, data)
-        if id != 0x3D:
-            return sent
-        self._later(LATE, sent[8:])
-        return sent[:8]
-
-
-class Twice(TimedArm):
-    """get_gripper_value is replied to twice, the second time a little later."""
-
-    def _reply(self, id: int, data: bytes) -> bytes:
-        sent = super()._reply(id, data)
-        if id == 0x65:
-            self._later(A_LITTLE, sent)
-        return sent
-
-
-class OneBehind(MovingArm):
-    """Each reply is sent only when the next request comes."""
-
-    def __init__(self, clock: Callable[[], float]) -> None:
-        super().__init__(clock)
-        self._held = b""
-
-    def receive(self, data: bytes) -> bytes:
-        """Return the replies to the requests before."""
-        sent = super().receive(data)
-        if not sent:
-            return b""
-        sent, self._held = self._held, sent
-        return sent
 
 
 class Echo(MovingArm):
@@ -100,22 +23,6 @@ class Reboots(MovingArm):
             return super()._reply(id, data)
         self._reset()
         return b"ets Jun  8 2016 00:22:57\r\n\r\nrst:0xc (SW_CPU_RESET),boot:0x17\r\n"
-
-
-class StaleAfterMotion(MovingArm):
-    """The first get_angles after a motion has the angles before it."""
-
-    def __init__(self, clock: Callable[[], float]) -> None:
-        super().__init__(clock)
-        self._before = b""
-
-    def _reply(self, id: int, data: bytes) -> bytes:
-        if id in (0x21, 0x22, 0x31, 0x33):
-            self._before = super()._reply(0x20, b"")
-        sent = super()._reply(id, data)
-        if id == 0x20 and self._before and not self._travel.moves:
-            sent, self._before = self._before, b""
-        return sent
 
 
 class RepliesToUnknownIds(MovingArm):
@@ -263,91 +170,9 @@ class Dies(MovingArm):
         return b"" if self._requests > 300 else sent
 
 
-class NeverStops(MovingArm):
-    """stop does nothing."""
-
-    def _change(self, id: int, data: bytes) -> None:
-        if id != 0x29:
-            super()._change(id, data)
-
-
-class NeverMoving(MovingArm):
-    """is_moving always reports rest."""
-
-    def _answer(self, id: int, data: bytes) -> bytes | None:
-        return b"\x00" if id == 0x2B else super()._answer(id, data)
-
-
-class AlwaysThere(MovingArm):
-    """is_in_position always reports that the arm is there."""
-
-    def _is_there(self, data: bytes) -> bool:
-        return True
-
-
-class OnlyFirstJointCounts(MovingArm):
-    """is_in_position compares the first number only."""
-
-    def _is_there(self, data: bytes) -> bool:
-        scales = COORDS if data[12] else (100,) * 6
-        here = self._get_coords() if data[12] else self._get_angles()
-        near = 5.0 if data[12] else 0.2
-        return abs(signed(data[:2])[0] - signed(here[:2])[0]) / scales[0] <= near
-
-
-class PauseOnlyReports(MovingArm):
-    """pause sets the flag that is_paused reports; the arm moves on."""
-
-    def __init__(self, clock: Callable[[], float]) -> None:
-        super().__init__(clock)
-        self._flag = 0
-
-    def _answer(self, id: int, data: bytes) -> bytes | None:
-        return bytes([self._flag]) if id == 0x27 else super()._answer(id, data)
-
-    def _change(self, id: int, data: bytes) -> None:
-        if id in (0x26, 0x28):
-            self._flag = int(id == 0x26)
-        else:
-            super()._change(id, data)
-
-
-class ResumeDiscards(MovingArm):
-    """resume ends the pause, and discards the target."""
-
-    def _change(self, id: int, data: bytes) -> None:
-        if id == 0x28:
-            self._travel.put(self._travel.place())
-        else:
-            super()._change(id, data)
-
-
-class LimitsNotKept(MovingArm):
-    """The limits of joints are stored, and motion ignores them."""
-
-    def _go(self, ticks: list[float], speed: int) -> None:  # type: ignore[override]
-        limits, self._limits = self._limits, {0x4A: [-1800] * 6, 0x4B: [1800] * 6}
-        super()._go(ticks, speed)
-        self._limits = limits
-
-
-class DragsNeighbour(MovingArm):
-    """send_angle moves the next joint by two degrees as well."""
-
-    def _send_angle(self, data: bytes) -> None:
-        super()._send_angle(data)
-        goal = self._travel._goal
-        goal[data[0] % 6] += 23
-
-
 BEHAVIOUR: dict[str, type[MovingArm]] = {
-    "late-reply": Late,
-    "reply-in-two-halves": Halved,
-    "double-reply": Twice,
-    "one-reply-behind": OneBehind,
     "echo": Echo,
     "reboots": Reboots,
-    "stale-angles": StaleAfterMotion,
     "replies-to-unknown-ids": RepliesToUnknownIds,
     "ignores-footers": IgnoresFooters,
     "ignores-len": IgnoresLengths,
@@ -364,12 +189,4 @@ BEHAVIOUR: dict[str, type[MovingArm]] = {
     "settings-coupled": SettingsCoupled,
     "any-instead-of-all": AnyInsteadOfAll,
     "dies": Dies,
-    "never-stops": NeverStops,
-    "never-moving": NeverMoving,
-    "always-there": AlwaysThere,
-    "only-first-joint-counts": OnlyFirstJointCounts,
-    "pause-only-reports": PauseOnlyReports,
-    "resume-discards": ResumeDiscards,
-    "limits-not-kept": LimitsNotKept,
-    "drags-neighbour": DragsNeighbour,
 }

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from defects.arm.behaviour import BEHAVIOUR
+from defects.arm.motion import MOTION
 from defects.arm.moving import MovingArm
 from defects.arm.replies import WrongReply, wrong_replies
 from defects.arm.requests import MISREAD, Misread
+from defects.arm.timing import TIMING
 
-DEFECTS = (*wrong_replies(), *MISREAD, *BEHAVIOUR)
+ARMS: dict[str, type[MovingArm]] = {**TIMING, **BEHAVIOUR, **MOTION}
+DEFECTS = (*wrong_replies(), *MISREAD, *ARMS)
 
 
 class _SpoiltReplies(MovingArm):
@@ -46,4 +49,4 @@ def arm_with(clock: Callable[[], float], defect: str = "") -> MovingArm:
         return _SpoiltReplies(clock, replies[defect])
     if defect in MISREAD:
         return _Misreading(clock, MISREAD[defect])
-    return BEHAVIOUR[defect](clock)
+    return ARMS[defect](clock)

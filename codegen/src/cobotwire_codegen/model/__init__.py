@@ -41,8 +41,8 @@ from cobotwire_codegen.model.types import (
     Quantity,
     Scalar,
     Value,
-    Wire,
 )
+from cobotwire_codegen.model.wires import Wire
 
 __all__ = [
     "Address",

@@ -13,7 +13,7 @@ from cobotwire_codegen.model.facts import Change, Lines
 from cobotwire_codegen.model.frame import Frame
 from cobotwire_codegen.model.robot import Robot
 from cobotwire_codegen.model.shapes import Type
-from cobotwire_codegen.model.types import Wire
+from cobotwire_codegen.model.wires import Wire
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,8 @@ from fractions import Fraction
 from typing import ClassVar, Literal
 
 from cobotwire_codegen.errors import Place
-from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Scalar, Value, Wire
+from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Scalar, Value
+from cobotwire_codegen.model.wires import Wire
 
 
 class Shaped:
