@@ -13,7 +13,7 @@ from cobotwire.editions import load, names
 from cobotwire.simulator.kinematics import Geometry, Pose, flange, geometry_of
 from cobotwire.simulator.kinematics.descent import _columns, descend
 from cobotwire.simulator.kinematics.forward import frames
-from cobotwire.simulator.kinematics.inverse import MILLIMETRES_PER_RADIAN
+from cobotwire.simulator.kinematics.inverse import REFINING_RADIAN
 from cobotwire.simulator.kinematics.nearness import DEGREES as NEAR_DEGREES
 from cobotwire.simulator.kinematics.nearness import MILLIMETRES as NEAR_MILLIMETRES
 from cobotwire.simulator.kinematics.nearness import misses
@@ -32,7 +32,7 @@ def test_slopes_are_those_of_the_forward_kinematics(name: str) -> None:
     for _ in range(5):
         angles = [chance.uniform(-150, 150) for _ in range(geometry.joints)]
         here = frames(geometry, angles)
-        columns = _columns(geometry, here, MILLIMETRES_PER_RADIAN)
+        columns = _columns(geometry, here, REFINING_RADIAN)
         for joint, (*moved, a, b, c) in enumerate(columns):
             turned = [cross((a, b, c), axis) for axis in here[-1][:3]]
             ends = []
@@ -42,7 +42,7 @@ def test_slopes_are_those_of_the_forward_kinematics(name: str) -> None:
             before, after = ([*end.origin, *end.x, *end.y, *end.z] for end in ends)
             slopes = [*moved, *(part for axis in turned for part in axis)]
             for row, (one, other) in enumerate(zip(before, after)):
-                weight = 1.0 if row < 3 else MILLIMETRES_PER_RADIAN
+                weight = 1.0 if row < 3 else REFINING_RADIAN
                 slope = (other - one) * weight / (2 * DEGREES)
                 assert slopes[row] == pytest.approx(slope, abs=1e-3)
 
@@ -55,7 +55,7 @@ def test_pose_is_found_from_angles_near_it(name: str) -> None:
         angles = [chance.uniform(-140, 140) for _ in range(geometry.joints)]
         guess = [angle + chance.uniform(-3, 3) for angle in angles]
         target = flange(geometry, angles)
-        found = descend(geometry, target, guess, limits, MILLIMETRES_PER_RADIAN)
+        found = descend(geometry, target, guess, limits, REFINING_RADIAN)
         millimetres, degrees = flange(geometry, found).distance(target)
         assert millimetres < 0.01
         assert degrees < 0.01
@@ -63,7 +63,7 @@ def test_pose_is_found_from_angles_near_it(name: str) -> None:
 
 def _by_scipy(geometry: Geometry, target: Pose, guess: Sequence[float]) -> tuple[float, ...]:
     """Return what another implementation of bounded least squares finds, without slopes."""
-    weight = MILLIMETRES_PER_RADIAN / math.sqrt(2)
+    weight = REFINING_RADIAN / math.sqrt(2)
 
     def off(angles: Sequence[float]) -> list[float]:
         pose = flange(geometry, angles)
@@ -83,7 +83,7 @@ def test_targets_at_the_edge_of_the_reach_are_those_of_another_least_squares() -
         pose = flange(MYCOBOT_280, guess)
         x, y, z = (part + chance.uniform(-0.3, 0.3) for part in pose.origin)
         target = pose._replace(origin=(x, y, z))
-        found = descend(MYCOBOT_280, target, guess, LIMITS, MILLIMETRES_PER_RADIAN)
+        found = descend(MYCOBOT_280, target, guess, LIMITS, REFINING_RADIAN)
         other = _by_scipy(MYCOBOT_280, target, guess)
         (way, _), (way_there, _) = (
             flange(MYCOBOT_280, one).distance(target) for one in (found, other)

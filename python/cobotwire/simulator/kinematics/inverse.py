@@ -33,9 +33,9 @@ NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
 GUESSES = 8
 # How many results are kept.
 REMEMBERED = 1024
-# A turn weighs as much as the distance by which it moves the ends of the three axes, in the ratio
-# of the two tolerances: least squares come near to both of them alike.
-MILLIMETRES_PER_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
+# A turn weighs as much as the distance by which it moves the ends of the three axes: 7.07 mm for a
+# degree. This is nearly the ratio of the two tolerances, so least squares come near to both alike.
+REFINING_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
 
 
 def nearest(
@@ -71,7 +71,7 @@ def _nearest(
         if not misses(geometry, one, target, NEAR_MILLIMETRES, NEAR_DEGREES)
     )
     for guess in islice(almost, GUESSES):
-        better = descend(geometry, target, guess, limits, MILLIMETRES_PER_RADIAN)
+        better = descend(geometry, target, guess, limits, REFINING_RADIAN)
         if not misses(geometry, better, target, MILLIMETRES, DEGREES):
             return better
     return None

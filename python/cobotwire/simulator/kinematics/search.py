@@ -18,8 +18,8 @@ from cobotwire.simulator.kinematics.nearness import (
 )
 from cobotwire.simulator.kinematics.pose import Pose
 
-# One radian weighs as much as this many millimetres: the ratio of the two tolerances.
-MILLIMETRES_PER_RADIAN = math.degrees(1) * 5
+# A turn by one degree weighs as much as 5 mm.
+SEARCH_RADIAN = math.degrees(1) * 5
 # How many starts are tried, and how many solutions are compared.
 STARTS, SOLUTIONS = 48, 3
 # The roots of these primes have fractional parts that spread starts evenly.
@@ -39,7 +39,7 @@ def search(
     exact: list[Angles] = []
     rough: list[Angles] = []
     for index, start in enumerate(_starts(present, limits)):
-        found = descend(geometry, target, start, limits, MILLIMETRES_PER_RADIAN)
+        found = descend(geometry, target, start, limits, SEARCH_RADIAN)
         if not misses(geometry, found, target, EXACT_MILLIMETRES, EXACT_DEGREES):
             exact.append(found)
             # The joints' own start usually leads to the nearest solution.
