@@ -37,7 +37,9 @@ def test_get_angles_runs_code_of_at_most_12_files() -> None:
     ) as simulator:
         assert simulator.stdin is not None
         assert simulator.stdout is not None
-        with MyCobot280(simulator.stdout.readline().strip(), codec="native") as arm:
+        url = simulator.stdout.readline().strip()
+        # A second attempt runs more files. On a slow machine, the first one needs this much time.
+        with MyCobot280(url, codec="native", timeout=10) as arm:
             # The first call also imports modules; later calls do not.
             arm.get_angles()
             sys.setprofile(note)
