@@ -17,11 +17,13 @@ class StallMeter:
 
     Attributes:
         longest: the longest delay of a wake-up, in seconds.
-        late: the time of each delayed wake-up and its delay, if that is above a period.
+        late: the time of each delayed wake-up and its delay, if that is above a period; only those
+            that are to be ``listed``, since the list takes memory of the process that is measured.
     """
 
-    def __init__(self, period: float = PERIOD) -> None:
+    def __init__(self, period: float = PERIOD, *, listed: bool = False) -> None:
         self._period = period
+        self._listed = listed
         self.longest = 0.0
         self.late: list[tuple[float, float]] = []
         self._over = threading.Event()
@@ -43,7 +45,7 @@ class StallMeter:
             now = time.monotonic()
             too_late = now - before - self._period
             self.longest = max(self.longest, too_late)
-            if too_late > self._period:
+            if self._listed and too_late > self._period:
                 self.late.append((now, too_late))
             before = now
         self.longest = max(self.longest, time.monotonic() - before - self._period)

@@ -41,7 +41,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
     line = HostileLine(peer, codec, end)
-    with StallMeter() as meter, MachineMeter() as machine, line:
+    with StallMeter(listed=True) as meter, MachineMeter() as machine, line:
         setting = Setting(chosen, line.url)
         if change is not None:
             setting.client = change(setting.client)

@@ -100,19 +100,21 @@ def test_traffic_listener_may_call_the_arm() -> None:
     assert seen == [True, False]
 
 
-def _repeat(call: Callable[..., object]) -> None:
-    while True:
-        call(1, 2, 3)
-
-
 def test_port_that_accepts_no_bytes_is_a_link_error(open_arm: Opener) -> None:
     master, slave = os.openpty()
+    started = 0.0
+
+    def repeat(call: Callable[..., object]) -> None:
+        nonlocal started
+        while True:
+            started = time.monotonic()
+            call(1, 2, 3)
+
     try:
         with open_arm(os.ttyname(slave)) as arm:
-            started = time.monotonic()
             # Nothing reads the other end, so the buffer is full after some kilobytes.
             with pytest.raises(LinkError, match=r"cannot be written: .* taken in"):
-                _repeat(arm.set_color)
+                repeat(arm.set_color)
             assert time.monotonic() - started < 8
     finally:
         os.close(master)
