@@ -1,8 +1,9 @@
 """Run a failed test again if the machine stood still meanwhile.
 
-Many tests wait for a real reply within a deadline. If the machine stops for longer than that, the
-failure says nothing about the code. A test that fails without a stall fails at once, and one that
-fails in each run fails. The summary names the tests that were run again.
+Many tests wait for a real reply within a deadline. If the machine stops for longer than that, once
+or in several pieces, the failure says nothing about the code. A test that fails without a stall
+fails at once, and one that fails in each run fails. The summary names the tests that were run
+again.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from _pytest.runner import call_and_report
 
 from stalls import StallMeter
 
-# Half of the deadline that a client gives a reply.
+# Half of the deadline that a client gives a reply: stalls within a second that add up to more.
 STALL = 0.25
 RUNS = 3
 PERIOD = 0.02
@@ -40,7 +41,7 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
 def _run(
     item: pytest.Item, nextitem: pytest.Item | None, *, last: bool
 ) -> tuple[list[pytest.TestReport], float]:
-    """Run a test once; return its reports, and the longest stall if it must run again, or 0."""
+    """Run a test once; return its reports, and how long it stalled if it must run again, or 0."""
     function: Any = item
     if not getattr(function, "_request", True):
         function._initrequest()
@@ -50,13 +51,13 @@ def _run(
         if reports[0].passed:
             reports.append(call_and_report(item, "call", log=False))
             failed = reports[-1].failed
-    again = failed and not last and meter.longest > STALL
+    again = failed and not last and meter.worst_second > STALL
     # Fixtures that tests share stay for the next run: only the test's own end.
     after = item.parent if again else nextitem
     reports.append(call_and_report(item, "teardown", log=False, nextitem=after))
     if hasattr(function, "_request"):
         function._request, function.funcargs = False, None
-    return reports, meter.longest if again else 0.0
+    return reports, meter.worst_second if again else 0.0
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:

@@ -17,6 +17,7 @@ class StallMeter:
 
     Attributes:
         longest: the longest delay of a wake-up, in seconds.
+        worst_second: the most that the delays of more than a period add up to within one second.
         late: the time of each delayed wake-up and its delay, if that is above a period; only those
             that are to be ``listed``, since the list takes memory of the process that is measured.
     """
@@ -24,7 +25,7 @@ class StallMeter:
     def __init__(self, period: float = PERIOD, *, listed: bool = False) -> None:
         self._period = period
         self._listed = listed
-        self.longest = 0.0
+        self.longest = self.worst_second = 0.0
         self.late: list[tuple[float, float]] = []
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._measure, daemon=True)
@@ -40,15 +41,22 @@ class StallMeter:
         self._thread.join()
 
     def _measure(self) -> None:
-        before = time.monotonic()
+        before = second_from = time.monotonic()
+        in_second = 0.0
         while not self._over.wait(self._period):
             now = time.monotonic()
             too_late = now - before - self._period
             self.longest = max(self.longest, too_late)
-            if self._listed and too_late > self._period:
-                self.late.append((now, too_late))
+            if too_late > self._period:
+                in_second += too_late
+                if self._listed:
+                    self.late.append((now, too_late))
+            self.worst_second = max(self.worst_second, in_second)
+            if now - second_from > 1:
+                second_from, in_second = now, 0.0
             before = now
         self.longest = max(self.longest, time.monotonic() - before - self._period)
+        self.worst_second = max(self.worst_second, self.longest)
 
 
 def unstalled(run: Callable[[], R], allowed: float) -> R:

@@ -8,14 +8,21 @@ from pathlib import Path
 
 import vectors
 
-TESTS = """
+TESTS = '''
 import os, signal, subprocess, sys, time
 import pytest
 
 RUNS = []
-# Stops this process for half a second, as a stall of the machine does.
-STALL = "import os, signal, sys, time; pid = int(sys.argv[1]); os.kill(pid, signal.SIGSTOP); " \\
-    "time.sleep(0.5); os.kill(pid, signal.SIGCONT)"
+# Stops this process several times for some seconds, as stalls of the machine do.
+STALL = """
+import os, signal, sys, time
+pid, times, seconds = int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])
+for _ in range(times):
+    os.kill(pid, signal.SIGSTOP)
+    time.sleep(seconds)
+    os.kill(pid, signal.SIGCONT)
+    time.sleep(0.05)
+"""
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +30,9 @@ def shared():
     return []
 
 
-def stall():
-    subprocess.run([sys.executable, "-c", STALL, str(os.getpid())], check=True)
+def stall(times=1, seconds=0.5):
+    words = [str(os.getpid()), str(times), str(seconds)]
+    subprocess.run([sys.executable, "-c", STALL, *words], check=True)
 
 
 def test_first_run_is_late(shared):
@@ -32,6 +40,14 @@ def test_first_run_is_late(shared):
     RUNS.append("late")
     if len(shared) == 1:
         stall()
+        raise AssertionError("too late")
+
+
+def test_first_run_is_late_by_many_short_stalls(shared):
+    shared.append(1)
+    RUNS.append("slow")
+    if len(shared) == 3:
+        stall(6, 0.12)
         raise AssertionError("too late")
 
 
@@ -47,8 +63,8 @@ def test_fails_without_a_stall():
 
 
 def test_runs():
-    assert RUNS == ["late"] * 2 + ["stalls"] * 3 + ["wrong"]
-"""
+    assert RUNS == ["late"] * 2 + ["slow"] * 2 + ["stalls"] * 3 + ["wrong"]
+'''
 
 
 def test_failed_test_runs_again_only_after_a_stall(tmp_path: Path) -> None:
@@ -61,5 +77,5 @@ def test_failed_test_runs_again_only_after_a_stall(tmp_path: Path) -> None:
     ended = subprocess.run(
         command, cwd=tmp_path, env={"PYTHONPATH": path}, capture_output=True, text=True
     )
-    assert "2 failed, 2 passed" in ended.stdout, ended.stdout
-    assert ended.stdout.count("run again, because the machine stalled: test_it.py::") == 3
+    assert "2 failed, 3 passed" in ended.stdout, ended.stdout
+    assert ended.stdout.count("run again, because the machine stalled: test_it.py::") == 4
