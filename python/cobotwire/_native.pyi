@@ -4,12 +4,14 @@ It reads a table's objects once, when a codec is made. ``rust/core`` decides wha
 ``cobotwire.protocol.rejection`` makes the sentences of the errors.
 """
 
+from asyncio import Future
 from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Any, Literal, final
 
 from typing_extensions import Buffer
 
+from cobotwire.client.aio_slots import AsyncSlots
 from cobotwire.client.native_call import NativeCall
 from cobotwire.client.steps import Steps
 from cobotwire.codec.columns import Columns, Scan
@@ -255,6 +257,63 @@ class LoneCalls:
             the request is not alone, or the line not free: bytes have come, a thread writes or has
             written since the call, or the system takes no bytes; or because the alarm came first.
         """
+
+@final
+class StreamLine:
+    """Sends requests of asyncio streams and takes their replies, in the thread of one loop.
+
+    It does so while the session is lent to it: nothing else is under way on the line.
+    """
+
+    def __new__(
+        cls, framer: NativeFramer, transport: Any, listeners: Any, lender: Any, /
+    ) -> StreamLine:
+        """Take the framer of received bytes, a transport that is lent, and its traffic listeners.
+
+        Methods of ``lender`` are called: ``lend_session``, to have the session; ``turn``, to take
+        what has come, and ``received``, with events that are not the reply; ``finish_write``, with
+        the size of what was written of a request; ``watch_until``, with when a wait ends.
+        """
+
+    def __call__(self) -> None:
+        """Take what has come: the loop calls it when the line can be read."""
+
+    def give_back(
+        self,
+    ) -> tuple[tuple[bytes, int] | None, tuple[AsyncSlots, float, int] | None] | None:
+        """Use the session no longer.
+
+        Returns:
+            None if it was not lent. Otherwise the last request, and how many bytes had been
+            received before it, if one was sent; and if it has no reply yet, whose it is, when it
+            was sent, and that number of bytes.
+        """
+
+    def waits_until(self) -> float | None:
+        """Return when the wait for a reply ends; None: no reply is waited for."""
+
+@final
+class StreamSlot:
+    """Sends the requests of one stream, each at a moment at which it is called."""
+
+    def __new__(cls, line: StreamLine, slots: AsyncSlots, /) -> StreamSlot:
+        """Take the line, and what has the session send a request: its method ``send``."""
+
+    def __call__(self) -> None:
+        """Send what was planned; if that is not possible now, have the session send it."""
+
+    def plan(self, frame: bytes, command: str, wait: float, over: Future[Any], /) -> None:
+        """Plan what the next call sends: a plain request.
+
+        Args:
+            frame: its bytes.
+            command: the name of its command.
+            wait: for how many seconds its reply is waited for.
+            over: gets the answer as its result.
+        """
+
+    def forget(self) -> None:
+        """Forget what was planned: the next call has the session send it."""
 
 @final
 class LineLock:

@@ -81,7 +81,8 @@ class AsyncConnection:
     async def send(self, request: EncodedRequest, ack_within: float | None) -> None:
         """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement."""
         steps = self._opened()
-        data, pending = self._exchange.send_one_way(request, self.now(), ack_within)
+        exchange = steps.exchange
+        data, pending = exchange.send_one_way(request, self.now(), ack_within)
         try:
             steps.check()
             await steps.writer.write(data)
@@ -91,7 +92,7 @@ class AsyncConnection:
                 pending.result()
         finally:
             if pending is not None:
-                self._exchange.give_up(pending)
+                steps.exchange.give_up(pending)
 
     async def request(
         self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
@@ -140,14 +141,15 @@ class AsyncConnection:
         """
         if self._steps is not None and self._port is not None:
             self._steps.transport.close()
-            self._memory.leave(self._exchange.leave(self.now()))
+            self._memory.leave(self._steps.exchange.leave(self.now()))
             self._steps.lose(LinkError(self.url, "it is closed"))
             self._port.close_recording()
 
     def leave_to_parent(self) -> None:
         """Let every call in a forked child fail: loop and transport are those of the parent."""
         if self._steps is not None and self._steps.lost is None:
-            self._steps.lost = LinkError(self.url, f"cannot be used: {forks.opened_by_parent()}")
+            error = LinkError(self.url, f"cannot be used: {forks.opened_by_parent()}")
+            self._steps.leave_to_parent(error)
             self._memory.leave_to_parent()
 
     def _opened(self) -> AsyncSteps:

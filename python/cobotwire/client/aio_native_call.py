@@ -34,12 +34,16 @@ def native_call(
 
 
 class AsyncNativeCall:
-    """Sends plain requests and takes their replies with native calls."""
+    """Sends plain requests and takes their replies with native calls.
+
+    Attributes:
+        polled: the native calls of the transport.
+    """
 
     def __init__(
         self, polled: NativePolled, exchange: Exchange, writer: AsyncWriter, written: Written
     ) -> None:
-        self._polled = polled
+        self.polled = polled
         self._exchange = exchange
         self._writer = writer
         self._written = written
@@ -50,7 +54,7 @@ class AsyncNativeCall:
         Returns:
             None if it was not sent, because it is not alone on the line.
         """
-        polled, exchange, request = self._polled, self._exchange, pending.request
+        polled, exchange, request = self.polled, self._exchange, pending.request
         if polled.unwritten:
             return None
         now = time.monotonic()
@@ -62,7 +66,7 @@ class AsyncNativeCall:
             exchange.alone.take_back(pending)
             return None
         if isinstance(found, int):
-            self._write_rest(pending, found)
+            self.write_rest(pending, found)
             return []
         return self._take(found, fed, now) if found else []
 
@@ -78,7 +82,7 @@ class AsyncNativeCall:
         if waiting is None:
             return None
         fed = exchange.framer.fed
-        found = self._polled.read_reply(waiting.frame, waiting.command.name)
+        found = self.polled.read_reply(waiting.frame, waiting.command.name)
         return None if found is None else self._take(found, fed, time.monotonic())
 
     def _take(self, found: Any, fed: int, now: float) -> list[SessionEvent]:
@@ -89,7 +93,7 @@ class AsyncNativeCall:
             found = [frame]
         return self._exchange.sort(found, fed, now)
 
-    def _write_rest(self, pending: PendingRequest, taken: int) -> None:
+    def write_rest(self, pending: PendingRequest, taken: int) -> None:
         """Write what follows the first ``taken`` bytes of a request."""
         request, done = pending.request.frame, partial(self._written, pending)
-        self._polled.write_rest(request, taken, partial(self._writer.end, b"", request, done))
+        self.polled.write_rest(request, taken, partial(self._writer.end, b"", request, done))

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from cobotwire.client.aio_steps import AsyncSteps
 from cobotwire.client.aio_timers import Timed
-from cobotwire.session import PendingRequest
+from cobotwire.protocol.errors import ProtocolError, ReplyTimeout
+from cobotwire.session import Answer, PendingRequest
+from cobotwire.session.alone import Alone
 from cobotwire.session.request import result_of
 from cobotwire.session.sample import Reading
 from cobotwire.session.sampling import Poll
+
+if TYPE_CHECKING:
+    from cobotwire._native import StreamSlot
 
 # The longest sleep, after which a stream checks whether it was closed.
 CHECK_SECONDS = 0.05
@@ -27,52 +32,104 @@ class AsyncSlots:
     def __init__(self, opened: Callable[[], AsyncSteps], closed: Callable[[], bool]) -> None:
         """Take what returns the steps of the open connection, and whether the stream is closed."""
         self._opened, self._closed = opened, closed
-        self._timed = Timed(self._send)
-        self._when_done = self._wake
+        self._timed = Timed(self.send)
+        # Sends plain requests without the session, if there are native calls.
+        self._slot: StreamSlot | None = None
+        # The request as the session knows it; None: it does not.
+        self._pending: PendingRequest | None = None
 
-    async def reading(self, poll: Poll, at: float) -> Reading[Any] | None:
-        """Send a request at a moment; return its result, or None if the stream is closed by then.
+    def close(self) -> None:
+        """Have the request that is planned not be sent: the stream is closed."""
+        if self._slot is not None:
+            self._slot.forget()
+
+    async def readings(self, polls: Sequence[Poll], at: float) -> list[Reading[Any]] | None:
+        """Send each request in turn, the first one at a moment.
+
+        Returns:
+            No readings if a request had no legal reply; None if the stream was closed by then.
 
         Raises:
-            ReplyTimeout, ProtocolError: there is no legal reply.
             LinkError: the transport is gone.
         """
-        steps = self._opened()
-        while (left := at - time.monotonic()) > CHECK_SECONDS:
-            await asyncio.sleep(min(left - CHECK_SECONDS, CHECK_SECONDS))
-            if self._closed():
-                return None
-        request, encoded, policy, wait = poll
-        self._steps = steps
-        self._pending = pending = PendingRequest(encoded, wait, policy, at)
-        pending.when_done(self._when_done)
-        # The result is whether the request was sent.
-        self._over = over = steps.loop.create_future()
+        self._steps = steps = self._opened()
+        readings = []
         try:
-            if left > 0:
-                steps.timers.set(self._timed, at)
-            else:
-                self._send()
-            if not await over:
-                return None
-            fields, requested_at, replied_at = pending.answer()
-            return Reading(result_of(request, fields), requested_at, replied_at)
-        finally:
-            if not pending.done:
-                self._timed.cancel()
-                steps.give_up(pending)
+            while (left := at - time.monotonic()) > CHECK_SECONDS:
+                await asyncio.sleep(min(left - CHECK_SECONDS, CHECK_SECONDS))
+                if self._closed():
+                    return None
+            for poll in polls:
+                # Its result is the answer; or whether the session sent the request.
+                self._over = over = steps.loop.create_future()
+                self._plan(poll, at)
+                answer: Answer | bool = await over
+                if not answer:
+                    return None
+                if answer is True:
+                    assert self._pending is not None, "the session sent it"
+                    answer = self._pending.answer()
+                fields, requested_at, replied_at = answer
+                value = result_of(poll.request, fields)
+                readings.append(Reading(value, requested_at, replied_at))
+        except (ReplyTimeout, ProtocolError):
+            return []
+        except BaseException:
+            self._give_up()
+            raise
+        return readings
 
-    def _send(self) -> None:
+    def _plan(self, poll: Poll, at: float) -> None:
+        """Have a request sent at a moment, or at once if it has passed."""
+        steps, timed = self._steps, self._timed
+        self._poll, self._at, self._pending = poll, at, None
+        encoded = poll.encoded
+        if encoded.plain:
+            slot = self._slot
+            if slot is None:
+                self._slot = slot = steps.stream_slot(self)
+            if slot is not None:
+                timed.call = slot
+                wait = encoded.command.deadline_ms / 1000 if poll.wait is None else poll.wait
+                slot.plan(encoded.frame, encoded.command.name, wait, self._over)
+        if at > time.monotonic():
+            steps.timers.set(timed, at)
+        else:
+            timed.call()
+
+    def send(self) -> None:
+        """Have the session send the request, unless the stream is closed."""
         over = self._over
+        if over.done():
+            # The consumer was cancelled, and did not have its turn yet.
+            return
         try:
             if self._closed():
                 over.set_result(False)
             else:
-                self._steps.start(self._pending)
+                self._steps.start(self._new_pending())
         except Exception as error:
             # The consumer raises it, since nobody waits for a timer.
             over.set_exception(error)
 
+    def resume(self, alone: Alone, requested_at: float, offset: int) -> None:
+        """Make the request known to the session, which was sent without it."""
+        alone.resume_sent(self._new_pending(), requested_at, offset)
+
+    def _new_pending(self) -> PendingRequest:
+        _, encoded, policy, wait = self._poll
+        self._pending = pending = PendingRequest(encoded, wait, policy, self._at)
+        pending.when_done(self._wake)
+        return pending
+
     def _wake(self) -> None:
         if not self._over.done():
             self._over.set_result(True)
+
+    def _give_up(self) -> None:
+        """Leave everything ready for the next request."""
+        self._timed.cancel()
+        steps = self._steps
+        steps.take_back()
+        if self._pending is not None:
+            steps.give_up(self._pending)

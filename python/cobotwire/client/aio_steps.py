@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from cobotwire.client.aio_native_call import native_call
 from cobotwire.client.aio_timers import Timed, timers_of
 from cobotwire.client.aio_writing import AsyncWriter
 from cobotwire.client.traffic import TrafficListeners
+from cobotwire.codec.interface import Event
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import Exchange, Pending, PendingRequest
 from cobotwire.transport.aio import attach
 from cobotwire.transport.interface import Transport
+
+if TYPE_CHECKING:
+    from cobotwire._native import StreamSlot
+    from cobotwire.client.aio_lending import Lending
+    from cobotwire.client.aio_slots import AsyncSlots
 
 # A timer that goes off this early or late is left as it is.
 TIMER_SLACK = 0.0005
@@ -25,6 +33,7 @@ class AsyncSteps:
     Attributes:
         transport: the transport on the loop.
         loop, timers: the loop, and the timers that its connections share.
+        listeners: get what passes the connection.
         writer: writes requests.
         native: makes native calls, if there are any.
         lost: why the transport is gone; None: it is there.
@@ -35,7 +44,8 @@ class AsyncSteps:
     ) -> None:
         """Attach an open transport to the running loop."""
         self._exchange = exchange
-        self._listeners = listeners
+        self.listeners = listeners
+        self._lending: Lending | None = None
         self.loop = asyncio.get_running_loop()
         self.timers = timers_of(self.loop)
         self._timed = Timed(self._time_passed)
@@ -44,6 +54,37 @@ class AsyncSteps:
         self.transport = attach(transport, self.turn)
         self.writer = AsyncWriter(self.transport, exchange.alignment, listeners)
         self.native = native_call(self.transport, exchange, self.writer, self._written)
+
+    @property
+    def exchange(self) -> Exchange:
+        """The session, which is not lent now."""
+        self.take_back()
+        return self._exchange
+
+    def take_back(self) -> None:
+        """Use the session in Python, if it was lent; what is under way goes on in it."""
+        if self._lending is not None:
+            self._lending.take_back()
+
+    def stream_slot(self, slots: AsyncSlots) -> StreamSlot | None:
+        """Return what sends the plain requests of a stream; None: only the session does."""
+        if self.native is None or self.lost is not None:
+            return None
+        if self._lending is None:
+            # Imported here: most programs open no stream.
+            from cobotwire.client.aio_lending import Lending
+
+            try:
+                self._lending = Lending(self, self._exchange, self.native)
+            except LinkError:
+                # It is closed, which the next use reports.
+                return None
+        return self._lending.slot(slots)
+
+    def leave_to_parent(self, error: LinkError) -> None:
+        """Let every call in a forked child fail."""
+        # A thread of the parent may have held the lock of the native object.
+        self.lost, self._lending = error, None
 
     def check(self) -> None:
         """Raise a LinkError if the transport is gone."""
@@ -55,24 +96,24 @@ class AsyncSteps:
 
         What has come already is taken first.
         """
-        native = self.native
-        if native and pending.request.plain and not self.lost and self._listeners.silent:
+        native, exchange = self.native, self.exchange
+        if native and pending.request.plain and not self.lost and self.listeners.silent:
             events = native.send(pending)
             if events is not None:
                 now = pending.requested_at
                 if not pending.done and self._timed.moment > now + pending.shortest_attempt:
-                    self._set_timer(now)
+                    self.set_timer(now)
                 if events:
-                    self._listeners.received(events, now)
+                    self.listeners.received(events, now)
                     self._end_wait()
                 return
-        exchange, data = self._exchange, self._read()
+        data = self._read()
         if not data and self.lost is None:
             now = time.monotonic()
             frame = exchange.begin(pending, now)
             if frame:
                 self._write_request(pending, frame)
-                self._set_timer(now)
+                self.set_timer(now)
                 return
         else:
             exchange.enqueue(pending)
@@ -81,14 +122,14 @@ class AsyncSteps:
     def give_up(self, pending: Pending) -> None:
         """End a request whose caller waits no longer, and leave everything ready for the next."""
         if not pending.done:
-            self._exchange.give_up(pending)
+            self.exchange.give_up(pending)
             self.turn()
 
     def turn(self) -> None:
         """Take what has come, let time pass, send the request that is next, and set the timer."""
-        native = self.native
+        native, exchange = self.native, self.exchange
         events = None
-        if native and not self.lost and self._listeners.silent:
+        if native and not self.lost and self.listeners.silent:
             events = native.receive()
         if events is None:
             self._advance(self._read())
@@ -96,9 +137,17 @@ class AsyncSteps:
         if self._news is not None:
             self._end_wait()
         if events:
-            self._listeners.received(events, time.monotonic())
-        if events or self._exchange.busy:
+            self.listeners.received(events, time.monotonic())
+        if events or exchange.busy:
             self._advance(b"", drained=False)
+
+    def sort(self, received: Sequence[Event], fed: int) -> None:
+        """Take what has come; the framer had been fed ``fed`` bytes before."""
+        now = time.monotonic()
+        events = self.exchange.sort(received, fed, now)
+        self._end_wait()
+        self.listeners.received(events, now)
+        self._advance(b"", drained=False)
 
     async def wait(self, longest: float) -> None:
         """Wait until something is received, ``longest`` seconds at most."""
@@ -118,7 +167,7 @@ class AsyncSteps:
             self.transport.close()
         self._timed.cancel()
         now = time.monotonic()
-        self._listeners.received(self._exchange.fail(self.lost, now), now)
+        self.listeners.received(self.exchange.fail(self.lost, now), now)
 
     def _read(self) -> bytes:
         if self.lost is None:
@@ -126,7 +175,7 @@ class AsyncSteps:
                 return self.transport.read()
             except LinkError as error:
                 self.lose(error)
-                self._listeners.lost(error)
+                self.listeners.lost(error)
         return b""
 
     def _advance(self, data: bytes, drained: bool = True) -> None:
@@ -136,9 +185,9 @@ class AsyncSteps:
             events += exchange.fail(self.lost, now)
         elif outgoing:
             self._send_request(now, drained and not data)
-        self._set_timer(now)
+        self.set_timer(now)
         if events:
-            self._listeners.received(events, now)
+            self.listeners.received(events, now)
             self._end_wait()
 
     def _send_request(self, now: float, drained: bool) -> None:
@@ -155,12 +204,14 @@ class AsyncSteps:
 
     def _written(self, pending: PendingRequest, error: LinkError | None) -> None:
         """Note that a write ended that was not taken at once."""
-        self._exchange.written(pending, time.monotonic())
+        exchange = self.exchange
+        exchange.written(pending, time.monotonic())
         if error is not None:
-            self._exchange.fail_waiting(error)
+            exchange.fail_waiting(error)
         self.turn()
 
-    def _set_timer(self, now: float) -> None:
+    def set_timer(self, now: float) -> None:
+        """Have time pass for the session when the next thing is to be done; it is ``now``."""
         idle = self._exchange.idle_seconds(now)
         if idle is not None:
             self._wake_at(now + idle)

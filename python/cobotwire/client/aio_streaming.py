@@ -7,10 +7,10 @@ from typing import Any, Self
 
 from cobotwire.client.aio_connection import AsyncConnection
 from cobotwire.client.opening import Settings
-from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
+from cobotwire.protocol.errors import LinkError
 from cobotwire.protocol.messages import Request
 from cobotwire.session.request import RequestEncoder
-from cobotwire.session.sample import Reading, Sample, StreamReport
+from cobotwire.session.sample import Sample, StreamReport
 from cobotwire.session.sampling import Poll, Sampler, check_requests
 
 
@@ -56,6 +56,7 @@ class AsyncStream:
         """End the loop and the report, from any task. Closing twice is harmless."""
         if self._closed_at is None:
             self._closed_at = self._connection.now()
+            self._slots.close()
 
     def __aiter__(self) -> Self:
         return self
@@ -72,7 +73,7 @@ class AsyncStream:
         while self._closed_at is None:
             at = self._sampler.plan(now())
             try:
-                readings = await self._readings(at)
+                readings = await self._slots.readings(self._polls, at)
             except BaseException as error:
                 self._sampler.interrupted(now())
                 if isinstance(error, LinkError):
@@ -84,23 +85,6 @@ class AsyncStream:
                 break
             self._sampler.unanswered(now())
         raise StopAsyncIteration
-
-    async def _readings(self, at: float) -> list[Reading[Any]] | None:
-        """Send each request in turn, the first one at a moment.
-
-        Returns:
-            No readings if a request had no legal reply; None if the stream was closed by then.
-        """
-        readings = []
-        for poll in self._polls:
-            try:
-                reading = await self._slots.reading(poll, at)
-            except (ReplyTimeout, ProtocolError):
-                return []
-            if reading is None:
-                return None
-            readings.append(reading)
-        return readings
 
     async def __aenter__(self) -> Self:
         return self

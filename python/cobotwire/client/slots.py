@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
+from cobotwire.protocol.errors import ProtocolError, ReplyTimeout
 from cobotwire.session import Answer, EncodedRequest, RetryPolicy
 from cobotwire.session.request import result_of
 from cobotwire.session.sample import Reading
@@ -40,6 +41,29 @@ class Slots:
         self._closed = closed
         # How much earlier than its moment a call begins, in seconds.
         self._early = 0.0
+
+    def close(self) -> None:
+        """Do nothing: whether the stream is closed is checked before each call."""
+
+    def readings(self, polls: Sequence[Poll], at: float) -> list[Reading[Any]] | None:
+        """Send each request in turn, the first one at a moment.
+
+        Returns:
+            No readings if a request had no legal reply; None if the stream was closed by then.
+
+        Raises:
+            LinkError: the transport is gone.
+        """
+        readings = []
+        for poll in polls:
+            try:
+                reading = self.reading(poll, at)
+            except (ReplyTimeout, ProtocolError):
+                return []
+            if reading is None:
+                return None
+            readings.append(reading)
+        return readings
 
     def reading(self, poll: Poll, at: float) -> Reading[Any] | None:
         """Send a request at a moment; return its result, or None if the stream is closed by then.

@@ -8,10 +8,10 @@ from typing import Any, Self
 
 from cobotwire.client.connection import Connection
 from cobotwire.client.opening import Settings
-from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
+from cobotwire.protocol.errors import LinkError
 from cobotwire.protocol.messages import Request
 from cobotwire.session.request import RequestEncoder
-from cobotwire.session.sample import Reading, Sample, StreamReport
+from cobotwire.session.sample import Sample, StreamReport
 from cobotwire.session.sampling import Poll, Sampler, check_requests
 
 
@@ -57,6 +57,7 @@ class Stream:
         """End the loop and the report, from any thread. Closing twice is harmless."""
         if self._closed_at is None:
             self._closed_at = self._connection.now()
+            self._slots.close()
 
     def __iter__(self) -> Self:
         return self
@@ -73,7 +74,7 @@ class Stream:
         while self._closed_at is None:
             at = self._sampler.plan(now())
             try:
-                readings = self._readings(at)
+                readings = self._slots.readings(self._polls, at)
             except BaseException as error:
                 self._sampler.interrupted(now())
                 if isinstance(error, LinkError):
@@ -85,23 +86,6 @@ class Stream:
                 break
             self._sampler.unanswered(now())
         raise StopIteration
-
-    def _readings(self, at: float) -> list[Reading[Any]] | None:
-        """Send each request in turn, the first one at a moment.
-
-        Returns:
-            No readings if a request had no legal reply; None if the stream was closed by then.
-        """
-        readings = []
-        for poll in self._polls:
-            try:
-                reading = self._slots.reading(poll, at)
-            except (ReplyTimeout, ProtocolError):
-                return []
-            if reading is None:
-                return None
-            readings.append(reading)
-        return readings
 
     def __enter__(self) -> Self:
         return self

@@ -45,6 +45,9 @@ class TrafficListeners:
     Logger ``cobotwire.traffic`` has at DEBUG every frame, both ways; at INFO what should not
     happen: noise, late and illegal replies, and silence; at WARNING a transport that is gone.
     Without listeners and log, traffic costs next to nothing.
+
+    Attributes:
+        listeners: what is called with all traffic.
     """
 
     def __init__(
@@ -53,24 +56,24 @@ class TrafficListeners:
         self._log = Log("cobotwire.traffic")
         # None as long as the program does not import ``logging``.
         self._logger = self._log.find()
-        self._listeners: tuple[TrafficListener, ...] = () if first is None else (first,)
+        self.listeners: tuple[TrafficListener, ...] = () if first is None else (first,)
         self._url = url
         self._now = now
 
     @property
     def silent(self) -> bool:
         """Whether frames are reported to nobody: there is no listener, and no log of frames."""
-        if self._listeners:
+        if self.listeners:
             return False
         logger = self._logger or self._found()
         return logger is None or not logger.isEnabledFor(DEBUG)
 
     def add(self, listener: TrafficListener) -> Callable[[], None]:
         """Call this listener too, until the function that is returned is called."""
-        self._listeners = (*self._listeners, listener)
+        self.listeners = (*self.listeners, listener)
 
         def remove() -> None:
-            self._listeners = tuple(known for known in self._listeners if known is not listener)
+            self.listeners = tuple(known for known in self.listeners if known is not listener)
 
         return remove
 
@@ -87,7 +90,7 @@ class TrafficListeners:
         logger = self._logger or self._found()
         if logger is not None and logger.isEnabledFor(DEBUG):
             logger.debug("%s > %s", self._url, _hex(data))
-        if self._listeners:
+        if self.listeners:
             self._report(Traffic(self._now(), "sent", data))
 
     def received(self, events: Sequence[SessionEvent], now: float) -> None:
@@ -96,7 +99,7 @@ class TrafficListeners:
         if logger is not None and logger.isEnabledFor(INFO):
             for event in events:
                 self._log_event(logger, event)
-        if self._listeners:
+        if self.listeners:
             for event in events:
                 traffic = as_traffic(event, now)
                 if traffic is not None:
@@ -107,7 +110,7 @@ class TrafficListeners:
         self._log.load().warning("%s", error)
 
     def _report(self, traffic: Traffic) -> None:
-        for listener in self._listeners:
+        for listener in self.listeners:
             listener(traffic)
 
     def _found(self) -> Logger | None:

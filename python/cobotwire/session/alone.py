@@ -66,7 +66,7 @@ class Alone:
             How many bytes have been fed by then. None if anything is under way, or a reply
             outstanding.
         """
-        if not self._is_free():
+        if not self.is_free():
             return None
         fed = self._framer.fed
         self.echo.sent(pending.request, fed)
@@ -79,7 +79,8 @@ class Alone:
         self.turns.last = None
         pending.attempt_times = ()
 
-    def _is_free(self) -> bool:
+    def is_free(self) -> bool:
+        """Return whether nothing is under way, and no reply is outstanding."""
         turns = self.turns
         last = turns.last
         return not (
@@ -105,6 +106,15 @@ class Alone:
         self.turns.last, self.begun = pending, None
         self._replies.chunk_at = offset
         return self._replies.sort(received, now)
+
+    def note(self, frame: bytes, offset: int) -> None:
+        """Note the last request that was sent without the session; it may have its reply."""
+        self.alignment.last_request, self.echo.latest = frame, (frame, offset)
+
+    def resume_sent(self, pending: PendingRequest, sent_at: float, offset: int) -> None:
+        """Go on with that request, which has no reply yet, as with any other."""
+        pending.begin(sent_at, offset)
+        self.turns.last = pending
 
     def settle(self, begun: Begun | None = None) -> None:
         """Expect the reply to a request of which the caller is gone."""

@@ -8,8 +8,9 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from contextvars import copy_context
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
@@ -20,6 +21,9 @@ from cobotwire.transport.interface import (
     Transport,
 )
 from cobotwire.transport.loop_readers import readers_of
+
+if TYPE_CHECKING:
+    from cobotwire._native import StreamLine, StreamSlot
 
 # A write fails when no byte of it was taken for this long.
 WRITE_TIMEOUT = 1.0
@@ -53,6 +57,7 @@ class PolledTransport:
         self._loop = asyncio.get_running_loop()
         self._readers = readers_of(self._loop)
         self._readers.add(descriptor, ready)
+        self._context = copy_context()
         # Writes that were not taken yet, oldest first, and how much of the first one was taken.
         self.unwritten: deque[tuple[bytes, Done]] = deque()
         self._taken = 0
@@ -84,11 +89,21 @@ class PolledTransport:
         self._try_later()
         self.unwritten.append((data, done))
 
+    def call_when_ready(self, ready: Callable[[], object]) -> None:
+        """Call another function when data has come, from now on.
+
+        Raises:
+            LinkError: the transport is closed.
+        """
+        self._transport.fileno()
+        self._readers.remove(self._descriptor)
+        self._context.run(self._readers.add, self._descriptor, ready)
+
     def native(self, framer: Any) -> NativePolled | None:
         """Return native calls for this transport and a native framer; None: there are none."""
         transport = self._transport
         if isinstance(transport, LendingTransport) and transport.lends:
-            return NativePolled(self, transport.lend_now, framer)
+            return NativePolled(self, transport, framer)
         return None
 
     def _write_on(self) -> None:
@@ -164,13 +179,30 @@ class NativePolled:
     """
 
     def __init__(
-        self, transport: PolledTransport, lend_now: Callable[..., Any], framer: Any
+        self, polled: PolledTransport, transport: LendingTransport, framer: Any
     ) -> None:
-        """Take a native framer, and what lends it the descriptor of the transport."""
-        self.unwritten = transport.unwritten
-        self.write_rest = transport.write_rest
+        """Take a native framer, and the transport that lends it its descriptor."""
+        self.unwritten = polled.unwritten
+        self.write_rest = polled.write_rest
+        self._polled, self._transport, self._framer = polled, transport, framer
+        lend_now = transport.lend_now
         self.send: Callable[[bytes, str], Any] = partial(lend_now, framer.send)
         self.read_reply: Callable[[bytes, str], Any] = partial(lend_now, framer.read_reply)
+
+    def stream_line(self, listeners: object, lender: object) -> StreamLine:
+        """Return what sends requests of streams, and takes what comes from now on."""
+        from cobotwire import _native
+
+        self._transport.lend(waits=False)
+        line = _native.StreamLine(self._framer, self._transport, listeners, lender)
+        self._polled.call_when_ready(line)
+        return line
+
+    def stream_slot(self, line: StreamLine, slots: object) -> StreamSlot:
+        """Return what sends the requests of one stream on that line."""
+        from cobotwire import _native
+
+        return _native.StreamSlot(line, slots)
 
 
 class ThreadedTransport:

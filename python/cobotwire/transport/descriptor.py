@@ -46,7 +46,7 @@ class DescriptorTransport(ABC):
         # -1 while it is closed, which no wait takes.
         self._descriptor = -1
         self.loan: Loan | None = None
-        self._lent = False
+        self._lent = self._lent_to_wait = False
         self._waiter = Waiter()
         self._native = native_calls()
         # Reentrant, since a signal may close the transport in the very thread that waits for it.
@@ -87,11 +87,13 @@ class DescriptorTransport(ABC):
         """Whether native functions can wait for the descriptor."""
         return self._native is not None
 
-    def lend(self) -> None:
+    def lend(self, *, waits: bool = True) -> None:
         """Set ``loan``, now and whenever it is opened again."""
         with self._reading:
             self._lent = True
-            alarm = self._waiter.alarm()
+            self._lent_to_wait |= waits
+            # The alarm takes a descriptor of its own.
+            alarm = self._waiter.alarm() if self._lent_to_wait else -1
             if not self._closed and alarm is not None:
                 reading = self._reading
                 self.loan = Loan(reading.acquire, reading.release, self._descriptor, alarm)
@@ -194,7 +196,7 @@ class DescriptorTransport(ABC):
             self._waiter = Waiter()
             self._closed, self._why_closed = False, "it is closed"
             if self._lent:
-                self.lend()
+                self.lend(waits=self._lent_to_wait)
         _log.info("%s: opened", self.url)
 
     def leave_to_parent(self) -> None:

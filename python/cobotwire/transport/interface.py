@@ -89,8 +89,11 @@ class LendingTransport(PollableTransport, Protocol):
         """What native calls use; None: it is closed, or :meth:`lend` was not called."""
         ...
 
-    def lend(self) -> None:
-        """Set :attr:`loan`, now and whenever the transport is opened again."""
+    def lend(self, *, waits: bool = True) -> None:
+        """Set :attr:`loan`, now and whenever the transport is opened again.
+
+        Without ``waits``, its alarm may be -1: native calls do not wait.
+        """
         ...
 
     def lend_now(self, call: Callable[..., T], *arguments: object) -> T | None:

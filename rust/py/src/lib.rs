@@ -35,6 +35,8 @@ mod plain;
 mod session;
 mod survey;
 #[cfg(unix)]
+mod stream_line;
+#[cfg(unix)]
 mod swap;
 mod values;
 mod words;
@@ -59,6 +61,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
         descriptor::add_to(module)?;
         module.add_class::<swap::LineLock>()?;
         module.add_class::<lone::LoneCalls>()?;
+        module.add_class::<stream_line::StreamLine>()?;
+        module.add_class::<stream_line::StreamSlot>()?;
     }
     #[cfg(target_os = "linux")]
     module.add_class::<alarm_clock::AlarmClock>()?;

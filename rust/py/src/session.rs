@@ -49,6 +49,16 @@ impl Drop for Held<'_> {
     }
 }
 
+/// Take a lock unless another thread has it. `at_once` is `(False,)`.
+pub fn hold<'py>(
+    acquire: &Bound<'py, PyAny>,
+    release: &Bound<'py, PyAny>,
+    at_once: &Bound<'py, PyTuple>,
+) -> PyResult<Option<Held<'py>>> {
+    let taken = acquire.call1(at_once)?.is_truthy()?;
+    Ok(taken.then(|| Held(release.clone())))
+}
+
 impl Session {
     /// Take the transport, `steps` of the client and `alone` of the session.
     pub fn new(
@@ -148,16 +158,12 @@ impl Session {
         Ok(true)
     }
 
-    /// Take a lock unless another thread has it.
     fn hold<'py>(
         &self,
         acquire: &Bound<'py, PyAny>,
         release: &Bound<'py, PyAny>,
     ) -> PyResult<Option<Held<'py>>> {
-        let taken = acquire
-            .call1(self.at_once.bind(acquire.py()))?
-            .is_truthy()?;
-        Ok(taken.then(|| Held(release.clone())))
+        hold(acquire, release, self.at_once.bind(acquire.py()))
     }
 
     /// Return whether bytes are a copy of the last one-way request.

@@ -1,0 +1,93 @@
+"""Lend the session to the native module, which then sends requests of streams by itself.
+
+As long as a line has nothing else to do, a sample needs no code of Python's between its plan and
+the wake-up of its consumer (``rust/py/src/stream_line.rs``). Whatever else uses the session takes
+it back first. A request that is under way then goes on as any other request does.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from cobotwire.client.aio_timers import Timed
+from cobotwire.codec.interface import Event
+from cobotwire.session import Exchange
+
+if TYPE_CHECKING:
+    from cobotwire._native import StreamSlot
+    from cobotwire.client.aio_native_call import AsyncNativeCall
+    from cobotwire.client.aio_slots import AsyncSlots
+    from cobotwire.client.aio_steps import AsyncSteps
+
+
+class Lending:
+    """Lends the session of one connection, and goes on where the native module cannot.
+
+    Attributes:
+        line: the native object that sends requests of streams.
+    """
+
+    def __init__(self, steps: AsyncSteps, exchange: Exchange, native: AsyncNativeCall) -> None:
+        self._steps, self._exchange, self._native = steps, exchange, native
+        self._timed = Timed(self._time_passed)
+        # Takes what has come, when no request of a stream is under way.
+        self.turn = steps.turn
+        self.line = native.polled.stream_line(steps.listeners, self)
+
+    def slot(self, slots: AsyncSlots) -> StreamSlot:
+        """Return what sends the requests of one stream."""
+        return self._native.polled.stream_slot(self.line, slots)
+
+    def lend_session(self) -> bytes | None:
+        """Lend the session; return the last one-way request, empty if there is none.
+
+        Returns:
+            None if anything is under way: the session is not lent.
+        """
+        exchange, steps = self._exchange, self._steps
+        if steps.lost is not None or self._native.polled.unwritten or not exchange.alone.is_free():
+            return None
+        one_way = exchange.alone.echo.one_way
+        return b"" if one_way is None else one_way.frame
+
+    def take_back(self) -> None:
+        """Use the session in Python from now on; a request that is under way is known to it."""
+        given = self.line.give_back()
+        if given is None:
+            return
+        latest, waiting = given
+        if latest is not None:
+            self._exchange.alone.note(*latest)
+        if waiting is not None:
+            slots, requested_at, fed = waiting
+            slots.resume(self._exchange.alone, requested_at, fed)
+            self._steps.set_timer(requested_at)
+
+    def received(self, events: Sequence[Event], fed: int) -> None:
+        """Go on with the request under way: these events are not, or not only, its reply.
+
+        The framer had been fed ``fed`` bytes before theirs.
+        """
+        self.take_back()
+        self._steps.sort(events, fed)
+
+    def watch_until(self, moment: float) -> None:
+        """Let time pass for the session at a moment if a request is under way then."""
+        self._steps.timers.set(self._timed, moment)
+
+    def finish_write(self, written: int) -> None:
+        """Write the rest of the request that is under way, of which a part was taken."""
+        self.take_back()
+        pending = self._exchange.sent_last
+        assert pending is not None, "it was sent"
+        self._native.write_rest(pending, written)
+
+    def _time_passed(self) -> None:
+        until = self.line.waits_until()
+        if until is not None:
+            if until > time.monotonic():
+                self.watch_until(until)
+            else:
+                self.turn()
