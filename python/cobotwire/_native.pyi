@@ -11,7 +11,7 @@ from typing import Any, Literal, final
 
 from typing_extensions import Buffer
 
-from cobotwire.client.aio_slots import AsyncSlots
+from cobotwire.client.aio_lending import Slots
 from cobotwire.client.native_call import NativeCall
 from cobotwire.client.steps import Steps
 from cobotwire.codec.columns import Columns, Scan
@@ -280,7 +280,7 @@ class StreamLine:
 
     def give_back(
         self,
-    ) -> tuple[tuple[bytes, int] | None, tuple[AsyncSlots, float, int] | None] | None:
+    ) -> tuple[tuple[bytes, int] | None, tuple[Slots, float, int] | None] | None:
         """Use the session no longer.
 
         Returns:
@@ -296,7 +296,7 @@ class StreamLine:
 class StreamSlot:
     """Sends the requests of one stream, each at a moment at which it is called."""
 
-    def __new__(cls, line: StreamLine, slots: AsyncSlots, /) -> StreamSlot:
+    def __new__(cls, line: StreamLine, slots: Slots, /) -> StreamSlot:
         """Take the line, and what has the session send a request: its method ``send``."""
 
     def __call__(self) -> None:

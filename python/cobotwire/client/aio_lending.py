@@ -8,18 +8,65 @@ it back first. A request that is under way then goes on as any other request doe
 from __future__ import annotations
 
 import time
+from asyncio import Future
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
-from cobotwire.client.aio_timers import Timed
+from cobotwire.client.aio_native_call import AsyncNativeCall
+from cobotwire.client.aio_timers import LoopTimers, Timed
+from cobotwire.client.traffic import TrafficListeners
 from cobotwire.codec.interface import Event
+from cobotwire.protocol.errors import LinkError
 from cobotwire.session import Exchange
+from cobotwire.session.alone import Alone
 
-if TYPE_CHECKING:
-    from cobotwire._native import StreamSlot
-    from cobotwire.client.aio_native_call import AsyncNativeCall
-    from cobotwire.client.aio_slots import AsyncSlots
-    from cobotwire.client.aio_steps import AsyncSteps
+
+class NativeSlot(Protocol):
+    """Sends the requests of one stream; ``cobotwire._native.StreamSlot`` describes it."""
+
+    def __call__(self) -> None:
+        """Send what was planned, or have the session send it."""
+        ...
+
+    def plan(self, frame: bytes, command: str, wait: float, over: Future[Any], /) -> None:
+        """Plan what the next call sends."""
+        ...
+
+    def forget(self) -> None:
+        """Leave the next call to the session."""
+        ...
+
+
+class Slots(Protocol):
+    """What a native slot calls: the slots of one stream."""
+
+    def send(self) -> None:
+        """Have the session send the request that is planned."""
+        ...
+
+    def resume(self, alone: Alone, requested_at: float, offset: int) -> None:
+        """Make the request known to the session, which was sent without it."""
+        ...
+
+
+class Steps(Protocol):
+    """The steps of the exchange that a native call leaves to Python."""
+
+    lost: LinkError | None
+    listeners: TrafficListeners
+    timers: LoopTimers
+
+    def turn(self) -> None:
+        """Take what has come, and let time pass."""
+        ...
+
+    def sort(self, received: Sequence[Event], fed: int) -> None:
+        """Take what has come; the framer had been fed ``fed`` bytes before."""
+        ...
+
+    def set_timer(self, now: float) -> None:
+        """Have time pass for the session when the next thing is to be done; it is ``now``."""
+        ...
 
 
 class Lending:
@@ -29,14 +76,14 @@ class Lending:
         line: the native object that sends requests of streams.
     """
 
-    def __init__(self, steps: AsyncSteps, exchange: Exchange, native: AsyncNativeCall) -> None:
+    def __init__(self, steps: Steps, exchange: Exchange, native: AsyncNativeCall) -> None:
         self._steps, self._exchange, self._native = steps, exchange, native
         self._timed = Timed(self._time_passed)
         # Takes what has come, when no request of a stream is under way.
         self.turn = steps.turn
         self.line = native.polled.stream_line(steps.listeners, self)
 
-    def slot(self, slots: AsyncSlots) -> StreamSlot:
+    def slot(self, slots: Slots) -> NativeSlot:
         """Return what sends the requests of one stream."""
         return self._native.polled.stream_slot(self.line, slots)
 

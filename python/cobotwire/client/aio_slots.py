@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from cobotwire.client.aio_steps import AsyncSteps
 from cobotwire.client.aio_timers import Timed
@@ -17,7 +17,7 @@ from cobotwire.session.sample import Reading
 from cobotwire.session.sampling import Poll
 
 if TYPE_CHECKING:
-    from cobotwire._native import StreamSlot
+    from cobotwire.client.aio_lending import NativeSlot
 
 # The longest sleep, after which a stream checks whether it was closed.
 CHECK_SECONDS = 0.05
@@ -34,7 +34,7 @@ class AsyncSlots:
         self._opened, self._closed = opened, closed
         self._timed = Timed(self.send)
         # Sends plain requests without the session, if there are native calls.
-        self._slot: StreamSlot | None = None
+        self._slot: NativeSlot | None = None
         # The request as the session knows it; None: it does not.
         self._pending: PendingRequest | None = None
 
@@ -60,11 +60,11 @@ class AsyncSlots:
                 if self._closed():
                     return None
             for poll in polls:
-                # Its result is the answer; or whether the session sent the request.
+                # Its result is the answer; or True: the session has it; None: nothing was sent.
                 self._over = over = steps.loop.create_future()
                 self._plan(poll, at)
-                answer: Answer | bool = await over
-                if not answer:
+                answer: Answer | Literal[True] | None = await over
+                if answer is None:
                     return None
                 if answer is True:
                     assert self._pending is not None, "the session sent it"
@@ -105,7 +105,7 @@ class AsyncSlots:
             return
         try:
             if self._closed():
-                over.set_result(False)
+                over.set_result(None)
             else:
                 self._steps.start(self._new_pending())
         except Exception as error:

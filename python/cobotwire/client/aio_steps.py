@@ -19,9 +19,7 @@ from cobotwire.transport.aio import attach
 from cobotwire.transport.interface import Transport
 
 if TYPE_CHECKING:
-    from cobotwire._native import StreamSlot
-    from cobotwire.client.aio_lending import Lending
-    from cobotwire.client.aio_slots import AsyncSlots
+    from cobotwire.client.aio_lending import Lending, NativeSlot, Slots
 
 # A timer that goes off this early or late is left as it is.
 TIMER_SLACK = 0.0005
@@ -66,7 +64,7 @@ class AsyncSteps:
         if self._lending is not None:
             self._lending.take_back()
 
-    def stream_slot(self, slots: AsyncSlots) -> StreamSlot | None:
+    def stream_slot(self, slots: Slots) -> NativeSlot | None:
         """Return what sends the plain requests of a stream; None: only the session does."""
         if self.native is None or self.lost is not None:
             return None

@@ -178,9 +178,7 @@ class NativePolled:
         read_reply: called with a request that was sent, and its command; reads what has come since.
     """
 
-    def __init__(
-        self, polled: PolledTransport, transport: LendingTransport, framer: Any
-    ) -> None:
+    def __init__(self, polled: PolledTransport, transport: LendingTransport, framer: Any) -> None:
         """Take a native framer, and the transport that lends it its descriptor."""
         self.unwritten = polled.unwritten
         self.write_rest = polled.write_rest
@@ -198,7 +196,7 @@ class NativePolled:
         self._polled.call_when_ready(line)
         return line
 
-    def stream_slot(self, line: StreamLine, slots: object) -> StreamSlot:
+    def stream_slot(self, line: StreamLine, slots: Any) -> StreamSlot:
         """Return what sends the requests of one stream on that line."""
         from cobotwire import _native
 
