@@ -39,6 +39,8 @@ SCRIPTS = st.lists(
 NO_GRACE = RetryPolicy(attempts=1, grace=0.0)
 # Far longer than a test takes.
 LONG = RetryPolicy(attempts=1, grace=60.0)
+# A test that takes longer hangs, in seconds.
+LONGEST = 15
 # A reply that comes so late leaves time to act before it.
 SLOW = 0.2
 
@@ -54,7 +56,8 @@ def run(peer: Any, drive: Callable[[AsyncMyCobot], Awaitable[Any]], **options: A
 
     async def main() -> Any:
         async with AsyncMyCobot(peer.url, codec="native", **options) as arm:
-            return await drive(arm)
+            async with asyncio.timeout(LONGEST):
+                return await drive(arm)
 
     with peer:
         result = asyncio.run(main())
@@ -165,6 +168,20 @@ def test_late_reply_to_a_cancelled_slot_is_not_taken_by_the_next_call() -> None:
 
     retry = RetryPolicy(attempts=1, grace=2 * SLOW)
     assert run(peer, drive, timeout=20, retry=retry) == (3.96, REQUEST * 2)
+
+
+def test_silence_after_a_cancelled_slot_holds_the_next_call_for_the_grace_time_only() -> None:
+    peer = ScriptedPeer([], [ANGLES])
+
+    async def drive(arm: AsyncMyCobot) -> Any:
+        task = await begun(arm.stream(GetAngles(), rate=10), peer)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+        return (await arm.get_angles())[0]
+
+    retry = RetryPolicy(attempts=1, grace=SLOW)
+    assert run(peer, drive, timeout=2 * LONGEST, retry=retry) == (1.4, REQUEST * 2)
 
 
 def test_slot_that_is_cancelled_before_its_moment_sends_nothing() -> None:

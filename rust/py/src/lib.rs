@@ -33,9 +33,9 @@ mod parts;
 mod plain;
 #[cfg(unix)]
 mod session;
-mod survey;
 #[cfg(unix)]
 mod stream_line;
+mod survey;
 #[cfg(unix)]
 mod swap;
 mod values;
