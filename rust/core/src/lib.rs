@@ -35,7 +35,7 @@ mod write;
 
 pub use bulk::{
     Advise, Cells, ColumnReader, Columns, Counted, Numbers, OffsetReader, Offsets, Plans, Rows,
-    Spans,
+    Spans, Workers,
 };
 pub use capture::{
     CaptureReader, Damage, Decoder, Decoders, Fault, Interface, PacketDirection, StreamBatch, Times,

@@ -53,4 +53,18 @@ impl Tally {
             *noise += count as u64;
         }
     }
+
+    /// Add the counts of another tally, and clear it.
+    pub(crate) fn append(&mut self, other: &mut Self) {
+        self.bytes += other.bytes;
+        self.resyncs += other.resyncs;
+        let counts = self.frames.iter_mut().zip(&other.frames);
+        for (total, count) in counts.chain(self.noise.iter_mut().zip(&other.noise)) {
+            *total += count;
+        }
+        for (id, count) in &other.wide {
+            *self.wide.entry(*id).or_default() += count;
+        }
+        *other = Self::default();
+    }
 }

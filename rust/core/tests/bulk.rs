@@ -103,7 +103,7 @@ fn floats(cells: &Cells) -> Vec<f64> {
     }
 }
 
-const LISTENING: [Listening; 3] = [
+pub const LISTENING: [Listening; 3] = [
     Listening::To(Direction::Request),
     Listening::To(Direction::Reply),
     Listening::Both,
@@ -153,7 +153,7 @@ fn check(table: &Arc<Table>, stream: &[u8], dice: &mut Dice) {
 }
 
 /// Return a stream of an edition's frames and of bytes that are hard to frame.
-fn stream(dice: &mut Dice, frames: &[Vec<u8>], size: usize, noise: usize) -> Vec<u8> {
+pub fn stream(dice: &mut Dice, frames: &[Vec<u8>], size: usize, noise: usize) -> Vec<u8> {
     let mut stream = Vec::new();
     while stream.len() < size {
         if dice.roll(100) < noise {

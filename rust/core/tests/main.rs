@@ -18,3 +18,4 @@ mod records;
 mod replay;
 mod values;
 mod vectors;
+mod workers;

@@ -92,7 +92,12 @@ pub fn scan<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = data.py();
     let old = out.map(old_offsets).transpose()?;
-    let mut reader = OffsetReader::new(rules, old);
+    let mut reader = OffsetReader::new(rules, old).with_workers(cobotwire_core::Workers::new(
+        std::env::var("PROTO")
+            .ok()
+            .and_then(|s| s.parse().ok())
+            .unwrap_or(1),
+    ));
     feed(&mut reader, data)?;
     reader.flush();
     let Offsets { frames, noise } = reader.take();
@@ -142,7 +147,13 @@ impl NativeColumnReader {
         let mut core = self.core.get(data.py())?;
         if let Some(out) = out {
             let old = old_columns(&self.edition, out)?;
-            *core = Self::reader(&self.edition, self.listening, self.numbers, Some(old));
+            *core = Self::reader(&self.edition, self.listening, self.numbers, Some(old))
+                .with_workers(cobotwire_core::Workers::new(
+                    std::env::var("PROTO")
+                        .ok()
+                        .and_then(|s| s.parse().ok())
+                        .unwrap_or(1),
+                ));
         }
         feed(&mut *core, data)?;
         core.flush();

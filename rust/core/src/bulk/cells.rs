@@ -124,6 +124,21 @@ impl Cells {
         each!(self, all => all.truncate(left));
     }
 
+    /// Append the numbers of a column of the same type, and leave it empty, with its memory.
+    pub(crate) fn append(&mut self, other: &mut Self) {
+        match (self, other) {
+            (Self::F64(all), Self::F64(more)) => all.append(more),
+            (Self::U8(all), Self::U8(more)) => all.append(more),
+            (Self::I8(all), Self::I8(more)) => all.append(more),
+            (Self::U16(all), Self::U16(more)) => all.append(more),
+            (Self::I16(all), Self::I16(more)) => all.append(more),
+            (Self::U32(all), Self::U32(more)) => all.append(more),
+            (Self::I32(all), Self::I32(more)) => all.append(more),
+            (Self::I64(all), Self::I64(more)) => all.append(more),
+            _ => {}
+        }
+    }
+
     /// Return an empty column of the same type.
     pub(crate) fn like(&self) -> Self {
         match self {

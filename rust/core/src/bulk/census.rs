@@ -7,7 +7,7 @@ use super::block::{Block, Found, LANES};
 use super::buckets::Buckets;
 use super::decode::Job;
 use super::plan::{Plan, Plans};
-use super::stream::Collect;
+use super::search::Collect;
 use crate::frame::Part;
 use crate::table::Table;
 

@@ -7,10 +7,12 @@ use super::buckets::Buckets;
 use super::cells::{Advise, Numbers, reserve};
 use super::decode::Job;
 use super::plan::Plans;
+use super::relay::{Share, Workers};
 use super::rows::Rows;
 use super::sample::expected;
+use super::search::{Collect, Space};
 use super::spans::Spans;
-use super::stream::{Collect, Space, Stream};
+use super::stream::Stream;
 use crate::table::Table;
 use crate::tally::Tally;
 
@@ -46,6 +48,7 @@ pub(crate) struct Workspace {
 /// Decodes a stream into columns.
 pub struct ColumnReader {
     stream: Stream,
+    workers: Workers,
     sorter: Sorter,
 }
 
@@ -79,6 +82,7 @@ impl ColumnReader {
         old.rejected.clear();
         Self {
             stream: Stream::new(table.rules(plans.listening).clone()).reusing(old.noise),
+            workers: Workers::ONE,
             sorter: Sorter {
                 table,
                 buckets: Buckets::default(),
@@ -93,6 +97,13 @@ impl ColumnReader {
     #[must_use]
     pub fn starting_at(mut self, offset: u64) -> Self {
         self.stream.start_at(offset);
+        self
+    }
+
+    /// Read large chunks with several threads; what is found does not depend on that.
+    #[must_use]
+    pub fn with_workers(mut self, workers: Workers) -> Self {
+        self.workers = workers;
         self
     }
 
@@ -120,7 +131,7 @@ impl ColumnReader {
 
     /// Feed bytes; [`ColumnReader::take`] returns the frames that are certain.
     pub fn feed(&mut self, chunk: &[u8]) {
-        self.stream.feed(chunk, &mut self.sorter);
+        self.stream.feed_with(self.workers, chunk, &mut self.sorter);
     }
 
     /// Refute the candidate that waits.
@@ -187,5 +198,29 @@ impl Collect for Sorter {
             };
             job.run(plan, &mut self.rows, &mut self.rejected);
         });
+    }
+}
+
+impl Share for Sorter {
+    fn part(&self) -> Self {
+        Self {
+            table: Arc::clone(&self.table),
+            plans: Arc::clone(&self.plans),
+            buckets: Buckets::default(),
+            rows: self.rows.iter().map(Rows::like).collect(),
+            rejected: Vec::new(),
+        }
+    }
+
+    fn append(&mut self, part: &mut Self) {
+        for (rows, part) in self.rows.iter_mut().zip(&mut part.rows) {
+            rows.append(part);
+        }
+        self.rejected.append(&mut part.rejected);
+    }
+
+    fn clear(&mut self) {
+        self.rows.iter_mut().for_each(Rows::clear);
+        self.rejected.clear();
     }
 }

@@ -2,9 +2,11 @@
 
 use super::block::{Block, Found, LANES};
 use super::cells::{Advise, reserve};
+use super::relay::{Share, Workers};
 use super::sample::expected;
+use super::search::Collect;
 use super::spans::Spans;
-use super::stream::{Collect, Stream};
+use super::stream::Stream;
 use crate::judge::Rules;
 use crate::tally::Tally;
 
@@ -21,6 +23,7 @@ pub struct Offsets {
 #[derive(Clone)]
 pub struct OffsetReader {
     stream: Stream,
+    workers: Workers,
     collected: Collected,
 }
 
@@ -37,8 +40,16 @@ impl OffsetReader {
         frames.clear();
         Self {
             stream: Stream::new(rules).reusing(noise),
+            workers: Workers::ONE,
             collected: Collected { frames },
         }
+    }
+
+    /// Read large chunks with several threads; what is found does not depend on that.
+    #[must_use]
+    pub fn with_workers(mut self, workers: Workers) -> Self {
+        self.workers = workers;
+        self
     }
 
     /// Reserve memory for the frames of `data`, estimated from parts of it.
@@ -50,7 +61,8 @@ impl OffsetReader {
 
     /// Feed bytes; [`OffsetReader::take`] returns the frames that are certain.
     pub fn feed(&mut self, chunk: &[u8]) {
-        self.stream.feed(chunk, &mut self.collected);
+        self.stream
+            .feed_with(self.workers, chunk, &mut self.collected);
     }
 
     /// Refute the candidate that waits.
@@ -86,5 +98,19 @@ impl Collect for Collected {
             let places = lane.iter().map(|frame| offset + u64::from(frame.at()));
             self.frames.extend(places);
         }
+    }
+}
+
+impl Share for Collected {
+    fn part(&self) -> Self {
+        Self { frames: Vec::new() }
+    }
+
+    fn append(&mut self, part: &mut Self) {
+        self.frames.append(&mut part.frames);
+    }
+
+    fn clear(&mut self) {
+        self.frames.clear();
     }
 }

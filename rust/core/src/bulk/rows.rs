@@ -41,20 +41,42 @@ impl Rows {
         let columns = self.fields.len() == old.fields.len();
         if columns && self.fields.iter().zip(&old.fields).all(alike) {
             *self = old;
-            self.offsets.clear();
-            self.addresses.clear();
-            self.fields.iter_mut().for_each(Cells::clear);
+            self.clear();
+        }
+    }
+
+    /// Remove all rows, but keep their memory.
+    pub(crate) fn clear(&mut self) {
+        self.offsets.clear();
+        self.addresses.clear();
+        self.fields.iter_mut().for_each(Cells::clear);
+    }
+
+    /// Append the rows of `other`, and leave it empty, with its memory.
+    pub(crate) fn append(&mut self, other: &mut Self) {
+        if other.offsets.is_empty() {
+            return;
+        }
+        self.offsets.append(&mut other.offsets);
+        self.addresses.append(&mut other.addresses);
+        for (all, more) in self.fields.iter_mut().zip(&mut other.fields) {
+            all.append(more);
+        }
+    }
+
+    /// Return no rows, with columns of the same types.
+    pub(crate) fn like(&self) -> Self {
+        Self {
+            variant: self.variant,
+            offsets: Vec::new(),
+            addresses: Vec::new(),
+            fields: self.fields.iter().map(Cells::like).collect(),
         }
     }
 
     /// Return the contents, and leave empty columns of the same types.
     pub(crate) fn take(&mut self) -> Self {
-        let empty = Self {
-            variant: self.variant,
-            offsets: Vec::new(),
-            addresses: Vec::new(),
-            fields: self.fields.iter().map(Cells::like).collect(),
-        };
+        let empty = self.like();
         std::mem::replace(self, empty)
     }
 }

@@ -1,7 +1,8 @@
 //! Estimates the number of frames in a capture from parts of it, to allocate memory once.
 
 use super::block::{Block, Found, LANES};
-use super::stream::{Collect, Stream};
+use super::search::Collect;
+use super::stream::Stream;
 use crate::judge::Rules;
 
 /// For smaller input, an estimate costs more than it saves.

@@ -95,6 +95,39 @@ impl Noise {
         }
     }
 
+    /// Append the noise that another search found after this one, and clear it.
+    pub(crate) fn append(&mut self, other: &mut Self, tally: &mut Tally) {
+        let Self { open, closed, .. } = other;
+        let first = closed.offsets.first().zip(closed.sizes.first());
+        let first = first.map(|(from, size)| (*from, from + size)).or(*open);
+        let Some((from, to)) = first else {
+            return;
+        };
+        let joined = self.open.take_if(|(_, end)| *end == from);
+        if joined.is_none() {
+            self.close(from, tally);
+        }
+        let from = joined.map_or(from, |(from, _)| from);
+        match (closed.offsets.first_mut(), closed.sizes.first_mut()) {
+            (Some(offset), Some(size)) => {
+                (*offset, *size) = (from, to - from);
+                self.flushed = None;
+                self.closed.offsets.append(&mut closed.offsets);
+                self.closed.sizes.append(&mut closed.sizes);
+                self.open = open.take();
+            }
+            _ => {
+                self.open = Some((from, to));
+                *open = None;
+            }
+        }
+    }
+
+    /// Remove all noise, but keep its memory.
+    pub(crate) fn clear(&mut self) {
+        *self = Self::new(self.take());
+    }
+
     /// Account for everything before stream offset `done`: a frame followed each span that ends
     /// earlier.
     pub(crate) fn settle(&mut self, done: u64, tally: &mut Tally) {

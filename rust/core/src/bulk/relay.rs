@@ -1,0 +1,254 @@
+//! Reads contiguous bytes with several threads, with the results of one.
+//!
+//! The bytes are cut into pieces, which the threads read in turn. A piece starts at a guess: a
+//! position after its cut at which a frame seems to start. Each thread reads its piece into memory
+//! of its own, and then waits until the scan of the stream has reached the piece. A scan has no
+//! memory: if the scan of the stream stands exactly at the guess, then it finds in the piece what
+//! the thread found. If not, the thread reads the piece again, from the position at which the scan
+//! stands. Then it appends what it found to the results, and hands over to the thread with the next
+//! piece. So the results are in the order of the stream, whatever was guessed.
+
+use std::hint::spin_loop;
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::thread::{self, Builder};
+
+use super::block::BLOCK;
+use super::search::{Collect, Search};
+use crate::judge::{Rules, Verdict};
+use cobotwire_simd::SEEN;
+
+/// The number of bytes that a guess may examine.
+const GUESSING: usize = 512;
+/// How often a thread checks whether its turn has come, before it sleeps: waking up takes longer
+/// than reading a piece.
+const CHECKS: usize = 2_000;
+/// More threads do not help, since one after the other appends its results.
+const MOST: usize = 16;
+/// For less input, starting threads costs more than it saves.
+const WORTH: usize = 1 << 20;
+/// The bytes between two cuts: two blocks. Longer columns are appended faster, but until then they
+/// have to stay in the cache of a core.
+const STRIDE: usize = 2 * BLOCK - GUESSING;
+
+/// The number of threads that read, and the pieces that they read.
+#[derive(Clone, Copy, Debug)]
+pub struct Workers {
+    count: usize,
+    /// Less input is read by one thread.
+    worth: usize,
+    /// The bytes between two cuts.
+    stride: usize,
+}
+
+impl Workers {
+    /// Read in the calling thread only.
+    pub const ONE: Self = Self::new(1);
+
+    /// Read large input with this number of threads, the calling one included, at most 16.
+    #[must_use]
+    pub const fn new(count: usize) -> Self {
+        Self {
+            count,
+            worth: WORTH,
+            stride: STRIDE,
+        }
+    }
+
+    /// Cut input of any size every `stride` bytes, to test many cuts with few bytes.
+    #[must_use]
+    pub fn cutting_every(self, stride: usize) -> Self {
+        Self {
+            worth: 0,
+            stride: stride.max(1),
+            ..self
+        }
+    }
+}
+
+/// Collects what a search finds, also in several threads.
+pub(crate) trait Share: Collect + Send {
+    /// Return an empty collector for a thread.
+    fn part(&self) -> Self;
+
+    /// Append what a thread has collected, and leave its collector empty, with its memory.
+    fn append(&mut self, part: &mut Self);
+
+    /// Forget what was collected.
+    fn clear(&mut self);
+}
+
+/// The bytes to read, and where they are cut.
+#[derive(Clone, Copy)]
+struct Cuts<'a> {
+    data: &'a [u8],
+    /// The position of the data in the stream.
+    offset: u64,
+    stride: usize,
+    pieces: usize,
+}
+
+impl<'a> Cuts<'a> {
+    /// Cut `data`. After the last piece there are enough bytes to judge each position in it.
+    fn new(workers: Workers, rules: &Rules, offset: u64, data: &'a [u8]) -> Self {
+        let rest = GUESSING + rules.longest().max(SEEN);
+        let stride = workers.stride;
+        Self {
+            data,
+            offset,
+            stride,
+            pieces: data.len().saturating_sub(rest) / stride,
+        }
+    }
+
+    /// Return where a piece starts: at the first position after its cut where a frame seems to
+    /// start.
+    fn start(&self, piece: usize, rules: &Rules) -> usize {
+        let cut = piece * self.stride;
+        let framed = |at: &usize| {
+            let rest = self.data.get(*at..).unwrap_or_default();
+            matches!(rules.judge(rest), Verdict::Frame(_))
+        };
+        let end = cut + GUESSING;
+        match piece {
+            0 => 0,
+            _ => (cut..end).find(framed).unwrap_or(end),
+        }
+    }
+}
+
+/// What the threads hand over to each other: the search of the stream, and its results.
+struct Turn<'a, C> {
+    search: &'a mut Search,
+    collect: &'a mut C,
+    /// The position at which the search stands.
+    at: &'a mut usize,
+}
+
+/// The place of a thread in the ring of those that read in turn.
+struct Seat<'a, C> {
+    index: usize,
+    count: usize,
+    turns: Receiver<Turn<'a, C>>,
+    next: Sender<Turn<'a, C>>,
+}
+
+impl<'a, C> Seat<'a, C> {
+    /// Return a ring of seats; the first one has the turn.
+    fn ring(count: usize, turn: Turn<'a, C>) -> Vec<Self> {
+        let (mut next, turns): (Vec<_>, Vec<_>) = (0..count).map(|_| channel()).unzip();
+        if let Some(first) = next.first() {
+            // It fails only without its receiver, which is in `turns`.
+            let _ = first.send(turn);
+        }
+        next.rotate_left(1);
+        let seat = |(index, (turns, next))| Self {
+            index,
+            count,
+            turns,
+            next,
+        };
+        turns.into_iter().zip(next).enumerate().map(seat).collect()
+    }
+
+    /// Wait for the turn; `None`: another thread has panicked.
+    fn turn(&self) -> Option<Turn<'a, C>> {
+        for _ in 0..CHECKS {
+            match self.turns.try_recv() {
+                Ok(turn) => return Some(turn),
+                Err(TryRecvError::Empty) => spin_loop(),
+                Err(TryRecvError::Disconnected) => return None,
+            }
+        }
+        self.turns.recv().ok()
+    }
+}
+
+/// Read most of `data`, which is at `offset` in the stream; return the position at which the search
+/// stands then. It stays at the start if that is not worth several threads, or none can be started.
+pub(crate) fn read<C: Share>(
+    workers: Workers,
+    search: &mut Search,
+    offset: u64,
+    data: &[u8],
+    collect: &mut C,
+) -> usize {
+    let cuts = Cuts::new(workers, &search.rules, offset, data);
+    let count = workers.count.min(MOST).min(cuts.pieces);
+    let mut at = 0;
+    if count < 2 || data.len() < workers.worth {
+        return at;
+    }
+    let reader = || Reader {
+        search: Search::new(search.rules.clone()),
+        part: collect.part(),
+    };
+    let (mut mine, others) = (reader(), (1..count).map(|_| reader()).collect::<Vec<_>>());
+    thread::scope(|scope| {
+        let mut seats = Vec::with_capacity(count);
+        for mut reader in others {
+            let (give, seat) = channel();
+            let work = move || seat.recv().map(|seat| reader.read(cuts, &seat));
+            // The system may refuse a thread; then there are fewer.
+            if Builder::new().spawn_scoped(scope, work).is_ok() {
+                seats.push(give);
+            }
+        }
+        if seats.is_empty() {
+            return;
+        }
+        let turn = Turn {
+            search,
+            collect,
+            at: &mut at,
+        };
+        let mut ring = Seat::ring(1 + seats.len(), turn).into_iter();
+        let first = ring.next();
+        for (give, seat) in seats.into_iter().zip(ring) {
+            // It fails only if the thread has panicked; then the others end too.
+            let _ = give.send(seat);
+        }
+        if let Some(seat) = first {
+            mine.read(cuts, &seat);
+        }
+    });
+    at
+}
+
+/// A thread's memory.
+struct Reader<C> {
+    search: Search,
+    part: C,
+}
+
+impl<C: Share> Reader<C> {
+    /// Read every piece that is this thread's turn.
+    fn read(&mut self, cuts: Cuts<'_>, seat: &Seat<'_, C>) {
+        for piece in (seat.index..cuts.pieces).step_by(seat.count) {
+            let start = cuts.start(piece, &self.search.rules);
+            let stop = cuts.start(piece + 1, &self.search.rules);
+            let mut end = self.piece(cuts, start, stop);
+            let Some(turn) = seat.turn() else {
+                return;
+            };
+            if *turn.at != start {
+                self.search.clear();
+                self.part.clear();
+                end = self.piece(cuts, *turn.at, stop);
+            }
+            turn.search.append(&mut self.search);
+            turn.collect.append(&mut self.part);
+            *turn.at = end;
+            if seat.next.send(turn).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// Read the bytes from `start` to `stop`; return the position at which the search stands then.
+    fn piece(&mut self, cuts: Cuts<'_>, start: usize, stop: usize) -> usize {
+        let Self { search, part } = self;
+        let rest = cuts.data.get(start..).unwrap_or_default();
+        let left = stop.saturating_sub(start);
+        start + search.through(cuts.offset + start as u64, rest, left, false, part)
+    }
+}

@@ -1,0 +1,176 @@
+//! Several threads find in a stream what one thread finds, wherever it is cut.
+
+use std::sync::Arc;
+
+use crate::bulk::{LISTENING, stream};
+use crate::common::{Dice, field, frame_format, number, table_of};
+use crate::records::Edition;
+use cobotwire_core::{
+    ColumnReader, Columns, FrameFormat, Layout, Listening, Numbers, OffsetReader, Offsets, Order,
+    Part, Plans, Table, Tally, Workers,
+};
+
+/// What a reader reports after each chunk and after a flush.
+#[derive(Debug, PartialEq)]
+struct Report {
+    offsets: Vec<(Offsets, usize, Tally)>,
+    columns: Vec<(Columns, usize, Tally)>,
+}
+
+fn report(
+    table: &Arc<Table>,
+    plans: &Arc<Plans>,
+    listening: Listening,
+    chunks: &[&[u8]],
+    workers: Workers,
+) -> Report {
+    let rules = table.rules(listening).clone();
+    let mut reader = OffsetReader::new(rules, None).with_workers(workers);
+    let mut offsets = Vec::new();
+    let mut note = |reader: &mut OffsetReader| {
+        offsets.push((reader.take(), reader.pending(), reader.tally().clone()));
+    };
+    for chunk in chunks {
+        reader.feed(chunk);
+        note(&mut reader);
+    }
+    reader.flush();
+    note(&mut reader);
+
+    let (table, plans) = (Arc::clone(table), Arc::clone(plans));
+    let mut reader = ColumnReader::new(table, plans, Numbers::Physical, None).with_workers(workers);
+    let mut columns = Vec::new();
+    let mut note = |reader: &mut ColumnReader| {
+        columns.push((reader.take(), reader.pending(), reader.tally().clone()));
+    };
+    for chunk in chunks {
+        reader.feed(chunk);
+        note(&mut reader);
+    }
+    reader.flush();
+    note(&mut reader);
+    Report { offsets, columns }
+}
+
+/// Compare threads that cut at these strides with one thread, in all directions.
+fn check(table: &Arc<Table>, chunks: &[&[u8]], cuts: impl IntoIterator<Item = (usize, usize)>) {
+    let cuts: Vec<_> = cuts.into_iter().collect();
+    for listening in LISTENING {
+        let plans = Arc::new(Plans::new(table, listening));
+        let alone = report(table, &plans, listening, chunks, Workers::ONE);
+        for (count, stride) in &cuts {
+            let workers = Workers::new(*count).cutting_every(*stride);
+            let together = report(table, &plans, listening, chunks, workers);
+            assert!(alone == together, "{count} threads, cut every {stride}");
+        }
+    }
+}
+
+/// Return an edition's table, and the frames of its vectors.
+fn generated(name: &str) -> (Arc<Table>, Vec<Vec<u8>>) {
+    let edition = Edition::generated(name);
+    let frames = edition.vectors.into_iter().filter_map(|each| each.frame);
+    (Arc::new(edition.table), frames.collect())
+}
+
+/// With a footer; with an address and a sum; with a CRC.
+const FAMILIES: [&str; 3] = ["mycobot", "mybuddy", "pro450"];
+
+#[test]
+fn short_streams_may_be_cut_at_every_place() {
+    let mut dice = Dice(11);
+    for name in FAMILIES {
+        let (table, frames) = generated(name);
+        for noise in [0, 40] {
+            let stream = stream(&mut dice, &frames, 1_600, noise);
+            // From 400 on, the first cut is at each place of several frames.
+            let strides = [1, 7].into_iter().chain(400..440);
+            check(&table, &[&stream], strides.map(|stride| (3, stride)));
+        }
+    }
+}
+
+#[test]
+fn long_streams_may_be_cut_and_chunked_anywhere() {
+    let mut dice = Dice(12);
+    for name in FAMILIES {
+        let (table, frames) = generated(name);
+        for (size, noise) in [(400_000, 0), (300_000, 3), (150_000, 60)] {
+            let stream = stream(&mut dice, &frames, size, noise);
+            let chunks = dice.chunks(&stream);
+            let strides = [1_000 + dice.roll(9_000), 40_000 + dice.roll(60_000)];
+            let counts = [2, 5];
+            check(&table, &chunks, counts.into_iter().zip(strides));
+        }
+    }
+}
+
+#[test]
+fn noise_that_spans_many_pieces_is_one_span() {
+    let (table, frames) = generated("mycobot");
+    for byte in [0x00, 0xFE] {
+        let noise = vec![byte; 300_000];
+        let stream = [&frames[0][..], &noise, &frames[0], &noise[..9_000]].concat();
+        check(&table, &[&stream], [(2, 131_000), (4, 700)]);
+        check(&table, &[&noise], [(2, 131_000), (4, 700)]);
+    }
+    check(&table, &[], [(2, 10)]);
+    check(&table, &[&[], &[0xFE], &[]], [(2, 1)]);
+}
+
+/// The scan from a guess finds other frames than the scan of the stream, and never meets it: each
+/// frame holds the start of another one, which ends in the next frame.
+#[test]
+fn a_guess_that_never_meets_the_scan_changes_nothing() {
+    let (table, _) = generated("mycobot");
+    let mut frame = [0; 17];
+    frame[..4].copy_from_slice(&[0xFE, 0xFE, 0x0E, 0x20]);
+    frame[7] = 0xFA;
+    frame[8..12].copy_from_slice(&[0xFE, 0xFE, 0x0E, 0x20]);
+    frame[16] = 0xFA;
+    let stream = frame.repeat(16_000);
+    for shift in [0, 3, 8, 9, 16] {
+        // Without the first header, the other frames are those of the stream.
+        check(&table, &[&stream[shift..]], [(2, 100_003)]);
+    }
+    let short = &stream[..1_500];
+    check(&table, &[short], (1..40).map(|stride| (3, stride)));
+}
+
+/// Ids of two bytes are counted by another map than ids of one.
+#[test]
+fn wide_ids_are_counted_once() {
+    let format = FrameFormat {
+        layout: Layout {
+            id: Part {
+                at: 3,
+                wide: true,
+                order: Order::Big,
+            },
+            data_at: 5,
+            ..Layout::usual(2, false)
+        },
+        ..frame_format()
+    };
+    let byte = vec![field(vec![number(1, 1, 0, 255)], false)];
+    let table = Arc::new(table_of(format, vec![byte; 0x200]));
+    let frame = |id: u16| {
+        let [high, low] = id.to_be_bytes();
+        [0xFE, 0xFE, 0x04, high, low, 0x07, 0xFA]
+    };
+    let stream: Vec<u8> = (0x20..0x220).cycle().take(20_000).flat_map(frame).collect();
+    check(&table, &[&stream], [(2, 700), (3, 50_000)]);
+}
+
+/// Starting threads is not worth it for little input, whatever is requested.
+#[test]
+fn more_threads_than_pieces_are_not_started() {
+    let (table, frames) = generated("mycobot");
+    let stream = &frames.concat()[..3_000];
+    let plans = Arc::new(Plans::new(&table, LISTENING[2]));
+    let read = |workers| report(&table, &plans, LISTENING[2], &[stream], workers);
+    assert_eq!(read(Workers::new(usize::MAX)), read(Workers::ONE));
+    assert_eq!(read(Workers::new(0)), read(Workers::ONE));
+    let many = Workers::new(usize::MAX).cutting_every(0);
+    assert_eq!(read(many), read(Workers::ONE));
+}
