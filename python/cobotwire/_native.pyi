@@ -112,11 +112,13 @@ class NativeCodec:
         *,
         accept_unknown: bool = False,
         out: Scan | None = None,
+        workers: int = 1,
     ) -> Scan:
         """Return where the frames of a stream are; see the interface.
 
         Raises:
             BufferError: a memoryview or an array still uses ``out``.
+            UsageError: ``workers`` is not a number from 1 to 65535.
         """
 
     def decode_columns(
@@ -126,11 +128,13 @@ class NativeCodec:
         *,
         raw: bool = False,
         out: Columns | None = None,
+        workers: int = 1,
     ) -> Columns:
         """Return the values of a stream as columns; see the interface.
 
         Raises:
             BufferError: a memoryview or an array still uses ``out``.
+            UsageError: ``workers`` is not a number from 1 to 65535.
         """
 
     def column_reader(

@@ -145,13 +145,17 @@ class Codec(Protocol):
         *,
         accept_unknown: bool = False,
         out: Scan | None = None,
+        workers: int = 1,
     ) -> Scan:
         """Return the places of the frames and the noise in a stream.
 
         The result may reuse the memory of ``out``, an earlier result, which is then empty.
+        ``workers`` is the number of threads that may read a large stream together; the result does
+        not depend on it.
 
         Raises:
             BufferError: a memoryview or an array still uses ``out``.
+            UsageError: ``workers`` is not a number from 1 to 65535.
         """
         ...
 
@@ -162,15 +166,18 @@ class Codec(Protocol):
         *,
         raw: bool = False,
         out: Columns | None = None,
+        workers: int = 1,
     ) -> Columns:
         """Return the values of a stream as columns: physical values, or raw ones with ``raw``.
 
         A frame that can be a request or a reply counts as a request, unless ``listening`` is
         ``"reply"``. The result may reuse the memory of ``out``, an earlier result, which is then
-        empty.
+        empty. ``workers`` is the number of threads that may read a large stream together; the
+        result does not depend on it.
 
         Raises:
             BufferError: a memoryview or an array still uses ``out``.
+            UsageError: ``workers`` is not a number from 1 to 65535.
         """
         ...
 

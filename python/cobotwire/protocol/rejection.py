@@ -62,6 +62,11 @@ def reject_offset(given: Any) -> UsageError:
     return UsageError("offset", given, "0 to 2**63 - 1")
 
 
+def reject_workers(given: Any) -> UsageError:
+    """Return the error for a number of threads that cannot read a stream."""
+    return UsageError("workers", given, "1 to 65535")
+
+
 def reject_value(
     field: Field, case: Case, element: int, fault: ValueFault, value: Any
 ) -> UsageError:

@@ -25,7 +25,8 @@ fn report(
     workers: Workers,
 ) -> Report {
     let rules = table.rules(listening).clone();
-    let mut reader = OffsetReader::new(rules, None).with_workers(workers);
+    let mut reader = OffsetReader::new(rules, None);
+    reader.set_workers(workers);
     let mut offsets = Vec::new();
     let mut note = |reader: &mut OffsetReader| {
         offsets.push((reader.take(), reader.pending(), reader.tally().clone()));
@@ -38,7 +39,8 @@ fn report(
     note(&mut reader);
 
     let (table, plans) = (Arc::clone(table), Arc::clone(plans));
-    let mut reader = ColumnReader::new(table, plans, Numbers::Physical, None).with_workers(workers);
+    let mut reader = ColumnReader::new(table, plans, Numbers::Physical, None);
+    reader.set_workers(workers);
     let mut columns = Vec::new();
     let mut note = |reader: &mut ColumnReader| {
         columns.push((reader.take(), reader.pending(), reader.tally().clone()));
@@ -166,7 +168,7 @@ fn wide_ids_are_counted_once() {
 #[test]
 fn more_threads_than_pieces_are_not_started() {
     let (table, frames) = generated("mycobot");
-    let stream = &frames.concat()[..3_000];
+    let stream = &frames.concat().repeat(2)[..2_000];
     let plans = Arc::new(Plans::new(&table, LISTENING[2]));
     let read = |workers| report(&table, &plans, LISTENING[2], &[stream], workers);
     assert_eq!(read(Workers::new(usize::MAX)), read(Workers::ONE));

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use cobotwire_core::{
     Advise, ColumnReader, Columns, Listening, Numbers, OffsetReader, Offsets, Rows, Rules, Tally,
+    Workers,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyMemoryView, PySlice, PyTuple};
@@ -20,13 +21,21 @@ use crate::parts::{old_columns, old_offsets, spans};
 /// Input of this size and more is read without the lock. Getting the lock back from a busy thread
 /// takes 5 ms; reading this many bytes takes about 1 ms (`bench/lock.py`).
 const LARGE: usize = 1 << 20;
-/// Bytes that another thread could change during the read are copied in pieces of this size.
+/// Bytes that another thread could change during the read are copied in pieces of this size, which
+/// stay in a cache.
 const PIECE: usize = 1 << 20;
+/// The size of these pieces if several threads read each of them.
+const SHARED_PIECE: usize = 1 << 23;
 
 /// A reader of a stream.
 pub trait Reader: Send {
     fn feed(&mut self, chunk: &[u8]);
     fn expect(&mut self, data: &[u8], advise: Advise);
+
+    /// The number of threads that read large chunks.
+    fn workers(&self) -> Workers {
+        Workers::ONE
+    }
 }
 
 impl Reader for ColumnReader {
@@ -37,6 +46,10 @@ impl Reader for ColumnReader {
     fn expect(&mut self, data: &[u8], advise: Advise) {
         self.expect(data, advise);
     }
+
+    fn workers(&self) -> Workers {
+        self.workers()
+    }
 }
 
 impl Reader for OffsetReader {
@@ -46,6 +59,10 @@ impl Reader for OffsetReader {
 
     fn expect(&mut self, data: &[u8], advise: Advise) {
         self.expect(data, advise);
+    }
+
+    fn workers(&self) -> Workers {
+        self.workers()
     }
 }
 
@@ -61,8 +78,13 @@ pub fn feed(reader: &mut impl Reader, data: &Bound<'_, PyAny>) -> PyResult<()> {
         return Ok(());
     };
     let end = isize::try_from(flat.len()?)?;
-    for start in (0..end).step_by(PIECE) {
-        let part = PySlice::new(data.py(), start, end.min(start + PIECE as isize), 1);
+    let size = if reader.workers().are_several() {
+        SHARED_PIECE
+    } else {
+        PIECE
+    };
+    for start in (0..end).step_by(size) {
+        let part = PySlice::new(data.py(), start, end.min(start + size as isize), 1);
         let piece = flat.get_item(part)?.call_method0("tobytes")?;
         feed_bytes(reader, piece.cast()?, false);
     }
@@ -89,15 +111,12 @@ pub fn scan<'py>(
     rules: Rules,
     data: &Bound<'py, PyAny>,
     out: Option<&Bound<'py, PyAny>>,
+    workers: Workers,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = data.py();
     let old = out.map(old_offsets).transpose()?;
-    let mut reader = OffsetReader::new(rules, old).with_workers(cobotwire_core::Workers::new(
-        std::env::var("PROTO")
-            .ok()
-            .and_then(|s| s.parse().ok())
-            .unwrap_or(1),
-    ));
+    let mut reader = OffsetReader::new(rules, old);
+    reader.set_workers(workers);
     feed(&mut reader, data)?;
     reader.flush();
     let Offsets { frames, noise } = reader.take();
@@ -143,18 +162,14 @@ impl NativeColumnReader {
         &self,
         data: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
+        workers: Workers,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut core = self.core.get(data.py())?;
         if let Some(out) = out {
             let old = old_columns(&self.edition, out)?;
-            *core = Self::reader(&self.edition, self.listening, self.numbers, Some(old))
-                .with_workers(cobotwire_core::Workers::new(
-                    std::env::var("PROTO")
-                        .ok()
-                        .and_then(|s| s.parse().ok())
-                        .unwrap_or(1),
-                ));
+            *core = Self::reader(&self.edition, self.listening, self.numbers, Some(old));
         }
+        core.set_workers(workers);
         feed(&mut *core, data)?;
         core.flush();
         self.given(data.py(), &mut core)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cobotwire_core::{Choice, Direction, EncodeError, Listening, Rules};
+use cobotwire_core::{Choice, Direction, EncodeError, Listening, Rules, Workers};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -13,7 +13,7 @@ use crate::framer::NativeFramer;
 use crate::given::Object;
 use crate::plain;
 use crate::values::{objects, row};
-use crate::words::{one_way, word};
+use crate::words::{WorkerCount, one_way, word};
 use crate::{errors, words};
 
 /// One edition's encoder, decoder and framer.
@@ -155,8 +155,8 @@ impl NativeCodec {
 
     /// Return the positions of the frames of a whole stream.
     #[pyo3(
-        signature = (data, listening = None, *, accept_unknown = false, out = None),
-        text_signature = "($self, data, listening='both', *, accept_unknown=False, out=None)"
+        signature = (data, listening = None, *, accept_unknown = false, out = None, workers = WorkerCount(Workers::ONE)),
+        text_signature = "($self, data, listening='both', *, accept_unknown=False, out=None, workers=1)"
     )]
     fn scan<'py>(
         &self,
@@ -164,14 +164,16 @@ impl NativeCodec {
         listening: Option<&Bound<'py, PyAny>>,
         accept_unknown: bool,
         out: Option<&Bound<'py, PyAny>>,
+        workers: WorkerCount,
     ) -> PyResult<Bound<'py, PyAny>> {
-        bulk::scan(self.rules(listening, accept_unknown)?, data, out)
+        let rules = self.rules(listening, accept_unknown)?;
+        bulk::scan(rules, data, out, workers.0)
     }
 
     /// Return the values of a whole stream, as columns.
     #[pyo3(
-        signature = (data, listening = None, *, raw = false, out = None),
-        text_signature = "($self, data, listening='both', *, raw=False, out=None)"
+        signature = (data, listening = None, *, raw = false, out = None, workers = WorkerCount(Workers::ONE)),
+        text_signature = "($self, data, listening='both', *, raw=False, out=None, workers=1)"
     )]
     fn decode_columns<'py>(
         &self,
@@ -179,9 +181,10 @@ impl NativeCodec {
         listening: Option<&Bound<'py, PyAny>>,
         raw: bool,
         out: Option<&Bound<'py, PyAny>>,
+        workers: WorkerCount,
     ) -> PyResult<Bound<'py, PyAny>> {
         let reader = NativeColumnReader::new(Arc::clone(&self.edition), listen(listening)?, raw, 0);
-        reader.all_of(data, out)
+        reader.all_of(data, out, workers.0)
     }
 
     /// Return a reader for a stream that comes in chunks, or is larger than memory.

@@ -58,6 +58,12 @@ pub fn bad_offset(given: &Bound<'_, PyAny>) -> PyErr {
     raised(Names::get(py).and_then(|names| names.reject_offset.bind(py).call1((given,))))
 }
 
+/// Return the error of a number of threads that cannot read.
+pub fn bad_workers(given: &Bound<'_, PyAny>) -> PyErr {
+    let py = given.py();
+    raised(Names::get(py).and_then(|names| names.reject_workers.bind(py).call1((given,))))
+}
+
 /// Return the error of an address that the frame format does not have.
 pub fn bad_address(given: &Bound<'_, PyAny>, addresses: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();

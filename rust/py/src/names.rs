@@ -23,6 +23,7 @@ pub struct Names {
     pub reject_frame: Py<PyAny>,
     pub reject_shared: Py<PyAny>,
     pub reject_offset: Py<PyAny>,
+    pub reject_workers: Py<PyAny>,
     /// `operator.index`
     pub index: Py<PyAny>,
     pub float: Py<PyAny>,
@@ -78,6 +79,7 @@ impl Names {
             reject_frame: from("cobotwire.protocol.rejection", "reject_frame")?,
             reject_shared: from("cobotwire.protocol.rejection", "reject_shared")?,
             reject_offset: from("cobotwire.protocol.rejection", "reject_offset")?,
+            reject_workers: from("cobotwire.protocol.rejection", "reject_workers")?,
             index: from("operator", "index")?,
             float: from("builtins", "float")?,
             bool: py.get_type::<PyBool>().into_any().unbind(),

@@ -1,13 +1,28 @@
-//! Converts the arguments other than values and bytes: directions, variants, addresses.
+//! Converts the arguments other than values and bytes: directions, variants, addresses, threads.
 //!
 //! Unusual types are compared as in the reference, so that `True` and `1.0` are both equal to 1.
 
-use cobotwire_core::Direction;
+use cobotwire_core::{Direction, Workers};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyInt, PyList, PyString};
 
 use crate::errors;
+
+/// The number of threads that read.
+#[derive(Clone, Copy)]
+pub struct WorkerCount(pub Workers);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for WorkerCount {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match given.extract::<u16>() {
+            Ok(count) if count > 0 => Ok(Self(Workers::new(count.into()))),
+            _ => Err(errors::bad_workers(&given)),
+        }
+    }
+}
 
 pub fn word<'a>(given: &'a Bound<'_, PyAny>) -> Option<&'a str> {
     given.cast::<PyString>().ok()?.to_str().ok()

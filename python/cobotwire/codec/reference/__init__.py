@@ -6,7 +6,7 @@ It is the specification of the native codec, and the oracle of the tests.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Literal, SupportsIndex
 
 from cobotwire.codec.columns import Columns, Scan
 from cobotwire.codec.interface import Data, DecodedMessage, Listening
@@ -16,7 +16,7 @@ from cobotwire.codec.reference.encode import encode
 from cobotwire.codec.reference.framer import ReferenceFramer
 from cobotwire.codec.reference.judge import Judge
 from cobotwire.protocol.frame_index import FrameIndex
-from cobotwire.protocol.rejection import reject_direction
+from cobotwire.protocol.rejection import reject_direction, reject_workers
 from cobotwire.protocol.table import Direction, Table
 
 
@@ -74,8 +74,10 @@ class ReferenceCodec:
         *,
         accept_unknown: bool = False,
         out: Scan | None = None,
+        workers: int = 1,
     ) -> Scan:
-        """Return the places of frames and noise; the memory of ``out`` is not reused."""
+        """Return the places of frames and noise, without reuse of ``out``, and in this thread."""
+        _check_workers(workers)
         framer = self.framer(listening, accept_unknown=accept_unknown)
         return scan([*framer.feed(data), *framer.flush()], framer)
 
@@ -86,8 +88,10 @@ class ReferenceCodec:
         *,
         raw: bool = False,
         out: Columns | None = None,
+        workers: int = 1,
     ) -> Columns:
-        """Return the values of a stream as columns; the memory of ``out`` is not reused."""
+        """Return the values of a stream, without reuse of ``out``, and in this thread."""
+        _check_workers(workers)
         framer = self.framer(listening)
         return ReferenceColumnReader(self.table, framer, raw).all_of(data)
 
@@ -103,3 +107,8 @@ class ReferenceCodec:
         if direction not in ("request", "reply"):
             raise reject_direction(direction)
         return self._judges[direction]
+
+
+def _check_workers(workers: int) -> None:
+    if not isinstance(workers, SupportsIndex) or not 1 <= workers.__index__() < 2**16:
+        raise reject_workers(workers)

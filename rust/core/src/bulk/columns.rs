@@ -101,10 +101,14 @@ impl ColumnReader {
     }
 
     /// Read large chunks with several threads; what is found does not depend on that.
-    #[must_use]
-    pub fn with_workers(mut self, workers: Workers) -> Self {
+    pub fn set_workers(&mut self, workers: Workers) {
         self.workers = workers;
-        self
+    }
+
+    /// Return the number of threads that read large chunks.
+    #[must_use]
+    pub fn workers(&self) -> Workers {
+        self.workers
     }
 
     /// Reserve memory for the values of `data`, estimated from parts of it.

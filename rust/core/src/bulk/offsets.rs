@@ -46,10 +46,14 @@ impl OffsetReader {
     }
 
     /// Read large chunks with several threads; what is found does not depend on that.
-    #[must_use]
-    pub fn with_workers(mut self, workers: Workers) -> Self {
+    pub fn set_workers(&mut self, workers: Workers) {
         self.workers = workers;
-        self
+    }
+
+    /// Return the number of threads that read large chunks.
+    #[must_use]
+    pub fn workers(&self) -> Workers {
+        self.workers
     }
 
     /// Reserve memory for the frames of `data`, estimated from parts of it.

@@ -10,7 +10,7 @@
 
 use std::hint::spin_loop;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
-use std::thread::{self, Builder};
+use std::thread::{self, Builder, available_parallelism};
 
 use super::block::BLOCK;
 use super::search::{Collect, Search};
@@ -21,11 +21,11 @@ use cobotwire_simd::SEEN;
 const GUESSING: usize = 512;
 /// How often a thread checks whether its turn has come, before it sleeps: waking up takes longer
 /// than reading a piece.
-const CHECKS: usize = 2_000;
+const CHECKS: usize = 400;
 /// More threads do not help, since one after the other appends its results.
 const MOST: usize = 16;
 /// For less input, starting threads costs more than it saves.
-const WORTH: usize = 1 << 20;
+const WORTH: usize = 1 << 23;
 /// The bytes between two cuts: two blocks. Longer columns are appended faster, but until then they
 /// have to stay in the cache of a core.
 const STRIDE: usize = 2 * BLOCK - GUESSING;
@@ -34,33 +34,46 @@ const STRIDE: usize = 2 * BLOCK - GUESSING;
 #[derive(Clone, Copy, Debug)]
 pub struct Workers {
     count: usize,
-    /// Less input is read by one thread.
-    worth: usize,
-    /// The bytes between two cuts.
-    stride: usize,
+    /// The bytes between two cuts; `None`: as many as are fast, and no cuts in little input.
+    stride: Option<usize>,
 }
 
 impl Workers {
     /// Read in the calling thread only.
     pub const ONE: Self = Self::new(1);
 
-    /// Read large input with this number of threads, the calling one included, at most 16.
+    /// Read large input with this number of threads, the calling one included; but not with more
+    /// than there are processors, nor more than 16.
     #[must_use]
     pub const fn new(count: usize) -> Self {
         Self {
             count,
-            worth: WORTH,
-            stride: STRIDE,
+            stride: None,
         }
     }
 
-    /// Cut input of any size every `stride` bytes, to test many cuts with few bytes.
+    /// Return whether several threads may read.
+    #[must_use]
+    pub fn are_several(self) -> bool {
+        self.count > 1
+    }
+
+    /// Cut input of any size every `stride` bytes, to test many cuts with few bytes on any machine.
     #[must_use]
     pub fn cutting_every(self, stride: usize) -> Self {
         Self {
-            worth: 0,
-            stride: stride.max(1),
+            stride: Some(stride.max(1)),
             ..self
+        }
+    }
+
+    /// Return the number of threads for input of that size, which has this number of pieces.
+    fn for_input(self, size: usize, pieces: usize) -> usize {
+        let count = self.count.min(MOST).min(pieces);
+        match self.stride {
+            Some(_) => count,
+            None if count < 2 || size < WORTH => 1,
+            None => count.min(available_parallelism().map_or(1, usize::from)),
         }
     }
 }
@@ -91,7 +104,7 @@ impl<'a> Cuts<'a> {
     /// Cut `data`. After the last piece there are enough bytes to judge each position in it.
     fn new(workers: Workers, rules: &Rules, offset: u64, data: &'a [u8]) -> Self {
         let rest = GUESSING + rules.longest().max(SEEN);
-        let stride = workers.stride;
+        let stride = workers.stride.unwrap_or(STRIDE);
         Self {
             data,
             offset,
@@ -173,9 +186,9 @@ pub(crate) fn read<C: Share>(
     collect: &mut C,
 ) -> usize {
     let cuts = Cuts::new(workers, &search.rules, offset, data);
-    let count = workers.count.min(MOST).min(cuts.pieces);
+    let count = workers.for_input(data.len(), cuts.pieces);
     let mut at = 0;
-    if count < 2 || data.len() < workers.worth {
+    if count < 2 {
         return at;
     }
     let reader = || Reader {
