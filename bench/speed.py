@@ -49,6 +49,7 @@ def main() -> None:
         large, small = Path(folder, "large"), Path(folder, "small")
         parts = {
             f"Bulk, {options.megabytes:g} MB": (bulk, large, options.megabytes),
+            f"Bulk in two threads, {options.megabytes:g} MB": (bulk_in_two, large, 0),
             f"Bulk, {options.frames:,} frames": (bulk_small, small, options.frames * 15e-6),
             "Messages": (objects, small, 0),
             "One frame": (single, small, 0),
@@ -114,6 +115,23 @@ def bulk(_: int) -> Part:
         Target("raw columns, out=", "raw", "memcpy", 3),
         untargeted(
             "raw columns, 10 % noise", "noisy raw", "memcpy of the noisy stream", faster=False
+        ),
+    ]
+
+
+def bulk_in_two(_: int) -> Part:
+    """Time the same with ``workers=2``, still against memcpy in one thread."""
+    return BULK, [
+        untargeted("memcpy in two threads", "memcpy, two threads", "memcpy", faster=False),
+        Target("framing scan to offsets", "scan, two threads", "memcpy", 1.7),
+        Target("the same, 10 % noise", "noisy scan, two threads", "memcpy of the noisy stream", 3),
+        Target("float64 columns, out=", "reused, two threads", "memcpy", 5),
+        Target("raw columns, out=", "raw, two threads", "memcpy", 3),
+        untargeted(
+            "raw columns, 10 % noise",
+            "noisy raw, two threads",
+            "memcpy of the noisy stream",
+            faster=False,
         ),
     ]
 

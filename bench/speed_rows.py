@@ -148,6 +148,18 @@ BULK: dict[str, Row] = {
     "reused": lambda codec, streams: _reused(codec.decode_columns, streams.clean),
     "raw": lambda codec, streams: _reused(codec.decode_columns, streams.clean, raw=True),
     "noisy raw": lambda codec, streams: _reused(codec.decode_columns, streams.noisy, raw=True),
+    "memcpy, two threads": lambda _, streams: Timed(_memcpy_in_two(streams.clean)),
+    "scan, two threads": lambda codec, streams: _reused(codec.scan, streams.clean, workers=2),
+    "noisy scan, two threads": lambda codec, streams: _reused(codec.scan, streams.noisy, workers=2),
+    "reused, two threads": lambda codec, streams: _reused(
+        codec.decode_columns, streams.clean, workers=2
+    ),
+    "raw, two threads": lambda codec, streams: _reused(
+        codec.decode_columns, streams.clean, raw=True, workers=2
+    ),
+    "noisy raw, two threads": lambda codec, streams: _reused(
+        codec.decode_columns, streams.noisy, raw=True, workers=2
+    ),
 }
 OBJECTS: dict[str, Row] = {
     "list": lambda codec, streams: _objects(_lazy, codec, streams),
@@ -174,7 +186,13 @@ def _lazy(codec: Codec, data: bytes) -> object:
     return codec.framer("reply").feed(data)
 
 
-def _reused(call: Callable[..., Scan | Columns], data: bytes, **options: bool) -> Timed:
+def _memcpy_in_two(data: bytes) -> Callable[[], object]:
+    """Return a function that copies the halves of the input at the same time."""
+    half = len(data) // 2
+    return partial(together, [peers.memcpy(data[:half]), peers.memcpy(data[half:])])
+
+
+def _reused(call: Callable[..., Scan | Columns], data: bytes, **options: int) -> Timed:
     return Timed(Reused(partial(call, data, "reply", **options)))
 
 
