@@ -19,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import strategies
-from cobotwire.codec.interface import Codec, Columns, Listening, Scan
+from cobotwire.codec.interface import Codec, Columns, Data, Listening, Scan
 from cobotwire.protocol.errors import UsageError
 from strategies import codec_of
 
@@ -125,9 +125,15 @@ def test_threads_reuse_the_memory_of_out(raw: bool) -> None:
 def test_threads_read_every_kind_of_buffer(kind: str) -> None:
     codec = codec_of("mycobot280", "native")
     stream = ANGLES * (2 * LARGE // 17) + ANGLES[:5]
-    given: Any = {"bytearray": bytearray, "memoryview": memoryview, "mmap": mapped}[kind](stream)
+    kinds: dict[str, Callable[[bytes], Data]] = {
+        "bytearray": bytearray,
+        "memoryview": memoryview,
+        "mmap": mapped,
+    }
     expected = codec.decode_columns(stream, "reply")
-    assert everything(codec.decode_columns(given, "reply", workers=2)) == everything(expected)
+    assert everything(codec.decode_columns(kinds[kind](stream), "reply", workers=2)) == everything(
+        expected
+    )
 
 
 def mapped(data: bytes) -> mmap.mmap:
