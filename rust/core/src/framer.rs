@@ -6,8 +6,10 @@
 //! most the bytes of the longest frame, once (for a CRC or sum, when all its bytes have come), and
 //! no position is refuted twice. So the work is linear in the size of any input.
 
+use std::mem;
+
 use crate::frame::Frame;
-use crate::judge::Rules;
+use crate::judge::{Rules, Verdict};
 use crate::reason::Reason;
 use crate::scan::{Sink, scan};
 use crate::seam::Seam;
@@ -66,6 +68,23 @@ impl Framer {
     #[must_use]
     pub fn tally(&self) -> &Tally {
         &self.tally
+    }
+
+    /// Feed bytes that are exactly one frame, while nothing waits; return the frame and its position.
+    /// `None`: nothing was fed, and [`Framer::feed`] must take the bytes.
+    #[inline]
+    pub fn feed_frame<'a>(&mut self, chunk: &'a [u8]) -> Option<(u64, Frame<'a>)> {
+        let Verdict::Frame(frame) = self.rules.judge(chunk) else {
+            return None;
+        };
+        if frame.bytes().len() != chunk.len() {
+            return None;
+        }
+        let offset = self.seam.pass(chunk.len())?;
+        self.tally.bytes += chunk.len() as u64;
+        self.tally.add_frames(frame.id(), 1);
+        self.tally.resyncs += u64::from(mem::take(&mut self.in_noise));
+        Some((offset, frame))
     }
 
     /// Feed bytes; pass the events that are certain to `sink`.

@@ -5,7 +5,7 @@ use crate::frame::Frame;
 use crate::judge::Rules;
 use crate::message::VariantId;
 use crate::table::Table;
-use crate::template::{Exact, LONGEST_PLAIN, MOST_PLAIN, Place, PlainNumbers};
+use crate::template::{Exact, LONGEST_PLAIN, Place, PlainNumbers};
 
 /// A message that a template read.
 #[derive(Clone, Copy, Debug)]
@@ -44,14 +44,13 @@ pub fn encode_plain<'a>(
 }
 
 /// Decode a legal frame, as [`crate::read`] does. Return `None` unless the first message of these
-/// rules is plain and allows the values.
-#[inline]
+/// rules is plain. If one of its numbers is not allowed, another message may allow them.
+#[inline(always)]
 pub fn read_plain<'a>(
     table: &'a Table,
     rules: &Rules,
-    frame: Frame<'_>,
+    frame: Frame<'a>,
     of: Option<usize>,
-    space: &'a mut [i64; MOST_PLAIN],
 ) -> Option<PlainMessage<'a>> {
     let variants = rules.variants(frame).iter();
     let mut variants = variants.filter(|id| of.is_none_or(|of| of == id.command));
@@ -60,7 +59,7 @@ pub fn read_plain<'a>(
     let template = templates.get(variant.variant)?;
     Some(PlainMessage {
         variant,
-        numbers: template.read(table.frame().data(frame, variant.direction), space)?,
+        numbers: template.read(table.frame().data(frame, variant.direction)),
         address: table.frame().address(frame),
     })
 }

@@ -33,6 +33,18 @@ impl Seam {
         self.kept.len()
     }
 
+    /// Pass that many bytes, of which none waits; return the position of the first. `None`: earlier
+    /// bytes wait, and nothing changed.
+    #[inline]
+    pub(crate) fn pass(&mut self, count: usize) -> Option<u64> {
+        if !self.kept.is_empty() {
+            return None;
+        }
+        let first = self.offset;
+        self.offset += count as u64;
+        Some(first)
+    }
+
     /// Start a call with a new chunk. The rest of the chunk is scanned in place, without a copy.
     pub(crate) fn cross(&mut self, chunk: &[u8], longest: usize) -> Crossing {
         let mut data = mem::take(&mut self.kept);

@@ -53,10 +53,16 @@ impl Step {
         }
     }
 
+    /// Return the physical value in the data, as [`Step::raw`] finds it.
+    #[inline(always)]
+    pub(crate) fn value(&self, data: &[u8]) -> Result<Option<Value>, usize> {
+        Ok(self.raw(data)?.map(|raw| self.physical(raw)))
+    }
+
     /// Return the raw value in the data; `None` if it is not legal. `Err`: the number must be asked, at
     /// this offset.
     #[inline(always)]
-    pub(crate) fn raw(&self, data: &[u8]) -> Result<Option<i64>, usize> {
+    fn raw(&self, data: &[u8]) -> Result<Option<i64>, usize> {
         let rest = data.get(self.at..).unwrap_or_default();
         let (unsigned, modulus) = match (self.form, rest) {
             (Form::Byte, &[byte, ..]) => (i32::from(byte), 1 << 8),
@@ -81,7 +87,7 @@ impl Step {
 
     /// Return the physical value of a raw value, as [`Number::physical`] does.
     #[inline(always)]
-    pub(crate) fn physical(&self, raw: i64) -> Value {
+    fn physical(&self, raw: i64) -> Value {
         if self.scaled {
             Value::Real((raw * self.multiply) as f64 / self.divide)
         } else {

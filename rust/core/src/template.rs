@@ -13,8 +13,6 @@ use crate::step::Step;
 
 /// The size of the longest frame that a template builds.
 pub const LONGEST_PLAIN: usize = 64;
-/// The most numbers that a template reads.
-pub const MOST_PLAIN: usize = 24;
 
 /// A number of the caller that needed no conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,7 +125,7 @@ impl Template {
         format.start(&mut frame, address, length, command.id, direction);
         let data_at = frame.len();
         frame.resize(data_at + variant.size() + format.check.size(), 0);
-        (frame.len() <= LONGEST_PLAIN && slots.len() <= MOST_PLAIN).then_some(Self {
+        (frame.len() <= LONGEST_PLAIN).then_some(Self {
             fields: variant.fields().len(),
             frame,
             data_at,
@@ -154,56 +152,55 @@ impl Template {
         Some(frame)
     }
 
-    /// Read the raw values of the data.
+    /// Return the numbers of the data, to be read.
     #[inline]
-    pub(crate) fn read<'a>(
-        &'a self,
-        data: &[u8],
-        space: &'a mut [i64; MOST_PLAIN],
-    ) -> Option<PlainNumbers<'a>> {
-        let raws = space.get_mut(..self.steps.len())?;
-        for ((place, step), slot) in raws.iter_mut().zip(&self.steps).zip(&self.slots) {
-            *place = match step.raw(data) {
-                Ok(raw) => raw?,
-                Err(at) => {
-                    let raw = slot.number.unpack(data, at);
-                    slot.allows(raw).then_some(raw)?
-                }
-            };
-        }
-        Some(PlainNumbers {
+    pub(crate) fn read<'a>(&'a self, data: &'a [u8]) -> PlainNumbers<'a> {
+        PlainNumbers {
             template: self,
-            raws,
-        })
+            data,
+        }
     }
 }
 
-/// The numbers of a message that a template read.
+/// The numbers of a message that a template reads.
 #[derive(Clone, Copy, Debug)]
 pub struct PlainNumbers<'a> {
     template: &'a Template,
-    raws: &'a [i64],
+    data: &'a [u8],
 }
 
 impl<'a> PlainNumbers<'a> {
-    /// Return the fields in order: whether the value is a row, and the number or its elements.
+    /// Return the fields in order: whether the value is a row, and the number or its elements. `None`
+    /// stands for a number that is not allowed.
     #[inline]
     pub fn fields(
         self,
-    ) -> impl ExactSizeIterator<Item = (bool, impl ExactSizeIterator<Item = Value> + 'a)> {
-        let Template { steps, parts, .. } = self.template;
-        let (mut steps, mut raws) = (steps.as_slice(), self.raws);
-        parts.iter().map(move |part| {
-            let (own, other) = steps.split_at_checked(part.numbers).unwrap_or_default();
-            let (numbers, rest) = raws.split_at_checked(part.numbers).unwrap_or_default();
-            (steps, raws) = (other, rest);
-            let values = own.iter().zip(numbers);
-            (part.many, values.map(|(step, raw)| step.physical(*raw)))
+    ) -> impl ExactSizeIterator<Item = (bool, impl ExactSizeIterator<Item = Option<Value>> + 'a)>
+    {
+        let Self { template, data } = self;
+        let (mut steps, mut slots) = (template.steps.as_slice(), template.slots.as_slice());
+        template.parts.iter().map(move |part| {
+            let (own, rest) = steps.split_at_checked(part.numbers).unwrap_or_default();
+            let (places, others) = slots.split_at_checked(part.numbers).unwrap_or_default();
+            (steps, slots) = (rest, others);
+            let values = own.iter().zip(places);
+            let values = values.map(|(step, slot)| match step.value(data) {
+                Ok(value) => value,
+                Err(at) => slot.value(data, at),
+            });
+            (part.many, values)
         })
     }
 }
 
 impl Slot {
+    /// Return the physical value at an offset of the data; `None` if it is not allowed.
+    #[cold]
+    fn value(&self, data: &[u8], at: usize) -> Option<Value> {
+        let raw = self.number.unpack(data, at);
+        self.allows(raw).then(|| self.number.physical(raw))
+    }
+
     #[inline]
     fn allows(&self, raw: i64) -> bool {
         if self.choices.is_empty() {

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use crate::common::{Dice, Owned, events, field, number, owned, table, word};
-use cobotwire_core::{Direction, Event, Framer, Listening, Reason, Table};
+use cobotwire_core::{Direction, Event, Framer, Listening, OwnedFrame, Reason, Table, Verdict};
 
 /// Return a table with the replies 20 without data, 21 with one word and 22 with six words.
 fn three() -> Table {
@@ -155,4 +155,69 @@ fn a_request_takes_precedence_over_a_reply_with_the_same_bytes() {
         (variants[0].direction, variants[0].command),
         (Direction::Request, 1)
     );
+}
+
+/// Feed chunks one by one, and flush; return the events. With `short`, `feed_frame` may take chunks.
+fn one_by_one(framer: &mut Framer, chunks: &[&[u8]], short: bool) -> Vec<Owned> {
+    let mut all = Vec::new();
+    for chunk in chunks {
+        match short.then(|| framer.feed_frame(chunk)).flatten() {
+            Some((offset, frame)) => all.push((offset, frame.bytes().to_vec(), None)),
+            None => framer.feed(chunk, |event| all.push(owned(event))),
+        }
+    }
+    framer.flush(|event| all.push(owned(event)));
+    all
+}
+
+#[test]
+fn a_chunk_that_is_one_frame_has_the_same_events_and_counts_on_the_short_way() {
+    const PIECES: [&[u8]; 7] = [
+        &[0xFE, 0xFE, 0x02, 0x20, 0xFA],
+        &[0xFE, 0xFE, 0x04, 0x21, 0x00, 0x01, 0xFA],
+        &[0xFE, 0xFE, 0x04],
+        &[0x21, 0x00, 0x01, 0xFA],
+        &[0x00],
+        &[0xFE, 0xFE, 0x02, 0x20, 0xFA, 0xFE],
+        &[],
+    ];
+    let mut dice = Dice(4);
+    for _ in 0..2000 {
+        let chunks: Vec<&[u8]> = (0..6).map(|_| PIECES[dice.roll(7)]).collect();
+        let (mut short, mut long) = (framer(false), framer(false));
+        let expected = one_by_one(&mut long, &chunks, false);
+        assert_eq!(one_by_one(&mut short, &chunks, true), expected);
+        assert_eq!(short.tally(), long.tally());
+        assert_eq!(short.pending(), 0);
+    }
+}
+
+#[test]
+fn only_a_chunk_that_is_one_frame_takes_the_short_way() {
+    let frame = [0xFE, 0xFE, 0x02, 0x20, 0xFA];
+    let mut framer = framer(false);
+    assert_eq!(framer.feed_frame(&frame[..4]), None);
+    assert_eq!(framer.feed_frame(&[frame, frame].concat()), None);
+    assert!(framer.feed_frame(&frame).is_some());
+    framer.feed(&frame[..2], |_| {});
+    assert_eq!(framer.feed_frame(&frame), None);
+    assert_eq!(framer.tally().bytes, 7);
+}
+
+#[test]
+fn a_frame_of_any_size_owns_the_bytes_that_it_was_made_of() {
+    for size in 1..40_u8 {
+        let words = || (0..size).map(|_| number(1, 1, 0, 255)).collect();
+        let table = table(vec![vec![field(words(), true)]]);
+        let mut bytes = vec![0xFE, 0xFE, size + 2, 0x20];
+        bytes.extend((0..size).map(|index| 200 + index % 50));
+        bytes.push(0xFA);
+        let rules = table.rules(Listening::To(Direction::Reply));
+        let Verdict::Frame(frame) = rules.judge(&bytes) else {
+            panic!("a frame of {size} data bytes was not found");
+        };
+        let own = OwnedFrame::from(frame);
+        assert_eq!(own.get(table.frame()), frame);
+        assert_eq!(own, own.clone());
+    }
 }

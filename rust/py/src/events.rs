@@ -52,8 +52,8 @@ impl<'py, 'a> Events<'py, 'a> {
     }
 
     fn frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<Bound<'py, PyAny>> {
-        let origin = self.origin.clone_ref(self.list.py());
-        object(self.frames, NativeFrame::new(origin, offset, frame))
+        let origin = || self.origin.clone_ref(self.list.py());
+        object(self.frames, || NativeFrame::new(origin(), offset, frame))
     }
 
     fn noise(&self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<Bound<'py, PyAny>> {

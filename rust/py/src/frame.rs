@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use cobotwire_core::{
-    DecodeError, Direction, Frame, Listening, MOST_PLAIN, OwnedFrame, Rules, VariantId,
-};
+use cobotwire_core::{DecodeError, Direction, Frame, Listening, OwnedFrame, Rules, VariantId};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
@@ -42,6 +40,7 @@ struct Message<'py> {
 }
 
 impl NativeFrame {
+    #[inline]
     pub fn new(origin: Py<Origin>, offset: u64, frame: Frame<'_>) -> Self {
         Self {
             origin,
@@ -84,11 +83,12 @@ impl NativeFrame {
         of: Option<usize>,
     ) -> PyResult<Result<Message<'py>, DecodeError>> {
         let (core, frame) = (&self.origin.get().edition.core, self.frame());
-        let mut space = [0; MOST_PLAIN];
-        if let Some(plain) = cobotwire_core::read_plain(core, rules, frame, of, &mut space) {
+        if let Some(plain) = cobotwire_core::read_plain(core, rules, frame, of)
+            && let Some(values) = plain_objects(py, plain.numbers)?
+        {
             return Ok(Ok(Message {
                 variant: plain.variant,
-                values: plain_objects(py, plain.numbers)?,
+                values,
                 address: plain.address,
             }));
         }
@@ -180,18 +180,13 @@ impl NativeFrame {
             return Ok(values);
         }
         let Origin { edition, rules, .. } = self.origin.get();
-        let (core, mut space) = (&edition.core, [0; MOST_PLAIN]);
-        match cobotwire_core::read_plain(core, rules, self.frame(), None, &mut space) {
+        let plain = cobotwire_core::read_plain(&edition.core, rules, self.frame(), None);
+        let plain = plain.map(|plain| plain_objects(py, plain.numbers));
+        match plain.transpose()?.flatten() {
             // Most programs read a frame once: keeping its values then takes memory, and more time
             // than decoding them.
-            Some(plain) => {
-                let values = plain_objects(py, plain.numbers)?;
-                Ok(if self.values.is_first(py) {
-                    values
-                } else {
-                    self.values.set(values)
-                })
-            }
+            Some(values) if self.values.is_first(py) => Ok(values),
+            Some(values) => Ok(self.values.set(values)),
             None => Ok(self.values.set(self.read(py, None, None)?.values)),
         }
     }

@@ -70,9 +70,12 @@ pub fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
     Ok(class.bind(py))
 }
 
-/// Return a frame as Python's object.
+/// Return what `make` returns as Python's object; it is made where it stays.
 #[inline]
-pub fn object<'py>(class: &Bound<'py, PyType>, frame: NativeFrame) -> PyResult<Bound<'py, PyAny>> {
+pub fn object<'py>(
+    class: &Bound<'py, PyType>,
+    make: impl FnOnce() -> NativeFrame,
+) -> PyResult<Bound<'py, PyAny>> {
     let py = class.py();
     // SAFETY: the class is that of `make`, whose objects have the size of `Object`. The memory is new,
     // so the frame is written into it without dropping another one.
@@ -81,7 +84,7 @@ pub fn object<'py>(class: &Bound<'py, PyType>, frame: NativeFrame) -> PyResult<B
         if object.is_null() {
             return Err(PyErr::fetch(py));
         }
-        (&raw mut (*object).frame).write(frame);
+        (&raw mut (*object).frame).write(make());
         Ok(Bound::from_owned_ptr(py, object.cast()))
     }
 }

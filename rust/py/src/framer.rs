@@ -1,13 +1,13 @@
 //! `NativeFramer`: implements `cobotwire.codec.interface.Framer` with the core.
 
-use cobotwire_core::{Framer, Reason, Tally};
+use cobotwire_core::{Frame, Framer, Reason, Tally};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 
 #[cfg(unix)]
 use crate::descriptor::{read_now, write_if_free};
 use crate::events::Events;
-use crate::frame::Origin;
+use crate::frame::{NativeFrame, Origin};
 use crate::frame_class;
 use crate::names::Names;
 
@@ -25,14 +25,32 @@ impl NativeFramer {
             origin: Py::new(py, origin)?,
         })
     }
+
+    fn object<'py>(
+        &self,
+        py: Python<'py>,
+        offset: u64,
+        frame: Frame<'_>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        frame_class::object(frame_class::class(py)?, || {
+            NativeFrame::new(self.origin.clone_ref(py), offset, frame)
+        })
+    }
 }
 
 #[pymethods]
 impl NativeFramer {
     /// Feed bytes; return the events that are certain, in the order of the stream.
     fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
-        let mut events = Events::new(data.py(), &self.origin)?;
-        match data.cast::<PyBytes>() {
+        let py = data.py();
+        let bytes = data.cast::<PyBytes>();
+        if let Ok(bytes) = &bytes
+            && let Some((offset, frame)) = self.core.feed_frame(bytes.as_bytes())
+        {
+            return PyList::new(py, [self.object(py, offset, frame)?]);
+        }
+        let mut events = Events::new(py, &self.origin)?;
+        match bytes {
             Ok(bytes) => self.core.feed(bytes.as_bytes(), |event| events.add(event)),
             Err(_) => self.core.feed(&copied(data)?, |event| events.add(event)),
         }

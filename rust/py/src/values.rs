@@ -1,5 +1,7 @@
 //! Converts rows of values between Python's tuples and the core's.
 
+use std::cell::Cell;
+
 use cobotwire_core::{PlainNumbers, Value};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyTuple};
@@ -33,32 +35,50 @@ pub fn objects<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, Py
     }
 }
 
-/// Return the same of a message that a template read.
+/// Return the same of a message that a template reads; `None` if a number is not allowed.
+#[inline]
 pub fn plain_objects<'py>(
     py: Python<'py>,
     values: PlainNumbers<'_>,
-) -> PyResult<Bound<'py, PyTuple>> {
-    let all = PyTuple::new(py, values.fields().map(PlainField))?;
+) -> PyResult<Option<Bound<'py, PyTuple>>> {
+    let allowed = Cell::new(true);
+    let fields = values.fields().map(|(many, numbers)| PlainField {
+        many,
+        numbers: numbers.map(|number| {
+            Number(number.unwrap_or_else(|| {
+                allowed.set(false);
+                Value::Integer(0)
+            }))
+        }),
+    });
+    let all = PyTuple::new(py, fields)?;
     untrack(&all);
-    Ok(all)
+    Ok(allowed.get().then_some(all))
 }
 
-/// Whether a field's value is a row, and its numbers.
-struct PlainField<I>((bool, I));
+/// The value of a field.
+struct PlainField<I> {
+    /// Whether it is a row.
+    many: bool,
+    numbers: I,
+}
 
-impl<'py, I: ExactSizeIterator<Item = Value>> IntoPyObject<'py> for PlainField<I> {
+impl<'py, I: ExactSizeIterator<Item = Number>> IntoPyObject<'py> for PlainField<I> {
     type Target = PyAny;
     type Output = Bound<'py, PyAny>;
     type Error = PyErr;
 
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Self((many, mut numbers)) = self;
-        if many {
-            let row = PyTuple::new(py, numbers.map(Number))?;
+    #[inline]
+    fn into_pyobject(mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if self.many {
+            let row = PyTuple::new(py, self.numbers)?;
             untrack(&row);
             return Ok(row.into_any());
         }
-        Number(numbers.next().unwrap_or(Value::Integer(0))).into_pyobject(py)
+        let number = self.numbers.next();
+        number
+            .unwrap_or(Number(Value::Integer(0)))
+            .into_pyobject(py)
     }
 }
 
