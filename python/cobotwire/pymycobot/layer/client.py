@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
 from cobotwire.client import Client
 from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
-from cobotwire.pymycobot.layer.absent import why_absent
 from cobotwire.pymycobot.layer.policy import policy
 from cobotwire.pymycobot.layer.results import plain
 
@@ -48,6 +46,8 @@ class CompatibleClient:
 
         def __getattr__(self, name: str) -> Any:
             """Say why a name of the maker's class has no counterpart."""
+            from cobotwire.pymycobot.layer.absent import why_absent
+
             message = f"{type(self).__name__!r} object has no attribute {name!r}"
             why = why_absent(type(self), name)
             raise AttributeError(f"{message}: {why}" if why else message, name=name, obj=self)
@@ -64,6 +64,8 @@ class CompatibleClient:
         if errors not in (None, "raise", "return"):
             raise UsageError("errors", errors, "'raise' or 'return'")
         if debug:
+            import logging
+
             logging.basicConfig()
             logging.getLogger("cobotwire.traffic").setLevel(logging.DEBUG)
         self._raises = (errors or policy.errors) == "raise"
