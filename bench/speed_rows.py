@@ -151,6 +151,9 @@ BULK: dict[str, Row] = {
     "memcpy, two threads": lambda _, streams: Timed(_memcpy_in_two(streams.clean)),
     "scan, two threads": lambda codec, streams: _reused(codec.scan, streams.clean, workers=2),
     "noisy scan, two threads": lambda codec, streams: _reused(codec.scan, streams.noisy, workers=2),
+    "fresh, two threads": lambda codec, streams: Timed(
+        partial(codec.decode_columns, streams.clean, "reply", workers=2)
+    ),
     "reused, two threads": lambda codec, streams: _reused(
         codec.decode_columns, streams.clean, workers=2
     ),
