@@ -126,6 +126,20 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert run(generated, "--products", "--check").returncode == 1
 
 
+def test_data_of_the_rust_tests_is_written_alone(generated: Path) -> None:
+    stale = generated / GENERATED[0] / "values.py"
+    stale.write_text("")
+    assert run(generated, "--rust-data", "--check").returncode == 1
+    assert "2 file(s) changed" in run(generated, "--rust-data").stdout
+    assert run(generated, "--rust-data", "--check").stdout == "fresh\n"
+    data = generated / "rust/core/tests/data"
+    for name in EDITIONS:
+        assert data.joinpath(f"{name}.json").read_text() == vectors_json(vectors.edition(name))
+    assert not (generated / "targets").exists()
+    assert stale.read_text() == ""
+    assert run(generated, "--rust-data", "--products").returncode == 2
+
+
 def test_file_with_other_line_ends_is_stale(generated: Path) -> None:
     path = generated / "docs/reference/mycobot/README.md"
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))

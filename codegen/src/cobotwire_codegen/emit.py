@@ -24,11 +24,26 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Stale:
-    """A file that differs from what is generated: ``kind`` is stale, missing or left over."""
+    """A file that differs from what is generated: ``kind`` is stale, missing or left over.
+
+    ``text`` is what is generated, and ``found`` what the file holds.
+    """
 
     path: Path
     kind: str
-    diff: str
+    text: str = ""
+    found: str = ""
+
+    @property
+    def diff(self) -> str:
+        """The changes that bring the file up to date, line by line."""
+        lines = difflib.unified_diff(
+            self.found.splitlines(keepends=True),
+            self.text.splitlines(keepends=True),
+            f"{self.path} (on disk)",
+            f"{self.path} (generated)",
+        )
+        return "".join(lines)
 
 
 def write(target: Target) -> list[Path]:
@@ -39,9 +54,7 @@ def write(target: Target) -> list[Path]:
             stale.path.unlink()
         else:
             stale.path.parent.mkdir(parents=True, exist_ok=True)
-            name = stale.path.relative_to(target.folder)
-            text = next(text for path, text in target.files.items() if Path(path) == name)
-            stale.path.write_text(text, encoding="utf-8")
+            stale.path.write_text(stale.text, encoding="utf-8")
         changed.append(stale.path)
     return changed
 
@@ -51,29 +64,20 @@ def compare(target: Target) -> Iterator[Stale]:
     for name, text in sorted(target.files.items()):
         path = target.folder / name
         if not path.is_file():
-            yield Stale(path, "missing", _diff(path, "", text))
+            yield Stale(path, "missing", text)
             continue
         # Bytes, not text: a file with other line ends or another encoding is stale as well.
         if path.read_bytes() != text.encode():
             found = path.read_text(encoding="utf-8", errors="replace")
-            yield Stale(path, "stale", _diff(path, found, text))
+            yield Stale(path, "stale", text, found)
+    names = set(map(str, target.files))
     for path in sorted(target.folder.rglob("*")) if target.alone else ():
-        generated = path.relative_to(target.folder).as_posix() in map(str, target.files)
+        generated = path.relative_to(target.folder).as_posix() in names
         if path.is_file() and not generated and "__pycache__" not in path.parts:
-            yield Stale(path, "left over", "")
+            yield Stale(path, "left over")
 
 
 def foreign(target: Target) -> list[Path]:
     """Return the files that ``write`` would delete although they were not generated."""
     left_over = (stale.path for stale in compare(target) if stale.kind == "left over")
     return [path for path in left_over if MARK not in path.read_bytes()[:2000]]
-
-
-def _diff(path: Path, found: str, wanted: str) -> str:
-    lines = difflib.unified_diff(
-        found.splitlines(keepends=True),
-        wanted.splitlines(keepends=True),
-        f"{path} (on disk)",
-        f"{path} (generated)",
-    )
-    return "".join(lines)

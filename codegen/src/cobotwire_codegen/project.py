@@ -129,9 +129,10 @@ def _every_vectors(found: Sequence[Edition]) -> Files:
     return {path: text for edition in found for path, text in render_vectors(edition).items()}
 
 
+RUST_DATA = "rust/core/tests/data"
 # Build products by their folder. Git ignores them; users generate the ones that they need.
 PRODUCTS: dict[str, Callable[[Sequence[Edition]], Files]] = {
-    "rust/core/tests/data": _every_vectors,
+    RUST_DATA: _every_vectors,
     "targets/c": _every_c,
     "targets/construct": render_construct,
     "targets/vectors": render_shared_vectors,

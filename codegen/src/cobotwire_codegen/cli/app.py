@@ -36,6 +36,9 @@ _EPILOG = (
 @click.option(
     "--products", "with_products", is_flag=True, help="Also generate files that are not committed."
 )
+@click.option(
+    "--rust-data", is_flag=True, help="Generate only the data of this project's Rust tests."
+)
 @root_option
 @click.option(
     "--version",
@@ -46,7 +49,9 @@ _EPILOG = (
     help="Show the version; fail if cobotwire is installed in another one.",
 )
 @click.pass_context
-def main(ctx: click.Context, check_only: bool, with_products: bool, root: str) -> None:
+def main(
+    ctx: click.Context, check_only: bool, with_products: bool, rust_data: bool, root: str
+) -> None:
     """Generate software from a protocol in YAML.
 
     Without a verb, generate this project's own files (editions, reference, test data) from spec/.
@@ -54,7 +59,8 @@ def main(ctx: click.Context, check_only: bool, with_products: bool, root: str) -
     """
     same_version.check()
     if ctx.invoked_subcommand is None:
-        ctx.invoke(generate, check_only=check_only, with_products=with_products, root=root)
+        chosen = {"check_only": check_only, "with_products": with_products, "rust_data": rust_data}
+        ctx.invoke(generate, **chosen, root=root)
 
 
 VERBS = (

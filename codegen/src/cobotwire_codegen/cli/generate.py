@@ -9,29 +9,34 @@ import click
 
 from cobotwire_codegen.cli.shared import report_problems, root_option
 from cobotwire_codegen.emit import Target, compare, write
-from cobotwire_codegen.project import committed, editions, products
+from cobotwire_codegen.project import PRODUCTS, RUST_DATA, committed, editions, products
 from cobotwire_codegen.suite_pages import SuiteError, suite_pages
 
 
 @click.command()
 @click.option("--check", "check_only", is_flag=True)
 @click.option("--products", "with_products", is_flag=True)
+@click.option("--rust-data", is_flag=True)
 @root_option
-def generate(check_only: bool, with_products: bool, root: str) -> None:
+def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) -> None:
     """Generate what is committed: editions, reference, the decoder's tables, the spec's schema.
 
     With --products, also generate what is not committed: output targets, data of the Rust tests.
+    With --rust-data, generate only the latter.
     """
+    if rust_data and with_products:
+        raise click.UsageError("--products includes the data of --rust-data: give one of them")
     with report_problems():
         found = editions(Path(root))
-        wanted = committed(Path(root), found)
-    if with_products:
-        wanted += products(Path(root), found)
+        wanted = [] if rust_data else committed(Path(root), found)
+    if with_products or rust_data:
+        wanted += products(Path(root), found, [RUST_DATA] if rust_data else PRODUCTS)
     if check_only:
-        sys.exit(show_stale(wanted + _suite(Path(root))))
+        sys.exit(show_stale(wanted + ([] if rust_data else _suite(Path(root)))))
     changed = write_all(wanted)
-    # After the editions, because it lists their commands.
-    changed += write_all(_suite(Path(root)))
+    if not rust_data:
+        # After the editions, because it lists their commands.
+        changed += write_all(_suite(Path(root)))
     commands = ", ".join(f"{edition.name} ({len(edition.commands)} commands)" for edition in found)
     click.echo(f"{commands}: {changed} file(s) changed")
 
