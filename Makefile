@@ -20,7 +20,7 @@ ATTACK_SECONDS ?= 180
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -29,8 +29,13 @@ help: ## list the targets
 demo: .venv/.native ## drive a simulated arm over a pty and check every reply
 	$(BIN)/cobotwire demo --codec native
 
-test: .venv/.tools .venv/.native front-end-if-reachable ## run everything: linters, types, generated files, Rust, Python
+test: set-up front-end-if-reachable ## run everything: linters, types, generated files, Rust, Python
 	$(MAKE) --no-print-directory --jobs 6 $(IN_TURN) $(LANES) lint-and-rust
+
+# Compile while pip fetches the tools. Only one pip at a time may install.
+set-up: .venv/.base
+	+$(MAKE) --no-print-directory --jobs 2 .venv/.tools .venv/.compiled
+	+$(MAKE) --no-print-directory .venv/.native
 
 lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the binary, generated files
 	$(BIN)/cobotwire-gen --check
@@ -42,7 +47,8 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	$(BIN)/python -m mypy.stubtest cobotwire._native --mypy-config-file pyproject.toml
 	cargo fmt --all --check
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
-	+cargo clippy --workspace --all-targets --quiet -- -D warnings
+# In release mode, because the dependencies are compiled in it already, for the native module.
+	+cargo clippy --release --workspace --all-targets --quiet -- -D warnings
 
 # Linters and Rust tests use what the tests in Python leave, which wait a third of the time. First
 # the linters: most of what they find is found in seconds.
@@ -67,7 +73,7 @@ rust-asan: .venv/.tools ## run the tests of the unsafe code with AddressSanitize
 		LD_PRELOAD=$$(clang -print-file-name=libclang_rt.asan-$$(uname -m).so) \
 		$(BIN)/python -m pytest -q --capture=no $(ASAN_TESTS)
 
-python-test: .venv/.tools .venv/.native front-end-if-reachable ## run the Python tests on both codecs, in five lanes
+python-test: set-up front-end-if-reachable ## run the Python tests on both codecs, in five lanes
 	$(MAKE) --no-print-directory --jobs 5 $(IN_TURN) $(LANES)
 
 computing-tests:
@@ -209,6 +215,11 @@ clean: ## remove the environment and all build products
 # Build the Rust codec in release mode; install it in place, with the extras of the command line.
 .venv/.native: .venv/.base $(RUST_SOURCES)
 	. $(BIN)/activate && maturin develop --release --quiet --extras sim
+	touch $@
+
+# Compile what the recipe above installs: maturin finds it compiled.
+.venv/.compiled: .venv/.base $(RUST_SOURCES)
+	. $(BIN)/activate && maturin build --release --quiet --out target/wheels
 	touch $@
 
 .venv/.tools: .venv/.base codegen/pyproject.toml Cargo.toml

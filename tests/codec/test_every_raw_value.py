@@ -101,7 +101,7 @@ NARROW = [variant for variant in EVERY if _narrowed(variant)]
 
 
 def _with_new_numbers(variants: list[CommandVariant]) -> Iterator[str]:
-    """Yield the first of the variants for each kind of number: its scale, sign, order and bounds."""
+    """Yield the first variant for each kind of number: its scale, sign, order and bounds."""
     seen: set[Number] = set()
     for variant in variants:
         numbers = {slot.kind for slot in variant.slots}
