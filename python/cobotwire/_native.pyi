@@ -275,8 +275,8 @@ class StreamLine:
         """Take the framer of received bytes, a transport that is lent, and its traffic listeners.
 
         Methods of ``lender`` are called: ``lend_session``, to have the session; ``turn``, to take
-        what has come, and ``received``, with events that are not the reply; ``finish_write``, with
-        the size of what was written of a request; ``watch_until``, with when a wait ends.
+        what has come, and ``received``, with events that are not the reply; ``take_back``, if only
+        a part of a request was written; ``watch_until``, with when a wait ends.
         """
 
     def __call__(self) -> None:
@@ -284,17 +284,40 @@ class StreamLine:
 
     def give_back(
         self,
-    ) -> tuple[tuple[bytes, int] | None, tuple[Slots, float, int] | None] | None:
+    ) -> tuple[tuple[bytes, int] | None, tuple[Slots, float, int, int] | None] | None:
         """Use the session no longer.
 
         Returns:
             None if it was not lent. Otherwise the last request, and how many bytes had been
             received before it, if one was sent; and if it has no reply yet, whose it is, when it
-            was sent, and that number of bytes.
+            was sent, that number of bytes, and how many bytes of it were written.
         """
 
-    def waits_until(self) -> float | None:
-        """Return when the wait for a reply ends; None: no reply is waited for."""
+    def seconds_left(self) -> float | None:
+        """Return for how long a reply is still waited for; 0: that has passed; None: none is.
+
+        If seconds are left, the caller looks again then.
+        """
+
+    def withdraw(self) -> None:
+        """Withdraw what a thread is to write: the transport closes. Any thread may call it."""
+
+    def leave_to_parent(self) -> None:
+        """Let go of what a forked child has a copy of."""
+
+@final
+class MomentWriter:
+    """A thread that writes requests at their moments, without the interpreter's lock.
+
+    It ends with this object.
+    """
+
+    def __new__(cls) -> MomentWriter:
+        """Start it.
+
+        Raises:
+            OSError: the process has too many threads.
+        """
 
 @final
 class StreamSlot:
@@ -306,7 +329,9 @@ class StreamSlot:
     def __call__(self) -> None:
         """Send what was planned; if that is not possible now, have the session send it."""
 
-    def plan(self, frame: bytes, command: str, wait: float, over: Future[Any], /) -> None:
+    def plan(
+        self, frame: bytes, command: str, wait: float, over: Future[Any], at: float, /
+    ) -> bool:
         """Plan what the next call sends: a plain request.
 
         Args:
@@ -314,6 +339,16 @@ class StreamSlot:
             command: the name of its command.
             wait: for how many seconds its reply is waited for.
             over: gets the answer as its result.
+            at: when the call will come, in seconds of ``time.monotonic()``; inf: at once.
+
+        Returns:
+            Whether the loop has been late lately, so that a thread should send it.
+        """
+
+    def hand_over(self, writer: MomentWriter, /) -> None:
+        """Have a thread send what was planned, unless something happens on the line before.
+
+        The call at the moment is needed all the same.
         """
 
     def forget(self) -> None:

@@ -215,12 +215,13 @@ def test_request_that_is_under_way_is_left_to_the_next_session() -> None:
 def test_silent_arm_costs_each_slot_its_deadline_and_no_more() -> None:
     async def drive(arm: AsyncMyCobot) -> Any:
         stream = arm.stream(GetAngles(), rate=20)
-        samples = [await anext(stream), await anext(stream)]
+        samples = [await anext(stream) for _ in range(3)]
         return [sample.number for sample in samples], stream.report.unanswered
 
-    peer = ScriptedPeer([ANGLES], [], [], [ANGLES])
+    # The first slot after silence uses the session, the others do not.
+    peer = ScriptedPeer([ANGLES], [], [], [ANGLES], [], [ANGLES])
     result = run(peer, drive, timeout=0.03, retry=NO_GRACE)
-    assert result == (([0, 1], 2), REQUEST * 4)
+    assert result == (([0, 1, 2], 3), REQUEST * 6)
 
 
 def test_unplugged_port_ends_the_slot_that_waits() -> None:

@@ -17,7 +17,7 @@ from cobotwire.client.aio_timers import LoopTimers, Timed
 from cobotwire.client.traffic import TrafficListeners
 from cobotwire.codec.interface import Event
 from cobotwire.protocol.errors import LinkError
-from cobotwire.session import Exchange
+from cobotwire.session import Exchange, PendingRequest
 from cobotwire.session.alone import Alone
 
 
@@ -28,8 +28,10 @@ class NativeSlot(Protocol):
         """Send what was planned, or have the session send it."""
         ...
 
-    def plan(self, frame: bytes, command: str, wait: float, over: Future[Any], /) -> None:
-        """Plan what the next call sends."""
+    def plan(
+        self, frame: bytes, command: str, wait: float, over: Future[Any], at: float, /
+    ) -> bool:
+        """Plan what the next call sends; return whether the loop has been late."""
         ...
 
     def forget(self) -> None:
@@ -44,8 +46,8 @@ class Slots(Protocol):
         """Have the session send the request that is planned."""
         ...
 
-    def resume(self, alone: Alone, requested_at: float, offset: int) -> None:
-        """Make the request known to the session, which was sent without it."""
+    def resume(self, alone: Alone, requested_at: float, offset: int) -> PendingRequest:
+        """Make the request known to the session, which was sent without it; return it."""
         ...
 
 
@@ -83,6 +85,11 @@ class Lending:
         self.turn = steps.turn
         self.line = native.polled.stream_line(steps.listeners, self)
 
+    def hand_over(self, slot: NativeSlot) -> None:
+        """Have a thread send what a slot plans next, if there are few requests to be sent."""
+        if self._steps.timers.few:
+            self._native.polled.hand_over(slot)
+
     def slot(self, slots: Slots) -> NativeSlot:
         """Return what sends the requests of one stream."""
         return self._native.polled.stream_slot(self.line, slots)
@@ -108,9 +115,15 @@ class Lending:
         if latest is not None:
             self._exchange.alone.note(*latest)
         if waiting is not None:
-            slots, requested_at, fed = waiting
-            slots.resume(self._exchange.alone, requested_at, fed)
+            slots, requested_at, fed, written = waiting
+            pending = slots.resume(self._exchange.alone, requested_at, fed)
             self._steps.set_timer(requested_at)
+            if written < len(pending.request.frame):
+                self._native.write_rest(pending, written)
+
+    def leave_to_parent(self) -> None:
+        """Let go of what a forked child has a copy of."""
+        self.line.leave_to_parent()
 
     def received(self, events: Sequence[Event], fed: int) -> None:
         """Go on with the request under way: these events are not, or not only, its reply.
@@ -124,17 +137,9 @@ class Lending:
         """Let time pass for the session at a moment if a request is under way then."""
         self._steps.timers.set(self._timed, moment)
 
-    def finish_write(self, written: int) -> None:
-        """Write the rest of the request that is under way, of which a part was taken."""
-        self.take_back()
-        pending = self._exchange.sent_last
-        assert pending is not None, "it was sent"
-        self._native.write_rest(pending, written)
-
     def _time_passed(self) -> None:
-        until = self.line.waits_until()
-        if until is not None:
-            if until > time.monotonic():
-                self.watch_until(until)
-            else:
-                self.turn()
+        left = self.line.seconds_left()
+        if left:
+            self.watch_until(time.monotonic() + left)
+        elif left is not None:
+            self.turn()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable, Sequence
+from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
 from cobotwire.client.aio_steps import AsyncSteps
@@ -83,7 +84,7 @@ class AsyncSlots:
         """Have a request sent at a moment, or at once if it has passed."""
         steps, timed = self._steps, self._timed
         self._poll, self._at, self._pending = poll, at, None
-        encoded = poll.encoded
+        encoded, due = poll.encoded, at > time.monotonic()
         if encoded.plain:
             slot = self._slot
             if slot is None:
@@ -91,8 +92,11 @@ class AsyncSlots:
             if slot is not None:
                 timed.call = slot
                 wait = encoded.command.deadline_ms / 1000 if poll.wait is None else poll.wait
-                slot.plan(encoded.frame, encoded.command.name, wait, self._over)
-        if at > time.monotonic():
+                moment = at if due else inf
+                name, over = encoded.command.name, self._over
+                if slot.plan(encoded.frame, name, wait, over, moment) and due:
+                    steps.hand_over(slot)
+        if due:
             steps.timers.set(timed, at)
         else:
             timed.call()
@@ -100,8 +104,8 @@ class AsyncSlots:
     def send(self) -> None:
         """Have the session send the request, unless the stream is closed."""
         over = self._over
-        if over.done():
-            # The consumer was cancelled, and did not have its turn yet.
+        if over.done() or self._pending is not None:
+            # The consumer was cancelled, and did not have its turn yet; or it was sent already.
             return
         try:
             if self._closed():
@@ -112,9 +116,11 @@ class AsyncSlots:
             # The consumer raises it, since nobody waits for a timer.
             over.set_exception(error)
 
-    def resume(self, alone: Alone, requested_at: float, offset: int) -> None:
+    def resume(self, alone: Alone, requested_at: float, offset: int) -> PendingRequest:
         """Make the request known to the session, which was sent without it."""
-        alone.resume_sent(self._new_pending(), requested_at, offset)
+        pending = self._new_pending()
+        alone.resume_sent(pending, requested_at, offset)
+        return pending
 
     def _new_pending(self) -> PendingRequest:
         _, encoded, policy, wait = self._poll

@@ -79,10 +79,17 @@ class AsyncSteps:
                 return None
         return self._lending.slot(slots)
 
+    def hand_over(self, slot: NativeSlot) -> None:
+        """Have a thread send what a slot of a stream plans next, if that helps."""
+        if self._lending is not None:
+            self._lending.hand_over(slot)
+
     def leave_to_parent(self, error: LinkError) -> None:
         """Let every call in a forked child fail."""
         # A thread of the parent may have held the lock of the native object.
-        self.lost, self._lending = error, None
+        lending, self._lending, self.lost = self._lending, None, error
+        if lending is not None:
+            lending.leave_to_parent()
 
     def check(self) -> None:
         """Raise a LinkError if the transport is gone."""

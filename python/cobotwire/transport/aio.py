@@ -47,7 +47,11 @@ def attach(transport: Transport, ready: Callable[[], None]) -> AsyncTransport:
 
 
 class PolledTransport:
-    """An :class:`AsyncTransport` that the loop watches."""
+    """An :class:`AsyncTransport` that the loop watches.
+
+    Attributes:
+        readers: the descriptors that the loop reads.
+    """
 
     def __init__(
         self, transport: PollableTransport, descriptor: int, ready: Callable[[], None]
@@ -55,8 +59,8 @@ class PolledTransport:
         self._transport = transport
         self._descriptor = descriptor
         self._loop = asyncio.get_running_loop()
-        self._readers = readers_of(self._loop)
-        self._readers.add(descriptor, ready)
+        self.readers = readers_of(self._loop)
+        self.readers.add(descriptor, ready)
         self._context = copy_context()
         # Writes that were not taken yet, oldest first, and how much of the first one was taken.
         self.unwritten: deque[tuple[bytes, Done]] = deque()
@@ -96,8 +100,8 @@ class PolledTransport:
             LinkError: the transport is closed.
         """
         self._transport.fileno()
-        self._readers.remove(self._descriptor)
-        self._context.run(self._readers.add, self._descriptor, ready)
+        self.readers.remove(self._descriptor)
+        self._context.run(self.readers.add, self._descriptor, ready)
 
     def native(self, framer: Any) -> NativePolled | None:
         """Return native calls for this transport and a native framer; None: there are none."""
@@ -157,7 +161,7 @@ class PolledTransport:
         """Stop watching and close the transport."""
         if not self._closed:
             self._closed = True
-            self._readers.remove(self._descriptor)
+            self.readers.remove(self._descriptor)
             self._end_writing(LinkError(self._transport.url, "was closed"))
             self._transport.close()
 
@@ -191,10 +195,16 @@ class NativePolled:
         """Return what sends requests of streams, and takes what comes from now on."""
         from cobotwire import _native
 
-        self._transport.lend(waits=False)
         line = _native.StreamLine(self._framer, self._transport, listeners, lender)
+        self._transport.lend(waits=False, recall=line.withdraw)
         self._polled.call_when_ready(line)
         return line
+
+    def hand_over(self, slot: Any) -> None:
+        """Have a thread send what a slot plans next, at its moment."""
+        writer = self._polled.readers.writer()
+        if writer is not None:
+            slot.hand_over(writer)
 
     def stream_slot(self, line: StreamLine, slots: Any) -> StreamSlot:
         """Return what sends the requests of one stream on that line."""

@@ -47,6 +47,7 @@ class DescriptorTransport(ABC):
         self._descriptor = -1
         self.loan: Loan | None = None
         self._lent = self._lent_to_wait = False
+        self._recall: Callable[[], object] | None = None
         self._waiter = Waiter()
         self._native = native_calls()
         # Reentrant, since a signal may close the transport in the very thread that waits for it.
@@ -87,9 +88,10 @@ class DescriptorTransport(ABC):
         """Whether native functions can wait for the descriptor."""
         return self._native is not None
 
-    def lend(self, *, waits: bool = True) -> None:
+    def lend(self, *, waits: bool = True, recall: Callable[[], object] | None = None) -> None:
         """Set ``loan``, now and whenever it is opened again."""
         with self._reading:
+            self._recall = recall or self._recall
             self._lent = True
             self._lent_to_wait |= waits
             # The alarm takes a descriptor of its own.
@@ -184,6 +186,8 @@ class DescriptorTransport(ABC):
         # Only when no thread waits any longer: another file may get the number of a closed
         # descriptor a moment later.
         with self._reading, self._writing:
+            if self._recall is not None:
+                self._recall()
             self._waiter.close()
             self._descriptor = -1
             self._release()

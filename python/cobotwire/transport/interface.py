@@ -89,10 +89,11 @@ class LendingTransport(PollableTransport, Protocol):
         """What native calls use; None: it is closed, or :meth:`lend` was not called."""
         ...
 
-    def lend(self, *, waits: bool = True) -> None:
+    def lend(self, *, waits: bool = True, recall: Callable[[], object] | None = None) -> None:
         """Set :attr:`loan`, now and whenever the transport is opened again.
 
-        Without ``waits``, its alarm may be -1: native calls do not wait.
+        Without ``waits``, its alarm may be -1: native calls do not wait. ``recall`` is called
+        before the descriptor is closed.
         """
         ...
 

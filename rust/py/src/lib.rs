@@ -26,6 +26,8 @@ mod interpreter;
 #[cfg(unix)]
 mod lone;
 mod memory;
+#[cfg(unix)]
+mod moments;
 mod names;
 mod objects;
 mod once;
@@ -61,6 +63,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
         descriptor::add_to(module)?;
         module.add_class::<swap::LineLock>()?;
         module.add_class::<lone::LoneCalls>()?;
+        module.add_class::<moments::MomentWriter>()?;
         module.add_class::<stream_line::StreamLine>()?;
         module.add_class::<stream_line::StreamSlot>()?;
     }

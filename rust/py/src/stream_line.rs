@@ -2,11 +2,12 @@
 //! replies taken here, and Python only wakes up the consumer.
 //!
 //! The session knows nothing of it meanwhile: it is lent. Whatever uses the session calls `give_back`
-//! first, and what is under way then goes on in Python. All calls come from the thread of the loop.
+//! first, and what is under way then goes on in Python. All calls come from the thread of the loop,
+//! but a thread may write what is planned (`moments`).
 
 use std::mem;
 use std::os::fd::RawFd;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::intern;
@@ -16,11 +17,16 @@ use rustix::io::read;
 
 use crate::descriptor::{borrow, write_if_free};
 use crate::framer::{NativeFramer, Taken};
+use crate::moments::{Desk, MomentWriter, Written};
 use crate::session::{Held, hold};
 use crate::swap::now;
 
 /// The most bytes that one call reads: replies are far shorter.
 const READ_SIZE: usize = 1024;
+/// A loop that is later than this many seconds has waited for a busy thread.
+const LATE: f64 = 0.001;
+/// For how many slots after that the thread writes.
+const LATE_SLOTS: u32 = 50;
 
 /// One line, which the loop watches: it calls this when the line can be read.
 #[pyclass(frozen, module = "cobotwire._native")]
@@ -33,6 +39,8 @@ pub struct StreamLine {
     /// `(False,)`: the arguments of `acquire` that do not wait.
     at_once: Py<PyTuple>,
     state: Mutex<State>,
+    /// What the thread is to write. Its lock is taken last.
+    desk: Arc<Desk>,
 }
 
 /// Never locked while code of Python's may run, which may come back here.
@@ -45,6 +53,8 @@ struct State {
     /// The last request since the session was lent, and how many bytes had been received by then.
     latest: Option<(Py<PyBytes>, u64)>,
     under_way: Option<UnderWay>,
+    /// Whose request the thread is to write, and how many bytes had been received by then.
+    planned: Option<(Py<StreamSlot>, u64)>,
     /// Whether a timer will look for a request without a reply.
     timed: bool,
 }
@@ -54,6 +64,8 @@ struct UnderWay {
     slot: Py<StreamSlot>,
     plan: Plan,
     requested_at: f64,
+    /// How many bytes of it were written.
+    written: usize,
     fed: u64,
 }
 
@@ -71,10 +83,11 @@ struct Plan {
 enum Sent {
     /// The session must send it, step by step.
     No,
-    /// Nobody wants it any longer.
-    Unwanted,
-    /// So many bytes of it were written, and this is when its wait ends, if that needs a timer.
-    Written(usize, Option<f64>),
+    /// Nobody wants it any longer, or it has its reply.
+    Over,
+    Written,
+    /// The thread has written it, so its reply may be there.
+    Before,
 }
 
 /// What has come.
@@ -104,24 +117,29 @@ impl StreamLine {
             steps,
             at_once: PyTuple::new(py, [false])?.unbind(),
             state: Mutex::default(),
+            desk: Arc::default(),
         })
     }
 
     /// Take what has come.
     fn __call__(&self, py: Python<'_>) -> PyResult<()> {
+        if self.learn(py, self.desk.written()) {
+            self.watch(py)?;
+        }
         let steps = self.steps.bind(py);
         match self.take(py)? {
             Came::Reply => Ok(()),
             Came::Unknown => steps.call_method0(intern!(py, "turn")).map(|_| ()),
-            Came::Events(events, fed) => steps
-                .call_method1(intern!(py, "received"), (events, fed))
-                .map(|_| ()),
+            Came::Events(events, fed) => self.report(events, fed),
         }
     }
 
     /// Use the session no longer. Return None if it was not lent; otherwise the last request and how
-    /// many bytes had been received before it; and the slot that waits for its reply, with its moment.
+    /// many bytes had been received before it; and the slot that waits for its reply, with its moment,
+    /// and how many bytes of it were written.
     fn give_back<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyTuple>>> {
+        self.learn(py, self.desk.withdraw());
+        self.forget_plan();
         let (latest, under_way) = {
             let mut state = self.state();
             if !mem::take(&mut state.lent) {
@@ -131,20 +149,32 @@ impl StreamLine {
         };
         let waiting = under_way.map(|sent| {
             let slots = sent.slot.get().slots.clone_ref(py);
-            (slots, sent.requested_at, sent.fed)
+            (slots, sent.requested_at, sent.fed, sent.written)
         });
         (latest, waiting).into_pyobject(py).map(Some)
     }
 
-    /// Return until when a reply is waited for; None: for none.
-    fn waits_until(&self) -> Option<f64> {
+    /// Return for how many seconds more a reply is waited for, 0 if that time has passed; None: no reply
+    /// is. If seconds are left, a timer must look again then.
+    fn seconds_left(&self, py: Python<'_>) -> Option<f64> {
+        self.learn(py, self.desk.written());
         let mut state = self.state();
-        let until = state
+        let left = state
             .under_way
             .as_ref()
-            .map(|sent| sent.requested_at + sent.plan.wait);
-        state.timed = until.is_some();
-        until
+            .map(|sent| (sent.requested_at + sent.plan.wait - now()).max(0.0));
+        state.timed = left.is_some_and(|left| left > 0.0);
+        left
+    }
+
+    /// Withdraw what the thread is to write: the transport closes. Any thread may call it.
+    fn withdraw(&self) {
+        self.desk.cancel();
+    }
+
+    /// Let go of what a forked child has a copy of.
+    fn leave_to_parent(&self) {
+        self.desk.leave_to_parent();
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
@@ -190,7 +220,7 @@ impl StreamLine {
         {
             let state = self.state();
             if state.lent {
-                return Ok(state.under_way.is_none());
+                return Ok(state.under_way.is_none() && state.planned.is_none());
             }
         }
         let lent = self
@@ -206,15 +236,69 @@ impl StreamLine {
         Ok(true)
     }
 
-    /// Send what a slot planned.
+    /// Forget whose request the thread was to write.
+    fn forget_plan(&self) {
+        let planned = self.state().planned.take();
+        drop(planned);
+    }
+
+    /// Note that the thread has written what was planned; return whether it has.
+    fn learn(&self, py: Python<'_>, written: Option<Written>) -> bool {
+        let Some(Written { requested_at, size }) = written else {
+            return false;
+        };
+        let Some((slot, fed)) = self.state().planned.take() else {
+            return false;
+        };
+        let plan = slot.get().taken();
+        if let Some(plan) = plan {
+            self.begin(py, slot, plan, requested_at, size, fed);
+        }
+        true
+    }
+
+    /// Note a request that was written.
+    fn begin(
+        &self,
+        py: Python<'_>,
+        slot: Py<StreamSlot>,
+        plan: Plan,
+        requested_at: f64,
+        written: usize,
+        fed: u64,
+    ) {
+        slot.get().locked().sent = true;
+        let latest = Some((plan.frame.clone_ref(py), fed));
+        let under_way = Some(UnderWay {
+            slot,
+            plan,
+            requested_at,
+            written,
+            fed,
+        });
+        let mut state = self.state();
+        let before = (
+            mem::replace(&mut state.latest, latest),
+            mem::replace(&mut state.under_way, under_way),
+        );
+        drop(state);
+        drop(before);
+    }
+
+    /// Send what a slot planned, unless the thread has.
     fn send(&self, slot: &Bound<'_, StreamSlot>) -> PyResult<Sent> {
         let py = slot.py();
+        self.learn(py, self.desk.withdraw());
+        self.forget_plan();
+        if slot.get().locked().sent {
+            return Ok(Sent::Before);
+        }
         let Some(plan) = slot.get().taken() else {
             return Ok(Sent::No);
         };
         let done = plan.over.bind(py).call_method0(intern!(py, "done"))?;
         if done.is_truthy()? {
-            return Ok(Sent::Unwanted);
+            return Ok(Sent::Over);
         }
         if !self.is_free(py)? {
             return Ok(Sent::No);
@@ -229,23 +313,46 @@ impl StreamLine {
         if written == 0 {
             return Ok(Sent::No);
         }
-        let until = requested_at + plan.wait;
-        let latest = Some((plan.frame.clone_ref(py), fed));
-        let under_way = Some(UnderWay {
-            slot: slot.clone().unbind(),
-            plan,
-            requested_at,
-            fed,
-        });
-        let mut state = self.state();
-        let before = (
-            mem::replace(&mut state.latest, latest),
-            mem::replace(&mut state.under_way, under_way),
-        );
-        let timed = mem::replace(&mut state.timed, true);
-        drop(state);
+        self.begin(py, slot.clone().unbind(), plan, requested_at, written, fed);
+        Ok(Sent::Written)
+    }
+
+    /// Have the thread write what a slot planned at that moment, if that is possible.
+    fn hand_over(
+        &self,
+        slot: &Bound<'_, StreamSlot>,
+        writer: &MomentWriter,
+        at: f64,
+    ) -> PyResult<()> {
+        let py = slot.py();
+        if !self.is_free(py)? {
+            return Ok(());
+        }
+        let Some((held, descriptor)) = self.borrowed(py)? else {
+            return Ok(());
+        };
+        let Ok(descriptor) = borrow(descriptor)?.try_clone_to_owned() else {
+            // The process has too many.
+            return Ok(());
+        };
+        let fed = self.framer.bind(py).try_borrow()?.fed();
+        let Some(frame) = slot
+            .get()
+            .locked()
+            .plan
+            .as_ref()
+            .map(|plan| plan.frame.clone_ref(py))
+        else {
+            return Ok(());
+        };
+        let before = self.state().planned.replace((slot.clone().unbind(), fed));
         drop(before);
-        Ok(Sent::Written(written, (!timed).then_some(until)))
+        if !writer.plan(&self.desk, at, frame.as_bytes(py), descriptor) {
+            self.forget_plan();
+        }
+        // Only now may the transport close, which withdraws the plan.
+        drop(held);
+        Ok(())
     }
 
     /// Read what has come for the request that is under way; end it if this is its reply alone.
@@ -309,7 +416,18 @@ pub struct StreamSlot {
     line: Py<StreamLine>,
     /// The `AsyncSlots` of the stream.
     slots: Py<PyAny>,
-    plan: Mutex<Option<Plan>>,
+    next: Mutex<Next>,
+}
+
+/// What a slot does next.
+#[derive(Default)]
+struct Next {
+    plan: Option<Plan>,
+    at: f64,
+    /// Whether what was planned last was sent.
+    sent: bool,
+    /// For how many slots more the thread is to write.
+    late: u32,
 }
 
 #[pymethods]
@@ -320,25 +438,49 @@ impl StreamSlot {
         Self {
             line,
             slots,
-            plan: Mutex::default(),
+            next: Mutex::default(),
         }
     }
 
-    /// Plan what the next call sends, for a command; set `over` to its answer when it has come.
-    #[pyo3(signature = (frame, command, wait, over, /))]
-    fn plan(&self, frame: Py<PyBytes>, command: Py<PyAny>, wait: f64, over: Py<PyAny>) {
+    /// Plan what is sent at a moment, for a command; set `over` to its answer when it has come.
+    /// Return whether the loop has been late, so that a thread should send it.
+    #[pyo3(signature = (frame, command, wait, over, at, /))]
+    fn plan(
+        &self,
+        frame: Py<PyBytes>,
+        command: Py<PyAny>,
+        wait: f64,
+        over: Py<PyAny>,
+        at: f64,
+    ) -> bool {
         let plan = Plan {
             frame,
             command,
             wait,
             over,
         };
-        let before = self.locked().replace(plan);
+        let mut next = self.locked();
+        let before = next.plan.replace(plan);
+        next.at = at;
+        next.sent = false;
+        let late = next.late > 0;
+        drop(next);
         drop(before);
+        late
+    }
+
+    /// Have a thread send what was planned, if that is possible.
+    #[pyo3(signature = (writer, /))]
+    fn hand_over(slf: &Bound<'_, Self>, writer: &Bound<'_, MomentWriter>) -> PyResult<()> {
+        let at = slf.get().locked().at;
+        slf.get().line.get().hand_over(slf, writer.get(), at)
     }
 
     /// Forget what was planned: the next call leaves it to the session.
-    fn forget(&self) {
+    fn forget(&self, py: Python<'_>) {
+        let line = self.line.get();
+        line.learn(py, line.desk.withdraw());
+        line.forget_plan();
         drop(self.taken());
     }
 
@@ -346,23 +488,21 @@ impl StreamSlot {
     fn __call__(slf: &Bound<'_, Self>) -> PyResult<()> {
         let (py, this) = (slf.py(), slf.get());
         let line = this.line.get();
+        this.note_lateness();
         match line.send(slf)? {
-            Sent::Unwanted => Ok(()),
+            Sent::Over => Ok(()),
             Sent::No => this
                 .slots
                 .bind(py)
                 .call_method0(intern!(py, "send"))
                 .map(|_| ()),
-            Sent::Written(written, until) => {
-                let steps = line.steps.bind(py);
-                if let Some(until) = until {
-                    steps.call_method1(intern!(py, "watch_until"), (until,))?;
+            Sent::Written => line.watch(py),
+            Sent::Before => {
+                line.watch(py)?;
+                match line.take(py)? {
+                    Came::Unknown | Came::Reply => Ok(()),
+                    Came::Events(events, fed) => line.report(events, fed),
                 }
-                let part = line.is_part(py, written);
-                if part {
-                    steps.call_method1(intern!(py, "finish_write"), (written,))?;
-                }
-                Ok(())
             }
         }
     }
@@ -370,8 +510,8 @@ impl StreamSlot {
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
         visit.call(&self.line)?;
         visit.call(&self.slots)?;
-        if let Ok(plan) = self.plan.try_lock()
-            && let Some(plan) = &*plan
+        if let Ok(next) = self.next.try_lock()
+            && let Some(plan) = &next.plan
         {
             visit.call(&plan.over)?;
         }
@@ -380,20 +520,57 @@ impl StreamSlot {
 }
 
 impl StreamSlot {
-    fn locked(&self) -> MutexGuard<'_, Option<Plan>> {
-        self.plan.lock().unwrap_or_else(PoisonError::into_inner)
+    fn locked(&self) -> MutexGuard<'_, Next> {
+        self.next.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn taken(&self) -> Option<Plan> {
-        self.locked().take()
+        self.locked().plan.take()
+    }
+
+    /// Note whether the loop was late.
+    fn note_lateness(&self) {
+        let mut next = self.locked();
+        next.late = if now() - next.at > LATE {
+            LATE_SLOTS
+        } else {
+            next.late.saturating_sub(1)
+        };
     }
 }
 
 impl StreamLine {
-    /// Return whether `written` bytes are only a part of the request that is under way.
-    fn is_part(&self, py: Python<'_>, written: usize) -> bool {
-        let state = self.state();
-        let sent = state.under_way.as_ref();
-        sent.is_some_and(|sent| written < sent.plan.frame.as_bytes(py).len())
+    /// Let time pass for the request that is under way, and have the rest of it be written.
+    fn watch(&self, py: Python<'_>) -> PyResult<()> {
+        let (until, part) = {
+            let mut state = self.state();
+            let Some(sent) = &state.under_way else {
+                return Ok(());
+            };
+            let until = sent.requested_at + sent.plan.wait;
+            let part = sent.written < sent.plan.frame.as_bytes(py).len();
+            (
+                (!mem::replace(&mut state.timed, true)).then_some(until),
+                part,
+            )
+        };
+        let steps = self.steps.bind(py);
+        if let Some(until) = until {
+            steps.call_method1(intern!(py, "watch_until"), (until,))?;
+        }
+        if part {
+            steps.call_method0(intern!(py, "take_back"))?;
+        }
+        Ok(())
+    }
+
+    /// Have the session go on with what has come.
+    fn report(&self, events: Bound<'_, PyList>, fed: u64) -> PyResult<()> {
+        let py = events.py();
+        let received = intern!(py, "received");
+        self.steps
+            .bind(py)
+            .call_method1(received, (events, fed))
+            .map(|_| ())
     }
 }
