@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable
 from typing import Any
 
 import pytest
@@ -14,16 +14,13 @@ from hypothesis import strategies as st
 
 from cobotwire import AsyncMyCobot, LinkError, RetryPolicy
 from cobotwire import codec as codecs
-from cobotwire.client.aio_steps import AsyncSteps
 from cobotwire.client.aio_streaming import AsyncStream
 from cobotwire.editions.mycobot import TABLE, GetAngles, IsPowerOn
 from cobotwire.session import EncodedRequest, Traffic
+from driving_streams import ANGLES, LONGEST, OTHERS, REQUEST, run, steps_of
 from scripted_peer import PEERS, ScriptedPeer
 
 pytestmark = pytest.mark.skipif(not codecs.native_available(), reason="there is no native module")
-REQUEST = bytes.fromhex("FE FE 02 20 FA")
-ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
-OTHERS = bytes.fromhex("FE FE 0E 20 01 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 ILLEGAL = bytes.fromhex("FE FE 0E 20 7F FF 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 ASK_POWER = bytes.fromhex("FE FE 02 12 FA")
 POWER = bytes.fromhex("FE FE 03 12 01 FA")
@@ -39,29 +36,8 @@ SCRIPTS = st.lists(
 NO_GRACE = RetryPolicy(attempts=1, grace=0.0)
 # Far longer than a test takes.
 LONG = RetryPolicy(attempts=1, grace=60.0)
-# A test that takes longer hangs, in seconds.
-LONGEST = 15
 # A reply that comes so late leaves time to act before it.
 SLOW = 0.2
-
-
-def steps_of(arm: AsyncMyCobot) -> AsyncSteps:
-    steps = arm._connection._steps
-    assert steps is not None
-    return steps
-
-
-def run(peer: Any, drive: Callable[[AsyncMyCobot], Awaitable[Any]], **options: Any) -> Any:
-    """Return what ``drive`` returns for an arm at the peer, and the requests of the peer."""
-
-    async def main() -> Any:
-        async with AsyncMyCobot(peer.url, codec="native", **options) as arm:
-            async with asyncio.timeout(LONGEST):
-                return await drive(arm)
-
-    with peer:
-        result = asyncio.run(main())
-    return result, peer.received
 
 
 async def begun(stream: AsyncStream, peer: Any) -> asyncio.Task[Any]:
@@ -73,11 +49,11 @@ async def begun(stream: AsyncStream, peer: Any) -> asyncio.Task[Any]:
     return task
 
 
-async def sampled(arm: AsyncMyCobot, *, natively: bool, slots: int) -> list[object]:
+async def sampled(arm: AsyncMyCobot, way: str, slots: int) -> list[object]:
     """Return the results of a stream with that many slots, and how many had no reply."""
-    steps = steps_of(arm)
-    if not natively:
-        steps.native = None
+    if way == "steps":
+        steps_of(arm).native = None
+    busy = asyncio.create_task(hold_loop()) if way == "thread" else None
     found: list[object] = []
     async with arm.stream(GetAngles(), rate=RATE) as stream:
         async for sample in stream:
@@ -85,28 +61,40 @@ async def sampled(arm: AsyncMyCobot, *, natively: bool, slots: int) -> list[obje
             report = stream.report
             if report.samples + report.unanswered >= slots:
                 break
-        return [*found, stream.report.unanswered]
+    if busy is not None:
+        busy.cancel()
+    return [*found, stream.report.unanswered]
 
 
+async def hold_loop() -> None:
+    """Let no timer of the loop be punctual, until it is cancelled."""
+    while True:
+        time.sleep(0.005)
+        await asyncio.sleep(0)
+
+
+@pytest.mark.parametrize("way", ["native", "thread"])
 @given(scripts=SCRIPTS)
-@settings(max_examples=20, deadline=None)
-def test_same_traffic_has_the_same_samples_in_native_calls_and_in_steps(scripts: Any) -> None:
+@settings(max_examples=12, deadline=None)
+def test_same_traffic_has_the_same_samples_in_native_calls_and_in_steps(
+    way: str, scripts: Any
+) -> None:
     # The last reply ends the stream.
     scripts = [*scripts, [ANGLES]]
 
-    def results(*, natively: bool) -> Any:
+    def results(way: str) -> Any:
         def drive(arm: AsyncMyCobot) -> Awaitable[Any]:
-            return sampled(arm, natively=natively, slots=len(scripts))
+            return sampled(arm, way, len(scripts))
 
         return run(ScriptedPeer(*scripts), drive, timeout=0.03, retry=NO_GRACE)
 
-    in_steps = results(natively=False)
+    in_steps = results("steps")
     # A part that comes late on a busy machine is another traffic.
     for _ in range(3):
-        in_native = results(natively=True)
+        in_native = results(way)
         if in_native == in_steps:
             return
-        in_steps = results(natively=False)
+        in_steps = results("steps")
     assert in_native == in_steps
 
 
