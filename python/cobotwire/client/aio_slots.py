@@ -85,17 +85,16 @@ class AsyncSlots:
         steps, timed = self._steps, self._timed
         self._poll, self._at, self._pending = poll, at, None
         encoded, due = poll.encoded, at > time.monotonic()
-        if encoded.plain:
-            slot = self._slot
-            if slot is None:
-                self._slot = slot = steps.stream_slot(self)
-            if slot is not None:
-                timed.call = slot
-                wait = encoded.command.deadline_ms / 1000 if poll.wait is None else poll.wait
-                moment = at if due else inf
-                name, over = encoded.command.name, self._over
-                if slot.plan(encoded.frame, name, wait, over, moment) and due:
-                    steps.hand_over(slot)
+        if encoded.plain and self._slot is None:
+            self._slot = steps.stream_slot(self)
+        slot = self._slot if encoded.plain else None
+        timed.call = slot or self.send
+        if slot is not None:
+            wait = encoded.command.deadline_ms / 1000 if poll.wait is None else poll.wait
+            moment = at if due else inf
+            name, over = encoded.command.name, self._over
+            if slot.plan(encoded.frame, name, wait, over, moment) and due:
+                steps.hand_over(slot)
         if due:
             steps.timers.set(timed, at)
         else:
