@@ -15,6 +15,8 @@ from contextvars import Context, copy_context
 from typing import TYPE_CHECKING
 from weakref import WeakValueDictionary
 
+from cobotwire.transport.waiting import moment_writer
+
 if TYPE_CHECKING:
     from cobotwire._native import MomentWriter
 
@@ -39,11 +41,7 @@ class LoopReaders:
     def writer(self) -> MomentWriter | None:
         """Return the thread that writes at moments, for all lines; None: the system has none."""
         if self._writer is None:
-            from cobotwire import _native
-
-            # The process may have too many threads.
-            with suppress(OSError):
-                self._writer = _native.MomentWriter()
+            self._writer = moment_writer()
         return self._writer
 
     def add(self, descriptor: int, call: Callable[[], object]) -> None:

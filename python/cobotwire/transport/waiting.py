@@ -6,11 +6,15 @@ import select
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from types import TracebackType
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from cobotwire import codec as codecs
 from cobotwire.transport.alarm import Alarm, new_alarm
+
+if TYPE_CHECKING:
+    from cobotwire._native import MomentWriter
 
 # macOS's poll() refuses terminals, and Windows has none. There select() waits, which fails for
 # descriptors from this number on.
@@ -67,6 +71,17 @@ def line_lock() -> LineLock:
     from cobotwire import _native
 
     return _native.LineLock()
+
+
+def moment_writer() -> MomentWriter | None:
+    """Return a new thread that writes requests at moments; None: there is none."""
+    if native_calls() is not None:
+        from cobotwire import _native
+
+        # The process may have too many threads.
+        with suppress(OSError):
+            return _native.MomentWriter()
+    return None
 
 
 class Waiter:
