@@ -58,7 +58,7 @@ def native_calls() -> NativeCalls | None:
         return None
     from cobotwire import _native
 
-    if not hasattr(_native, "StreamLine"):
+    if not hasattr(_native, "MomentWriter"):
         # The binary is older than this file; build it again for speed.
         return None
     return NativeCalls(_native.read_within, _native.write_now, _native.LoneCalls)
