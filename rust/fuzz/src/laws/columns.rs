@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use cobotwire_core::{
     ColumnReader, Columns, Listening, Numbers, OffsetReader, Plans, Rules, Spans, Table, Value,
+    Workers,
 };
 
 use super::rows::{Found, Rows, extend, key, variant_at};
@@ -16,6 +17,9 @@ use crate::subjects::LISTENING;
 
 /// More bytes than several blocks of bulk reading, so that every path of its code runs.
 const SEVERAL_BLOCKS: usize = 150_000;
+
+/// Long chunks are read by several threads, which cut each of them in about so many pieces.
+const PIECES: usize = 5;
 
 /// A batch has rows for every variant of the table, so many batches would be slow.
 const MOST_BATCHES: usize = 8;
@@ -52,10 +56,16 @@ pub fn read(
     columns_hold(source, &stream, &chunks);
 }
 
+/// Return threads that cut a stream of that size.
+fn workers(size: usize) -> Workers {
+    Workers::new(3).cutting_every(size / PIECES)
+}
+
 /// Check the offsets of frames and noise, for any rules.
 fn offsets_hold((oracle, rules): (&Oracle, &Rules), stream: &[u8], chunks: &[Chunk<'_>]) {
     let (expected, count) = frames(oracle, stream);
     let mut reader = OffsetReader::new(rules.clone(), None);
+    reader.set_workers(workers(stream.len()));
     let (mut found, mut noise) = (Vec::new(), Spans::default());
     for chunk in chunks {
         reader.feed(chunk.bytes);
@@ -106,6 +116,7 @@ fn columns_hold(source: &Source<'_>, stream: &[u8], chunks: &[Chunk<'_>]) {
         let (rows, rejected) = expected(source, &frames, numbers);
         for chunks in cuts {
             let mut reader = source.reader(numbers, old.take());
+            reader.set_workers(workers(stream.len()));
             let mut found = Found::default();
             for (index, chunk) in chunks.iter().enumerate() {
                 reader.feed(chunk.bytes);
