@@ -43,14 +43,13 @@ impl NativeFramer {
     /// Feed bytes; return the events that are certain, in the order of the stream.
     fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
         let py = data.py();
-        let bytes = data.cast::<PyBytes>();
-        if let Ok(bytes) = &bytes
+        if let Ok(bytes) = data.cast_exact::<PyBytes>()
             && let Some((offset, frame)) = self.core.feed_frame(bytes.as_bytes())
         {
             return PyList::new(py, [self.object(py, offset, frame)?]);
         }
         let mut events = Events::new(py, &self.origin)?;
-        match bytes {
+        match data.cast::<PyBytes>() {
             Ok(bytes) => self.core.feed(bytes.as_bytes(), |event| events.add(event)),
             Err(_) => self.core.feed(&copied(data)?, |event| events.add(event)),
         }
