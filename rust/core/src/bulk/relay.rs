@@ -21,7 +21,7 @@ use cobotwire_simd::SEEN;
 const GUESSING: usize = 512;
 /// How often a thread checks whether its turn has come, before it sleeps: waking up takes longer
 /// than reading a piece.
-const CHECKS: usize = 400;
+const CHECKS: usize = 5_000;
 /// More threads do not help, since one after the other appends its results.
 const MOST: usize = 16;
 /// For less input, starting threads costs more than it saves.
