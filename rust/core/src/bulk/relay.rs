@@ -19,8 +19,8 @@ use cobotwire_simd::SEEN;
 
 /// The number of bytes that a guess may examine.
 const GUESSING: usize = 512;
-/// How often a thread checks whether its turn has come, before it sleeps: waking up takes longer
-/// than reading a piece.
+/// How often a thread checks whether its turn has come, before it sleeps: waking another thread
+/// costs both of them more.
 const CHECKS: usize = 5_000;
 /// More threads do not help, since one after the other appends its results.
 const MOST: usize = 16;
