@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 
 import pytest
@@ -82,6 +83,24 @@ def test_pose_near_the_present_one_is_found_with_any_geometry(
     way, turn = _reached(geometry, flange(geometry, angles), present, limits)
     assert way <= 0.22
     assert turn <= 0.03
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_search_along_a_way_finds_the_next_point_and_leaves_out_jumps(name: str) -> None:
+    rows, rng = ARMS[name], random.Random(6)
+    geometry, limits = Geometry(tuple(Link(*row) for row in rows)), [WIDE] * len(rows)
+    jumps = 0
+    for _ in range(6):
+        present, far = ([rng.uniform(-150, 150) for _ in rows] for _ in range(2))
+        next_point = flange(geometry, [angle + rng.uniform(-3, 3) for angle in present])
+        found = search(geometry, next_point, present, limits, 30.0)
+        assert found is not None
+        assert found == search(geometry, next_point, present, limits)
+        elsewhere = flange(geometry, far)
+        found, whole = (search(geometry, elsewhere, present, limits, t) for t in (30.0, math.inf))
+        assert found in (None, whole)
+        jumps += found is None and whole is not None
+    assert jumps > 0
 
 
 def test_search_finds_what_the_closed_form_finds() -> None:

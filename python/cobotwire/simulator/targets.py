@@ -192,7 +192,7 @@ def _follow(
     assert arm.geometry is not None, "the caller has checked this"
     limits, points = arm.limits(), [start]
     for end in ends:
-        found = nearest(arm.geometry, arm.flange_for(end), points[-1], limits)
+        found = nearest(arm.geometry, arm.flange_for(end), points[-1], limits, LARGEST_TURN)
         if found is None or max(abs(a - b) for a, b in zip(found, points[-1])) > LARGEST_TURN:
             return [] if whole else points[1:]
         points.append(found)

@@ -39,7 +39,11 @@ REFINING_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
 
 
 def nearest(
-    geometry: Geometry, target: Pose, present: Sequence[float], limits: Limits
+    geometry: Geometry,
+    target: Pose,
+    present: Sequence[float],
+    limits: Limits,
+    largest_turn: float = math.inf,
 ) -> Angles | None:
     """Return the solution inside the limits that is nearest to the present angles, or None.
 
@@ -50,17 +54,23 @@ def nearest(
             time: the joint with the longest way counts, then the sum of all ways. Without a closed
             form, it is the nearest of those that the search finds.
         limits: the lowest and the highest angle of each joint, in degrees.
+        largest_turn: solutions in which a joint turns further than this, in degrees, are of no
+            use; the search for them is left out.
     """
-    return _nearest(geometry, target, tuple(present), tuple(limits))
+    return _nearest(geometry, target, tuple(present), tuple(limits), largest_turn)
 
 
 # Programs return to the same places, and a place that is out of reach takes the longest.
 @lru_cache(maxsize=REMEMBERED)
 def _nearest(
-    geometry: Geometry, target: Pose, present: Angles, limits: tuple[tuple[float, float], ...]
+    geometry: Geometry,
+    target: Pose,
+    present: Angles,
+    limits: tuple[tuple[float, float], ...],
+    largest_turn: float,
 ) -> Angles | None:
     if not is_solved(geometry):
-        return search(geometry, target, present, limits)
+        return search(geometry, target, present, limits, largest_turn)
     found = list(solutions(geometry, target, present))
     for one in by_way(found, present, limits, ROUNDING):
         if not misses(geometry, one, target, EXACT_MILLIMETRES, EXACT_DEGREES):

@@ -27,9 +27,16 @@ PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)
 
 
 def search(
-    geometry: Geometry, target: Pose, present: Sequence[float], limits: Limits
+    geometry: Geometry,
+    target: Pose,
+    present: Sequence[float],
+    limits: Limits,
+    largest_turn: float = math.inf,
 ) -> Angles | None:
     """Return angles inside the limits that bring the flange to ``target``; None: none were found.
+
+    The search starts only at angles within ``largest_turn`` degrees of the present ones: for a
+    point on the way of a motion, whose joints cannot jump. What it finds may be further away.
 
     Of several solutions, the nearest to ``present`` is returned. If none is exact, angles that miss
     the target by less than the wire's rounding count as a solution.
@@ -38,7 +45,9 @@ def search(
         return None
     exact: list[Angles] = []
     rough: list[Angles] = []
-    for index, start in enumerate(_starts(present, limits)):
+    first, *others = _starts(present, limits)
+    near = (start for start in others if _turn(start, present) <= largest_turn)
+    for index, start in enumerate((first, *near)):
         found = descend(geometry, target, start, limits, SEARCH_RADIAN)
         if not misses(geometry, found, target, EXACT_MILLIMETRES, EXACT_DEGREES):
             exact.append(found)
@@ -48,6 +57,11 @@ def search(
         elif not misses(geometry, found, target, MILLIMETRES, DEGREES):
             rough.append(found)
     return min(exact or rough, key=lambda one: way_between(one, present), default=None)
+
+
+def _turn(start: Sequence[float], present: Sequence[float]) -> float:
+    """Return how far the joint with the longest way turns."""
+    return max((abs(one - other) for one, other in zip(start, present)), default=0.0)
 
 
 def _starts(present: Sequence[float], limits: Limits) -> Iterator[list[float]]:
