@@ -13,6 +13,7 @@ import pytest
 
 from cobotwire import AsyncMyCobot, LinkError
 from cobotwire import codec as codecs
+from cobotwire.client import aio_slots
 from cobotwire.client.aio_streaming import AsyncStream
 from cobotwire.editions.mycobot import GetAngles
 from cobotwire.session.sample import Sample
@@ -23,10 +24,17 @@ pytestmark = pytest.mark.skipif(not codecs.native_available(), reason="there is 
 ASK_POWER = bytes.fromhex("FE FE 02 12 FA")
 POWER = bytes.fromhex("FE FE 03 12 01 FA")
 # One slot lasts far longer than what a test does in it, except for holding up the loop.
-RATE = 5
+RATE = 2.5
 SLOT = 1 / RATE
+OPEN_FILES = Path("/proc/self/fd")
 # What the peer gets until a plan is made.
 SENT = REQUEST * 2
+
+
+@pytest.fixture(autouse=True)
+def plans_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let streams plan each slot when it is wanted, not shortly before its moment."""
+    monkeypatch.setattr(aio_slots, "CHECK_SECONDS", 60.0)
 
 
 async def planned(stream: AsyncStream) -> asyncio.Task[Sample]:
@@ -34,21 +42,24 @@ async def planned(stream: AsyncStream) -> asyncio.Task[Sample]:
     await anext(stream)
     # The loop is late for this one.
     task = asyncio.create_task(anext(stream))
-    await asyncio.sleep(SLOT * 0.9)
-    time.sleep(SLOT * 0.2)
+    await asyncio.sleep(0)
+    hold_up()
     await task
-    # A stream plans only shortly before the moment.
+    before = open_files()
     task = asyncio.create_task(anext(stream))
-    before = len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc/self/fd") else 0
-    await asyncio.sleep(SLOT * 0.7)
-    if before:
-        assert len(os.listdir("/proc/self/fd")) == before + 1, "the plan has a descriptor"
+    await asyncio.sleep(0)
+    assert open_files() == before + OPEN_FILES.is_dir(), "a plan has a descriptor"
     return task
+
+
+def open_files() -> int:
+    """Return how many descriptors the process has; 0 if the system does not list them."""
+    return len(os.listdir(OPEN_FILES)) if OPEN_FILES.is_dir() else 0
 
 
 def hold_up() -> float:
     """Block the loop until the moment is long over; return when that was."""
-    time.sleep(SLOT)
+    time.sleep(SLOT * 1.3)
     return time.monotonic()
 
 
@@ -99,11 +110,11 @@ def test_call_of_another_task_withdraws_the_plan_and_the_slot_is_sent_once() -> 
 
 
 def test_call_after_the_thread_has_written_waits_for_that_reply() -> None:
-    peer = ScriptedPeer([ANGLES], [ANGLES], [0.1, OTHERS], [POWER])
+    peer = ScriptedPeer([ANGLES], [ANGLES], [SLOT, OTHERS], [POWER])
 
     async def drive(arm: AsyncMyCobot) -> Any:
         task = await planned(arm.stream(GetAngles(), rate=RATE))
-        time.sleep(SLOT / 2)
+        hold_up()
         # Nothing of the loop has run since the thread has written.
         powered = arm.is_power_on()
         return await powered, (await task).values[0][0]
