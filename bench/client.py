@@ -2,8 +2,8 @@
 
 The floor is the time of bare system calls for the same bytes: os.write, select, os.read. A call of
 the floor on the same responder follows each call, so that both find caches and processor in the
-same state. Whether the responder is woken on the same core, or on another one that sleeps, makes a
-greater difference than all that a client does. Candidates take turns. The fastest quarter of each
+same state: on some machines the floor takes four times as long in one turn as in another, which is
+more than all that a client does. Candidates take turns. The fastest quarter of each
 candidate's turns counts, since other programs on the machine can only add time. The limits apply
 to the median of their ratios.
 
