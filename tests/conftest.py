@@ -50,8 +50,7 @@ def pytest_collection_finish() -> None:
     """Keep the garbage collector from what lives to the end, such as tests and loaded editions."""
     gc.collect()
     gc.freeze()
-    # Seldom, and what has lived for long hardly ever: most tests make no garbage in cycles.
-    gc.set_threshold(100_000, 20, 100)
+    gc.set_threshold(20_000, 20, 20)
 
 
 def pytest_unconfigure() -> None:
