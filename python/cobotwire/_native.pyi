@@ -36,12 +36,15 @@ __all__ = [
     "LineLock",
     "LoneCalls",
     "Memory",
+    "MomentWriter",
     "NativeCaptureReader",
     "NativeCodec",
     "NativeColumnReader",
     "NativeFrame",
     "NativeFramer",
     "NativeSurvey",
+    "StreamLine",
+    "StreamSlot",
     "__version__",
     "read_within",
     "write_now",
@@ -270,16 +273,16 @@ class StreamLine:
     """
 
     def __new__(
-        cls, framer: NativeFramer, transport: Any, listeners: Any, lender: Any, /
+        cls, framer: NativeFramer, transport: Any, listeners: Any, steps: Any, /
     ) -> StreamLine:
         """Take the framer of received bytes, a transport that is lent, and its traffic listeners.
 
-        Methods of ``lender`` are called: ``lend_session``, to have the session; ``turn``, to take
+        Methods of ``steps`` are called: ``lend_session``, to have the session; ``turn``, to take
         what has come, and ``received``, with events that are not the reply; ``take_back``, if only
         a part of a request was written; ``watch_until``, with when a wait ends.
         """
 
-    def __call__(self) -> None:
+    def __call__(self, /, *args: Any, **kwargs: Any) -> None:
         """Take what has come: the loop calls it when the line can be read."""
 
     def give_back(
@@ -326,7 +329,7 @@ class StreamSlot:
     def __new__(cls, line: StreamLine, slots: Slots, /) -> StreamSlot:
         """Take the line, and what has the session send a request: its method ``send``."""
 
-    def __call__(self) -> None:
+    def __call__(self, /, *args: Any, **kwargs: Any) -> None:
         """Send what was planned; if that is not possible now, have the session send it."""
 
     def plan(
