@@ -127,11 +127,53 @@ fn pass_noise(
     reason: Reason,
     runs: &mut Runs,
 ) -> usize {
+    if runs.end_at(from) {
+        // No frame started where one seemed to start.
+        return pass_headers(quick, data, from, end, reason, runs);
+    }
     let (at, lengths) = next(quick, data, from, end);
     runs.span(from, at);
     runs.count(reason, 1);
     runs.count(Reason::BadLength, lengths);
     runs.count(Reason::NoHeader, at - from - 1 - lengths);
+    at
+}
+
+/// Account for noise that is full of headers: for the position `from`, which has this reason, and
+/// all after it up to the next frame. Return its position, or `end`.
+#[inline(never)]
+fn pass_headers(
+    quick: Quick<'_>,
+    data: &Block,
+    from: usize,
+    end: usize,
+    reason: Reason,
+    runs: &mut Runs,
+) -> usize {
+    let (mut at, mut lengths, mut judged) = (from + 1, 0, 1);
+    runs.count(reason, 1);
+    let mut frame = false;
+    while at < end && !frame {
+        let window = quick.window(data, at).first(end - at);
+        let mut passed = WINDOW.min(end - at);
+        let mut candidates = window.candidates;
+        while candidates != 0 && !frame {
+            let place = candidates.trailing_zeros() as usize;
+            match quick.look(data, at + place) {
+                Look::Frame { .. } => (passed, frame) = (place, true),
+                Look::Noise(reason) => {
+                    runs.count(reason, 1);
+                    judged += 1;
+                }
+            }
+            candidates &= candidates - 1;
+        }
+        lengths += window.first(passed).bad_lengths.count_ones() as usize;
+        at += passed;
+    }
+    runs.span(from, at);
+    runs.count(Reason::BadLength, lengths);
+    runs.count(Reason::NoHeader, at - from - judged - lengths);
     at
 }
 

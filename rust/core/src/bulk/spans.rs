@@ -46,6 +46,12 @@ impl Runs {
         }
     }
 
+    /// Return whether the last noise ends at `at`.
+    #[inline]
+    pub(crate) fn end_at(&self, at: usize) -> bool {
+        self.spans.last().is_some_and(|(_, end)| *end == at as u32)
+    }
+
     #[inline]
     pub(crate) fn count(&mut self, reason: Reason, bytes: usize) {
         if let Some(entry) = self.reasons.get_mut(reason as usize) {
