@@ -36,7 +36,10 @@ mod plain;
 #[cfg(unix)]
 mod session;
 #[cfg(unix)]
+mod stream_exchange;
 mod stream_line;
+mod stream_plan;
+mod stream_slot;
 mod survey;
 #[cfg(unix)]
 mod swap;
@@ -65,7 +68,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add_class::<lone::LoneCalls>()?;
         module.add_class::<moments::MomentWriter>()?;
         module.add_class::<stream_line::StreamLine>()?;
-        module.add_class::<stream_line::StreamSlot>()?;
+        module.add_class::<stream_slot::StreamSlot>()?;
     }
     #[cfg(target_os = "linux")]
     module.add_class::<alarm_clock::AlarmClock>()?;

@@ -24,11 +24,11 @@ const NANOSECONDS: f64 = 1e9;
 
 /// The request that one line is to send next.
 #[derive(Default)]
-pub struct Desk(Mutex<Paper>);
+pub struct ScheduledWrite(Mutex<WriteState>);
 
 /// At most one of the two is there.
 #[derive(Default)]
-struct Paper {
+struct WriteState {
     planned: Option<Planned>,
     written: Option<Written>,
 }
@@ -47,8 +47,8 @@ pub struct Written {
     pub size: usize,
 }
 
-impl Desk {
-    fn paper(&self) -> MutexGuard<'_, Paper> {
+impl ScheduledWrite {
+    fn state(&self) -> MutexGuard<'_, WriteState> {
         // Nothing panics while it is locked.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -56,8 +56,8 @@ impl Desk {
     /// Return what was written since the plan; withdraw the plan if nothing was.
     pub fn withdraw(&self) -> Option<Written> {
         let (planned, written) = {
-            let mut paper = self.paper();
-            (paper.planned.take(), paper.written.take())
+            let mut state = self.state();
+            (state.planned.take(), state.written.take())
         };
         drop(planned);
         written
@@ -65,35 +65,35 @@ impl Desk {
 
     /// Return what was written since the plan, which stays if nothing was.
     pub fn written(&self) -> Option<Written> {
-        self.paper().written.take()
+        self.state().written.take()
     }
 
     /// Withdraw the plan; what was written is returned later.
     pub fn cancel(&self) {
-        let planned = self.paper().planned.take();
+        let planned = self.state().planned.take();
         drop(planned);
     }
 
     /// Close what a forked child has a copy of. The thread may have held the lock, and is not there.
     pub fn leave_to_parent(&self) {
-        if let Ok(mut paper) = self.0.try_lock() {
-            paper.planned = None;
+        if let Ok(mut state) = self.0.try_lock() {
+            state.planned = None;
         }
     }
 
     /// Write what is planned for that moment, unless bytes have come that could pass for its reply.
     fn write(&self, at: u64) {
-        let mut paper = self.paper();
-        let Some(planned) = paper.planned.take_if(|planned| planned.at == at) else {
+        let mut state = self.state();
+        let Some(planned) = state.planned.take_if(|planned| planned.at == at) else {
             return;
         };
         let line = planned.descriptor.as_fd();
         if can_be_read(line) == Ok(false) {
             let requested_at = now();
             let size = write(line, &planned.frame).unwrap_or(0);
-            paper.written = (size > 0).then_some(Written { requested_at, size });
+            state.written = (size > 0).then_some(Written { requested_at, size });
         }
-        drop(paper);
+        drop(state);
         drop(planned);
     }
 }
@@ -107,7 +107,7 @@ struct Queue {
 #[derive(Default)]
 struct State {
     /// Lines that may have a plan, by the moment and a number that decides between equal moments.
-    waiting: BTreeMap<(u64, u64), Weak<Desk>>,
+    waiting: BTreeMap<(u64, u64), Weak<ScheduledWrite>>,
     planned: u64,
     ended: bool,
 }
@@ -140,10 +140,10 @@ impl Queue {
             }
             let due = state.waiting.pop_first();
             drop(state);
-            if let Some(((at, _), desk)) = due
-                && let Some(desk) = desk.upgrade()
+            if let Some(((at, _), scheduled)) = due
+                && let Some(scheduled) = scheduled.upgrade()
             {
-                desk.write(at);
+                scheduled.write(at);
             }
             state = self.state();
         }
@@ -169,7 +169,13 @@ impl MomentWriter {
 
 impl MomentWriter {
     /// Have a request written to a line at a moment; return whether it is planned now.
-    pub fn plan(&self, desk: &Arc<Desk>, at: f64, frame: &[u8], descriptor: OwnedFd) -> bool {
+    pub fn plan(
+        &self,
+        scheduled: &Arc<ScheduledWrite>,
+        at: f64,
+        frame: &[u8],
+        descriptor: OwnedFd,
+    ) -> bool {
         let at = nanoseconds(at);
         if self.0.state().waiting.len() >= MOST_WAITING {
             return false;
@@ -179,14 +185,14 @@ impl MomentWriter {
             frame: frame.to_vec(),
             descriptor,
         };
-        *desk.paper() = Paper {
+        *scheduled.state() = WriteState {
             planned: Some(planned),
             written: None,
         };
         let mut state = self.0.state();
         state.planned += 1;
         let key = (at, state.planned);
-        state.waiting.insert(key, Arc::downgrade(desk));
+        state.waiting.insert(key, Arc::downgrade(scheduled));
         drop(state);
         self.0.changed.notify_one();
         true
