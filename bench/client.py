@@ -38,7 +38,7 @@ RESPONDER = f"""
 import os, sys
 master = int(sys.argv[1])
 while data := os.read(master, 4096):
-    if data[3] == 0x20:
+    if data[3:4] == b"\x20":
         os.write(master, {REPLY!r})
 """
 SIMULATED = """
