@@ -22,7 +22,7 @@ from cobotwire.transport.alarm_clock import AlarmClock, new_alarm_clock
 # At least so many seconds pass between two rounds of calls, for each call that waits, up to the
 # longest. So a large fleet does not wake the loop for each arm.
 SECONDS_FOR_EACH, LONGEST_SECONDS = 2e-6, 1e-3
-# With so many calls that wait, a loop is not busy with them.
+# A loop with more waiting calls may be late because of its own work.
 FEW = 16
 
 
