@@ -40,7 +40,7 @@ class AsyncSlots:
         self._pending: PendingRequest | None = None
 
     def close(self) -> None:
-        """Have the request that is planned not be sent: the stream is closed."""
+        """Withdraw the planned request: the stream is closed."""
         if self._slot is not None:
             self._slot.forget()
 

@@ -74,7 +74,7 @@ def line_lock() -> LineLock:
 
 
 def moment_writer() -> MomentWriter | None:
-    """Return a new thread that writes requests at moments; None: there is none."""
+    """Return a new thread that writes requests at their moments, if the native module has one."""
     if native_calls() is not None:
         from cobotwire import _native
 

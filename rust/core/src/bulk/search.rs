@@ -102,7 +102,7 @@ impl Search {
         at
     }
 
-    /// Scan the blocks of `data` up to `stop`, the last of which may be short; return its end.
+    /// Scan the blocks of `data` up to `stop`; the last one may be short. Return its end.
     fn blocks(
         &mut self,
         offset: u64,

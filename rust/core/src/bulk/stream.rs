@@ -80,8 +80,8 @@ impl Stream {
         self.search.noise.end();
     }
 
-    /// Scan what waits and then a chunk, of which `start` may scan as much as it likes: it returns
-    /// the number of bytes.
+    /// Scan what waits, and then a chunk. `start` scans any part of the chunk's start, and returns its
+    /// number of bytes.
     fn cut<C: Collect>(
         &mut self,
         chunk: &[u8],
