@@ -10,6 +10,7 @@ class RecordingTransport:
 
     def __init__(self) -> None:
         self.written = b""
+        self.closed = False
 
     def write(self, data: bytes) -> None:
         self.written += data
@@ -18,4 +19,4 @@ class RecordingTransport:
         return b""
 
     def close(self) -> None:
-        pass
+        self.closed = True

@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from types import FrameType
 from typing import Any
@@ -16,9 +17,11 @@ import pytest
 from cobotwire import MyCobot, ReplyTimeout, RetryPolicy
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer, SimulatedArm
+from recording_transport import RecordingTransport
 from stalls import StallMeter
 
 ROOMS = ("client", "session", "transport", "codec/reference")
+STOP = "FE FE 02 29 FA"
 TIMEOUT = 0.4
 # The interrupt may lose bytes that were just read. Then the request that they replied to is sent
 # again, and the next one like it is held.
@@ -37,6 +40,8 @@ class InterruptAt:
 
     def __init__(self, number: int) -> None:
         self._left = number
+        # Where it raised.
+        self.line = ""
         self._lines: dict[FrameType, int] = {}
 
     @property
@@ -49,6 +54,7 @@ class InterruptAt:
         if event == "line" and not self._calls_nothing(frame):
             self._left -= 1
             if self._left == 0:
+                self.line = f"{frame.f_code.co_filename}:{frame.f_lineno}"
                 raise KeyboardInterrupt
         return self
 
@@ -101,18 +107,25 @@ class OtherThreads:
             time.sleep(0.002)
 
 
-def interrupted(call: Callable[[], object], number: int) -> bool:
-    """Make a call with an interrupt at its n-th line; return whether it has that many lines."""
-    tracer = InterruptAt(number)
+@contextmanager
+def tracing(tracer: InterruptAt) -> Iterator[None]:
+    """Trace a block; its interrupt ends here."""
     try:
         sys.settrace(tracer)
-        call()
+        yield
         # An interrupt at the last line comes only now.
         time.sleep(0)
     except KeyboardInterrupt:
         pass
     finally:
         sys.settrace(None)
+
+
+def interrupted(call: Callable[[], object], number: int) -> bool:
+    """Make a call with an interrupt at its n-th line; return whether it has that many lines."""
+    tracer = InterruptAt(number)
+    with tracing(tracer):
+        call()
     return tracer.reached
 
 
@@ -205,3 +218,23 @@ def test_calls_after_an_interrupt_are_as_fast_as_before(codec: Any) -> None:
         slow = [n for n in lines if always_longer(0.12, partial(seconds_after, n))]
     assert lines.reached > 20
     assert not slow
+
+
+@pytest.mark.parametrize("error", [None, ValueError("own"), KeyboardInterrupt()])
+def test_second_ctrl_c_at_any_line_neither_keeps_the_arm_moving_nor_the_port_open(
+    error: BaseException | None,
+) -> None:
+    number = reached = 0
+    while True:
+        number += 1
+        transport = RecordingTransport()
+        arm = MyCobot(transport)
+        tracer = InterruptAt(number)
+        with tracing(tracer):
+            arm.__exit__(type(error), error, None)
+        if not tracer.reached:
+            break
+        reached += 1
+        assert transport.closed, tracer.line
+        assert bytes.fromhex(STOP) in transport.written or error is None, tracer.line
+    assert reached > 20

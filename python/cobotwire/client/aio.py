@@ -100,17 +100,20 @@ class AsyncClient:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        if error is None:
-            await self.close()
-            return
-        await self._stop_all_for(error)
-        from cobotwire.protocol.errors import CaptureError
-
         try:
-            await self.close()
-        except CaptureError as incomplete:
-            # The error that ended the block is the one that is raised.
-            error.add_note(str(incomplete))
+            await self._leave(error)
+        except BaseException:
+            # Ctrl-C came again. What was done already is not repeated.
+            await self._leave(error)
+            raise
+
+    async def _leave(self, error: BaseException | None) -> None:
+        """Send ``stop`` if an error ended the block, and close the transport."""
+        try:
+            if error is not None:
+                await self._stop_all_for(error)
+        finally:
+            await self._close_for(error)
 
     def __repr__(self) -> str:
         to = "" if self._address is None else f", address {self._address.name}"
@@ -237,14 +240,39 @@ class AsyncClient:
         made.start(self._connection.listeners.add)
         return made
 
+    async def _close_for(self, error: BaseException | None) -> None:
+        """Close the transport; an error that ended the block remains the one that is raised."""
+        try:
+            await self.close()
+        except BaseException as failed:
+            from contextlib import suppress
+
+            from cobotwire.protocol.errors import CaptureError
+
+            with suppress(Exception):
+                # What is closed already stays so.
+                self._connection.close()
+            if error is None or not isinstance(failed, Exception):
+                raise
+            incomplete = isinstance(failed, CaptureError)
+            error.add_note(str(failed) if incomplete else f"close() raised {failed!r}")
+
     async def _stop_all_for(self, error: BaseException) -> None:
         """Send ``stop`` once for an error to each address that was used."""
-        await self._stop_for(error)
-        for view in self._views.values():
-            await view._stop_for(error)
+        interrupt: BaseException | None = None
+        for client in (self, *self._views.values()):
+            try:
+                await client._stop_for(error)
+            except BaseException as raised:
+                interrupt = raised
+        if interrupt is not None:
+            raise interrupt
 
     async def _stop_for(self, error: BaseException) -> bool:
         """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
+
+        If something unexpected ends that, Ctrl-C among it, ``stop`` is sent again: two stop the arm
+        as one does.
 
         Returns:
             Whether it was sent.
@@ -252,13 +280,27 @@ class AsyncClient:
         stop = self.table.find_role("stop")
         if not self._stops or stop is None or error is self._stopped_for:
             return False
-        self._stopped_for = error
         from cobotwire.protocol.errors import CobotwireError
 
+        sent = True
         try:
             await self._send(stop.request_type())
         except CobotwireError:
             # The first error is what is reported; this one would hide it.
+            sent = False
+        except BaseException as unexpected:
+            sent = await self._stop_again(stop.request_type())
+            if not isinstance(unexpected, Exception):
+                raise
+            error.add_note(f"stop raised {unexpected!r}; it was {'' if sent else 'not '}sent again")
+        self._stopped_for = error
+        return sent
+
+    async def _stop_again(self, stop: Request[None]) -> bool:
+        """Send ``stop`` after the first one raised something unexpected; return whether it was."""
+        try:
+            await self._send(stop)
+        except Exception:
             return False
         return True
 

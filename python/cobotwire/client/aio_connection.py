@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING
 
+from cobotwire.client.aio_slots import AsyncSlots
 from cobotwire.client.aio_steps import AsyncSteps
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
@@ -17,9 +17,6 @@ from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
-
-if TYPE_CHECKING:
-    from cobotwire.client.aio_slots import AsyncSlots
 
 # The longest wait, after which a listening task checks whether the transport is gone.
 LISTEN_SECONDS = 0.05
@@ -43,6 +40,9 @@ class AsyncConnection:
             UsageError: the port is not allowed, or is a transport with a clock of its own; or the
                 path of the recording is not allowed.
         """
+        # Calls need these, and import nothing: see `protocol/lazy`.
+        from cobotwire.client import aio_events, aio_lending, aio_streaming  # noqa: F401
+
         opener.check()
         port = opener.port
         if not times_of(port).real:
@@ -114,9 +114,6 @@ class AsyncConnection:
 
     def slots(self, closed: Callable[[], bool]) -> AsyncSlots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
-        # Imported here: most programs open no stream.
-        from cobotwire.client.aio_slots import AsyncSlots
-
         return AsyncSlots(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
@@ -140,10 +137,12 @@ class AsyncConnection:
             CaptureError: the recording is incomplete; everything is closed all the same.
         """
         if self._steps is not None and self._port is not None:
-            self._steps.transport.close()
-            self._memory.leave(self._steps.exchange.leave(self.now()))
-            self._steps.lose(LinkError(self.url, "it is closed"))
-            self._port.close_recording()
+            try:
+                self._steps.transport.close()
+            finally:
+                self._memory.leave(self._steps.exchange.leave(self.now()))
+                self._steps.lose(LinkError(self.url, "it is closed"))
+                self._port.close_recording()
 
     def leave_to_parent(self) -> None:
         """Let every call in a forked child fail: loop and transport are those of the parent."""

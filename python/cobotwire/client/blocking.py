@@ -114,17 +114,20 @@ class Client:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        if error is None:
-            self.close()
-            return
-        self._stop_all_for(error)
-        from cobotwire.protocol.errors import CaptureError
-
         try:
-            self.close()
-        except CaptureError as incomplete:
-            # The error that ended the block is the one that is raised.
-            error.add_note(str(incomplete))
+            self._leave(error)
+        except BaseException:
+            # Ctrl-C came again. What was done already is not repeated.
+            self._leave(error)
+            raise
+
+    def _leave(self, error: BaseException | None) -> None:
+        """Send ``stop`` if an error ended the block, and close the transport."""
+        try:
+            if error is not None:
+                self._stop_all_for(error)
+        finally:
+            self._close_for(error)
 
     def __repr__(self) -> str:
         to = "" if self._address is None else f", address {self._address.name}"
@@ -253,14 +256,39 @@ class Client:
         made.start(self._connection.listeners.add)
         return made
 
+    def _close_for(self, error: BaseException | None) -> None:
+        """Close the transport; an error that ended the block remains the one that is raised."""
+        try:
+            self.close()
+        except BaseException as failed:
+            from contextlib import suppress
+
+            from cobotwire.protocol.errors import CaptureError
+
+            with suppress(Exception):
+                # What is closed already stays so.
+                self._connection.close()
+            if error is None or not isinstance(failed, Exception):
+                raise
+            incomplete = isinstance(failed, CaptureError)
+            error.add_note(str(failed) if incomplete else f"close() raised {failed!r}")
+
     def _stop_all_for(self, error: BaseException) -> None:
         """Send ``stop`` once for an error to each address that was used."""
-        self._stop_for(error)
-        for view in self._views.values():
-            view._stop_for(error)
+        interrupt: BaseException | None = None
+        for client in (self, *self._views.values()):
+            try:
+                client._stop_for(error)
+            except BaseException as raised:
+                interrupt = raised
+        if interrupt is not None:
+            raise interrupt
 
     def _stop_for(self, error: BaseException) -> bool:
         """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
+
+        If something unexpected ends that, Ctrl-C among it, ``stop`` is sent again: two stop the arm
+        as one does.
 
         Returns:
             Whether it was sent.
@@ -268,13 +296,27 @@ class Client:
         stop = self.table.find_role("stop")
         if not self._stops or stop is None or error is self._stopped_for:
             return False
-        self._stopped_for = error
         from cobotwire.protocol.errors import CobotwireError
 
+        sent = True
         try:
             self._send(stop.request_type())
         except CobotwireError:
             # The first error is what is reported; this one would hide it.
+            sent = False
+        except BaseException as unexpected:
+            sent = self._stop_again(stop.request_type())
+            if not isinstance(unexpected, Exception):
+                raise
+            error.add_note(f"stop raised {unexpected!r}; it was {'' if sent else 'not '}sent again")
+        self._stopped_for = error
+        return sent
+
+    def _stop_again(self, stop: Request[None]) -> bool:
+        """Send ``stop`` after the first one raised something unexpected; return whether it was."""
+        try:
+            self._send(stop)
+        except Exception:
             return False
         return True
 

@@ -6,7 +6,7 @@ import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from inspect import iscoroutinefunction
+from functools import partial
 from typing import Any, Generic, TypeVar
 
 from cobotwire.protocol.errors import UsageError
@@ -18,6 +18,10 @@ EventT = TypeVar("EventT", bound=Event)
 
 # How many events wait for a loop that is busy, unless the caller says otherwise.
 CAPACITY = 1000
+
+
+# The flag of code that makes a coroutine; ``inspect`` takes a fifth as long to load as a client.
+_COROUTINE = 0x80
 
 
 class Wanted:
@@ -128,7 +132,7 @@ class EventHandler(Generic[EventT]):
     """
 
     def __init__(self, wanted: Wanted, handler: Callable[[EventT], object]) -> None:
-        if not callable(handler) or iscoroutinefunction(handler):
+        if not callable(handler) or _is_coroutine_function(handler):
             raise UsageError("handler", handler, "a function, not a coroutine: use events() there")
         self._wanted, self._handler = wanted, handler
         self._remove: Callable[[], None] | None = None
@@ -156,3 +160,10 @@ class EventHandler(Generic[EventT]):
             self.failures += 1
             self.error = error
             sys.excepthook(type(error), error, error.__traceback__)
+
+
+def _is_coroutine_function(handler: object) -> bool:
+    while isinstance(handler, partial):
+        handler = handler.func
+    code = getattr(handler, "__code__", None)
+    return bool(getattr(code, "co_flags", 0) & _COROUTINE)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypedDict
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.lazy import load_parts
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import RetryPolicy
 from cobotwire.transport import Transport, open_transport
@@ -51,10 +53,8 @@ class Settings(NamedTuple):
         Raises:
             UsageError: the timeout is not allowed.
         """
-        from dataclasses import replace
-
         check_seconds("timeout", timeout)
-        retry = replace(self.retry, attempts=1)
+        retry = RetryPolicy(1, self.retry.shortest_attempt, self.retry.grace)
         return self._replace(retry=retry, timeout=self.timeout if timeout is None else timeout)
 
 
@@ -80,7 +80,17 @@ def settings(
         if not isinstance(limits, Limits):
             raise UsageError("limits", limits, "Limits")
         table = limited(table, limits)
+    _load_for_calls(table)
     return Settings(codecs.load(table, codec), timeout, retry or RetryPolicy())
+
+
+def _load_for_calls(table: Table) -> None:
+    """Import what calls need besides the session: no call imports anything."""
+    for module in ("copy", "cobotwire.protocol.roles", "cobotwire.session.motion"):
+        import_module(module)
+    package = table.commands[0].package if table.commands else ""
+    if package:
+        load_parts(f"{package}.messages")
 
 
 def check_seconds(argument: str, value: float | None) -> None:

@@ -1,8 +1,16 @@
-"""Import each part of a generated package when one of its names is first used."""
+"""Import each part of a generated package when one of its names is first used.
+
+Calls import nothing. If Ctrl-C ended an import in the main thread, a lock of the import system
+could stay held, and every thread that imports the same module would wait for ever. So a client
+calls :func:`load_parts` when it opens, and what few programs need is imported by
+:func:`import_aside`.
+"""
 
 from __future__ import annotations
 
 import sys
+import threading
+from contextlib import suppress
 from importlib import import_module
 
 from cobotwire.protocol.light import TYPE_CHECKING
@@ -10,6 +18,42 @@ from cobotwire.protocol.light import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from typing import Any
+
+
+# The modules of each package that :func:`lazy_names` was called for.
+_parts: dict[str, tuple[str, ...]] = {}
+
+
+def load_parts(package: str) -> None:
+    """Import a package and all parts that its names can come from."""
+    import_module(package)
+    for part in _parts.get(package, ()):
+        import_module(part, package)
+
+
+def import_aside(module: str, *names: str) -> None:
+    """Import a module, and the parts of it that define ``names``, in a thread of its own.
+
+    Ctrl-C reaches the main thread alone, so it cannot end this import half-way. An ``import``
+    statement after this call finds the module loaded, or raises what the import raises.
+    """
+    loaded = vars(sys.modules.get(module, object)).keys()
+    if module in sys.modules and loaded >= set(names):
+        return
+
+    def load() -> None:
+        with suppress(Exception):
+            found = import_module(module)
+            for name in names:
+                getattr(found, name)
+
+    thread = threading.Thread(target=load, name=f"import of {module}")
+    try:
+        thread.start()
+    except RuntimeError:
+        # The interpreter ends, or has no more threads.
+        return
+    thread.join()
 
 
 def lazy_names(
@@ -27,6 +71,7 @@ def lazy_names(
             attributes of the package.
     """
     homes = {name: module for module, names in named.items() for name in names}
+    _parts[package] = tuple(searched)
     parts = {module.rpartition(".")[2]: module for module in searched}
 
     def find(name: str) -> Any:

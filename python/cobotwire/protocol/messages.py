@@ -30,6 +30,7 @@ from typing import (
 )
 
 from cobotwire.protocol.arguments import Chosen, Row, arranged, choose
+from cobotwire.protocol.converters import converters_of
 from cobotwire.protocol.radians import to_degrees
 
 Result = TypeVar("Result", covariant=True)
@@ -148,9 +149,6 @@ class Message:
     def _make_converters(cls) -> Mapping[str, Callable[[Any], Any]]:
         """Return the functions that convert decoded values, by field; they are made once."""
         if cls._converters is None:
-            # Imported here: a program that opens a client need not convert any value.
-            from cobotwire.protocol.converters import converters_of
-
             cls._converters = converters_of(cls, cls._names, cls._radians)
         return cls._converters
 

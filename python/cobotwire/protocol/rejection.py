@@ -297,5 +297,5 @@ def _bound(number: Number, raw: int) -> str:
     if number.encoding == "float":
         # The nearest float to a decimal has more digits than anyone wrote.
         return f"{number.physical(raw):.{6 if number.width == 4 else 15}g}"
-    exact = number.exact(raw)
-    return str(exact) if exact.denominator == 1 else str(float(exact))
+    whole, rest = divmod(raw * number.multiply, number.divide)
+    return str(number.physical(raw) if rest else whole)

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Iterator
 
 from cobotwire.codec.interface import Codec, Event, Noise
+from cobotwire.protocol.lazy import import_aside
 from cobotwire.protocol.table import Command
 from cobotwire.session.events import AckReceived, EchoReceived, EventReceived, FrameEvent, LateReply
 
@@ -75,6 +76,10 @@ def _diagnoses(
 ) -> Iterator[str]:
     """Yield for each span what begins in it, as a sentence; empty where nothing is recognised."""
     # Imported here: most programs never need it.
+    import_aside("dataclasses")
+    import_aside(
+        "cobotwire.diagnose", "DamagedFrame", "Diagnoser", "Finding", "Summary", "Unrecognised"
+    )
     from dataclasses import replace
 
     from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Summary, Unrecognised

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Request
+from cobotwire.protocol.records import record
 
 Result = TypeVar("Result")
 
@@ -25,7 +25,7 @@ class Reading(NamedTuple, Generic[Result]):
     """When its reply was read."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(frozen=True, slots=True)
 class Sample:
     """The results of a stream's requests in one of its slots.
 

@@ -264,8 +264,8 @@ class ThreadedTransport:
         while not self._closed:
             try:
                 arrived: bytes | LinkError = self._transport.read(SLICE_SECONDS)
-            except LinkError as error:
-                arrived = error
+            except Exception as error:
+                arrived = self._link_error(error)
             if arrived:
                 self._read_queue.put(arrived)
                 self._in_loop(self._ready)
@@ -284,11 +284,17 @@ class ThreadedTransport:
                 continue
             try:
                 self._transport.write(data)
-            except LinkError as failed:
-                error, failures = failed, failures + 1
-                self._in_loop(self._fail_write, done, failed)
+            except Exception as failed:
+                error, failures = self._link_error(failed), failures + 1
+                self._in_loop(self._fail_write, done, error)
             else:
                 self._in_loop(done, None)
+
+    def _link_error(self, error: Exception) -> LinkError:
+        """Return the error for callers, who would wait for ever if it ended the thread."""
+        if isinstance(error, LinkError):
+            return error
+        return LinkError(self._transport.url, f"raised {error!r}")
 
     def _fail_write(self, done: Done, error: LinkError) -> None:
         self._failures += 1

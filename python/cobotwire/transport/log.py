@@ -9,6 +9,8 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+from cobotwire.protocol.lazy import import_aside
+
 if TYPE_CHECKING:
     from logging import Logger
 
@@ -33,6 +35,7 @@ class Log:
     def load(self) -> Logger:
         """Return the logger."""
         if self._loaded is None:
+            import_aside("logging")
             import logging
 
             library = logging.getLogger("cobotwire")

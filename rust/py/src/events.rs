@@ -9,12 +9,25 @@ use crate::frame_class::{class, object};
 use crate::names::Names;
 
 /// Collects the events of one call.
+///
+/// The framer is locked while they come, so `add` runs no code of Python's. A frame is an object
+/// without a header for the garbage collector, and is made at once. Noise is a tuple: to make one can
+/// start a collection, which may run any code. So `finish` makes it.
 pub struct Events<'py, 'a> {
     names: &'static Names,
     origin: &'a Py<Origin>,
     frames: &'py Bound<'py, PyType>,
     list: Bound<'py, PyList>,
+    noise: Vec<Noise<'py>>,
     failed: Option<PyErr>,
+}
+
+/// Noise that `finish` puts into the list.
+struct Noise<'py> {
+    place: usize,
+    offset: u64,
+    reason: Reason,
+    bytes: Bound<'py, PyBytes>,
 }
 
 impl<'py, 'a> Events<'py, 'a> {
@@ -24,45 +37,59 @@ impl<'py, 'a> Events<'py, 'a> {
             origin,
             frames: class(py)?,
             list: PyList::empty(py),
+            noise: Vec::new(),
             failed: None,
         })
     }
 
     /// Add an event. `finish` returns a failure, so that the framer always completes its call.
     pub fn add(&mut self, event: Event<'_>) {
-        if let Err(error) = self.try_add(event) {
+        let added = match event {
+            Event::Frame { offset, frame } => self.add_frame(offset, frame),
+            Event::Noise {
+                offset,
+                reason,
+                data,
+            } => self.add_noise(offset, reason, data),
+        };
+        if let Err(error) = added {
             self.failed.get_or_insert(error);
         }
     }
 
     /// Return all events, or the first failure.
     pub fn finish(self) -> PyResult<Bound<'py, PyList>> {
-        self.failed.map_or(Ok(self.list), Err)
+        if let Some(error) = self.failed {
+            return Err(error);
+        }
+        let py = self.list.py();
+        for noise in self.noise {
+            let reason = self.names.reason(py, noise.reason);
+            let items = (noise.offset, noise.bytes, reason).into_pyobject(py)?;
+            let event = self.names.make(&self.names.noise, items)?;
+            self.list.set_item(noise.place, event)?;
+        }
+        Ok(self.list)
     }
 
-    fn try_add(&self, event: Event<'_>) -> PyResult<()> {
-        self.list.append(match event {
-            Event::Frame { offset, frame } => self.frame(offset, frame)?,
-            Event::Noise {
-                offset,
-                reason,
-                data,
-            } => self.noise(offset, reason, data)?,
-        })
-    }
-
-    fn frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<Bound<'py, PyAny>> {
+    fn add_frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<()> {
         let origin = || self.origin.clone_ref(self.list.py());
-        object(self.frames, || NativeFrame::new(origin(), offset, frame))
+        let frame = object(self.frames, || NativeFrame::new(origin(), offset, frame))?;
+        self.list.append(frame)
     }
 
-    fn noise(&self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<Bound<'py, PyAny>> {
+    fn add_noise(&mut self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<()> {
         let py = self.list.py();
         let bytes = match data {
             [all, []] | [[], all] => PyBytes::new(py, all),
             pieces => PyBytes::new(py, &pieces.concat()),
         };
-        let items = (offset, bytes, self.names.reason(py, reason)).into_pyobject(py)?;
-        self.names.make(&self.names.noise, items)
+        self.noise.push(Noise {
+            place: self.list.len(),
+            offset,
+            reason,
+            bytes,
+        });
+        self.list.append(py.None())
     }
 }

@@ -1,6 +1,8 @@
 //! `NativeFramer`: implements `cobotwire.codec.interface.Framer` with the core.
 
-use cobotwire_core::{Frame, Framer, Reason, Tally};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use cobotwire_core::{Framer, Reason, Tally};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 
@@ -12,54 +14,70 @@ use crate::frame_class;
 use crate::names::Names;
 
 /// Cuts frames out of a byte stream.
-#[pyclass(module = "cobotwire._native")]
+///
+/// Any thread may read its counts at any time, also while another thread feeds it. So `core` is
+/// never locked while code of Python's may run: what needs such code is done before or after.
+#[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeFramer {
-    core: Framer,
+    core: Mutex<Framer>,
     origin: Py<Origin>,
 }
 
 impl NativeFramer {
     pub fn new(py: Python<'_>, origin: Origin) -> PyResult<Self> {
         Ok(Self {
-            core: Framer::new(origin.rules.clone()),
+            core: Mutex::new(Framer::new(origin.rules.clone())),
             origin: Py::new(py, origin)?,
         })
     }
 
-    fn object<'py>(
-        &self,
-        py: Python<'py>,
-        offset: u64,
-        frame: Frame<'_>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        frame_class::object(frame_class::class(py)?, || {
+    fn core(&self) -> MutexGuard<'_, Framer> {
+        // Nothing panics while it is locked.
+        self.core.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Feed bytes that are exactly one frame, while nothing waits; return this frame.
+    fn feed_frame<'py>(&self, data: &Bound<'py, PyBytes>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let py = data.py();
+        let class = frame_class::class(py)?;
+        let mut core = self.core();
+        let Some((offset, frame)) = core.feed_frame(data.as_bytes()) else {
+            return Ok(None);
+        };
+        frame_class::object(class, || {
             NativeFrame::new(self.origin.clone_ref(py), offset, frame)
         })
+        .map(Some)
     }
 }
 
 #[pymethods]
 impl NativeFramer {
     /// Feed bytes; return the events that are certain, in the order of the stream.
-    fn feed<'py>(&mut self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
+    fn feed<'py>(&self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
         let py = data.py();
         if let Ok(bytes) = data.cast_exact::<PyBytes>()
-            && let Some((offset, frame)) = self.core.feed_frame(bytes.as_bytes())
+            && let Some(frame) = self.feed_frame(bytes)?
         {
-            return PyList::new(py, [self.object(py, offset, frame)?]);
+            return PyList::new(py, [frame]);
         }
+        let copy;
+        let chunk = match data.cast::<PyBytes>() {
+            Ok(bytes) => bytes.as_bytes(),
+            Err(_) => {
+                copy = copied(data)?;
+                &copy
+            }
+        };
         let mut events = Events::new(py, &self.origin)?;
-        match data.cast::<PyBytes>() {
-            Ok(bytes) => self.core.feed(bytes.as_bytes(), |event| events.add(event)),
-            Err(_) => self.core.feed(&copied(data)?, |event| events.add(event)),
-        }
+        self.core().feed(chunk, |event| events.add(event));
         events.finish()
     }
 
     /// Refute the candidate that waits; return the events of all remaining bytes.
-    fn flush<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+    fn flush<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let mut events = Events::new(py, &self.origin)?;
-        self.core.flush(|event| events.add(event));
+        self.core().flush(|event| events.add(event));
         events.finish()
     }
 
@@ -102,7 +120,7 @@ impl NativeFramer {
         let take = |data: &[u8]| match data {
             [] => Ok(None),
             _ => slf
-                .try_borrow_mut()?
+                .get()
                 .take_reply(py, data, request, of)?
                 .into_pyobject(py)
                 .map(Some),
@@ -113,19 +131,20 @@ impl NativeFramer {
     /// The number of bytes fed that no event covers yet.
     #[getter]
     fn pending(&self) -> usize {
-        self.core.pending()
+        self.core().pending()
     }
 
     /// The number of bytes fed since the start of the stream.
     #[getter]
     pub fn fed(&self) -> u64 {
-        self.core.tally().bytes
+        self.core().tally().bytes
     }
 
     /// The counts since the start of the stream.
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        counters(py, self.core.tally())
+        let tally = self.core().tally().clone();
+        counters(py, &tally)
     }
 }
 
@@ -133,17 +152,21 @@ impl NativeFramer {
     /// Feed what came after a request. Return the frame and its fields if all of it is one frame
     /// that replies to the command `of` and is no copy of the request; otherwise the events.
     pub fn take_reply<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         data: &[u8],
         request: &[u8],
         of: &Bound<'py, PyAny>,
     ) -> PyResult<Taken<'py>> {
         let mut events = Events::new(py, &self.origin)?;
-        let whole = self.core.pending() == 0 && data != request;
-        self.core.feed(data, |event| events.add(event));
+        let whole = {
+            let mut core = self.core();
+            let empty = core.pending() == 0;
+            core.feed(data, |event| events.add(event));
+            empty && core.pending() == 0 && data != request
+        };
         let events = events.finish()?;
-        if whole && self.core.pending() == 0 && events.len() == 1 {
+        if whole && events.len() == 1 {
             let event = events.get_item(0)?;
             if let Some(frame) = frame_class::frame(&event)
                 && let Some(fields) = frame.fields_of(py, of)?

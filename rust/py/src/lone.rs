@@ -61,7 +61,7 @@ impl LoneCalls {
         let timeout = self.timeout(&command, policy, wait)?;
         let command = command.getattr(intern!(py, "name"))?;
         let frame = request.get_item(1)?.cast_into::<PyBytes>()?;
-        let fed = self.framer.bind(py).try_borrow()?.fed();
+        let fed = self.framer.get().fed();
         let Some(begun) = self.session.begin(request, &frame, fed, policy, at)? else {
             return Ok(None);
         };
@@ -148,8 +148,7 @@ impl LoneCalls {
     ) -> PyResult<Option<Came<'py>>> {
         let (py, request) = (frame.py(), frame.as_bytes());
         let take = |data: &[u8]| {
-            let mut framer = self.framer.bind(py).try_borrow_mut()?;
-            let taken = framer.take_reply(py, data, request, command)?;
+            let taken = self.framer.get().take_reply(py, data, request, command)?;
             // Another thread may have sent a one-way request meanwhile, and the line may echo.
             Ok::<_, PyErr>((taken, self.session.is_one_way(py, data)?))
         };

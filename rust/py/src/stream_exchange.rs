@@ -151,7 +151,7 @@ impl StreamLine {
         let Some((held, descriptor)) = self.borrowed(py)? else {
             return Ok(Sent::No);
         };
-        let fed = self.framer.bind(py).try_borrow()?.fed();
+        let fed = self.framer.get().fed();
         let requested_at = now();
         let written = write_if_free(descriptor, plan.frame.as_bytes(py))?;
         drop(held);
@@ -180,7 +180,7 @@ impl StreamLine {
             // The process has too many.
             return Ok(());
         };
-        let fed = self.framer.bind(py).try_borrow()?.fed();
+        let fed = self.framer.get().fed();
         let Some(frame) = slot
             .locked()
             .plan
@@ -223,10 +223,9 @@ impl StreamLine {
         if data.is_empty() {
             return Ok(Came::Unknown);
         }
-        let mut framer = self.framer.bind(py).try_borrow_mut()?;
+        let framer = self.framer.get();
         let fed = framer.fed();
         let taken = framer.take_reply(py, data, request.as_bytes(py), command.bind(py))?;
-        drop(framer);
         let (frame, fields) = match taken {
             Taken::Reply(frame, fields) => (frame, fields),
             Taken::Events(events) => return Ok(Came::Events(events, fed)),

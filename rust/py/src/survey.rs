@@ -106,7 +106,8 @@ impl NativeSurvey {
     /// The counts of the framer.
     #[getter]
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        counters(py, self.core.get(py)?.tally())
+        let tally = self.core.get(py)?.tally().clone();
+        counters(py, &tally)
     }
 
     /// The messages in the order of their first frames: id, command and number of frames. The
